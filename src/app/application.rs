@@ -4,18 +4,15 @@ mod zoom;
 
 use super::apply::{self, Effect};
 use super::chrome::{file_dialog, help, menu, messages, palette, save_question, status_bar, tiles};
-use super::contents::{self, Contents, Panels};
+use super::contents::{Contents, Panels};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::kept::{self, KeptSettings};
-use super::state::{
-    Arrangement, Command, DocumentCommand, LessonCommand, Methods, Notices, Pointer, State, ViewCommand,
-};
+use super::state::{Arrangement, Command, DocumentCommand, LessonCommand, State, ViewCommand};
 use super::widgets::{focus_ring, theme};
-use crate::interact::{Document, Editor};
+use crate::interact::Editor;
 use crate::platform::{self, Instant};
 use crate::reconstruct::Reconstructor;
-use crate::scene::presets;
 use eframe::egui;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -91,28 +88,14 @@ impl App {
         let began = options.started.unwrap_or_else(Instant::now);
         let frame_log = options.frame_log.map(|path| FrameLog::create(&path, began)).transpose()?;
         let mut state = State {
-            editor: Editor::of(Document::shipped(presets::default_scene())),
             settings: kept.settings,
-            methods: Methods::new(methods),
             method_times: kept.method_times,
             arrangement: kept.arrangement,
-            notices: Notices::default(),
-            scene_view: Default::default(),
-            map_views: Default::default(),
-            pointer: Pointer::default(),
-            pins: Default::default(),
-            guided: Default::default(),
-            save_question: None,
-            failures: Default::default(),
-            lesson: None,
-            before_presenting: None,
             progress: kept.progress,
             recent: kept.recent,
             captions,
-            tells_first_drag: false,
-            timeline: Default::default(),
-            help: None,
             dark: ctx.theme() == egui::Theme::Dark,
+            ..State::new(methods)
         };
         let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
         let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
@@ -212,11 +195,8 @@ impl App {
     /// Draws the window; returns the commands of the user.
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
-        let is_open = |panel| state.arrangement.has_tile(panel);
-        let is_on = |command: &Command| state.is_on(command);
-        let input = contents::menu_input(state, &is_open, &is_on);
-        let mut commands = menu::show(ui, input, &mut memory.menu);
-        status_bar::show(ui, contents::status_input(state, jobs));
+        let mut commands = menu::show(ui, state, &mut memory.menu);
+        status_bar::show(ui, state, jobs.pipeline.maps.took());
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
             let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
@@ -225,12 +205,10 @@ impl App {
             commands.extend(panels.into_commands());
             state.arrangement = arrangement;
         });
-        let input = palette::Input { methods: &state.methods.all };
-        commands.extend(palette::show(ui.ctx(), input, &mut memory.palette));
-        commands.extend(help::show(ui.ctx(), help::Input { page: state.help }));
+        commands.extend(palette::show(ui.ctx(), &state.methods.all, &mut memory.palette));
+        commands.extend(help::show(ui.ctx(), state.help));
         commands.extend(file_dialog::show(ui.ctx(), &mut memory.file_dialog));
-        let input = save_question::Input { question: state.save_question.as_ref() };
-        commands.extend(save_question::show(ui.ctx(), input));
+        commands.extend(save_question::show(ui.ctx(), state.save_question.as_ref()));
         commands
     }
 

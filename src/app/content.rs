@@ -1,8 +1,7 @@
 //! The trait of a panel: its query, its memory and its drawing.
 
-use super::jobs::{Derived, Failure, Jobs, Polled, Query, Wants};
+use super::jobs::{Derived, Failure, Jobs, Query, Wants};
 use super::state::{Command, MapKind, Panel, State};
-use super::widgets::method_menu::Offered;
 use crate::task::Task;
 use eframe::egui::Ui;
 
@@ -89,11 +88,14 @@ pub trait AnyPanel: std::any::Any {
     /// Asks for the panel's value where the panel is in sight; asks for none elsewhere.
     fn ask(&mut self, state: &State, jobs: &Jobs, is_in_sight: bool);
 
-    /// The panel's own value, to be polled.
-    fn polled(&mut self) -> &mut dyn Polled;
+    /// Takes in the panel's own value. Returns a message for the user.
+    fn poll(&mut self) -> Option<String>;
 
     /// Whether the panel's own value is being computed.
     fn is_busy(&self) -> bool;
+
+    /// Values asked for since the start.
+    fn requests(&self) -> u64;
 
     /// Whether the panel has drawn results of an earlier scene or settings for so long that it must be marked. Only this function decides it.
     fn is_stale(&self, jobs: &Jobs, panel: Panel) -> bool;
@@ -120,12 +122,16 @@ impl<C: Content> AnyPanel for Held<C> {
         self.derived.ask(is_in_sight.then(|| C::asks(state, jobs)).flatten());
     }
 
-    fn polled(&mut self) -> &mut dyn Polled {
-        &mut self.derived
+    fn poll(&mut self) -> Option<String> {
+        self.derived.poll()
     }
 
     fn is_busy(&self) -> bool {
         self.derived.is_busy()
+    }
+
+    fn requests(&self) -> u64 {
+        self.derived.requests()
     }
 
     fn is_stale(&self, jobs: &Jobs, panel: Panel) -> bool {
@@ -162,17 +168,12 @@ impl<C: Content> AnyPanel for Held<C> {
     }
 }
 
-/// The methods to choose from, with their measured times.
-pub fn offered(state: &State) -> Offered<'_> {
-    let times = state.method_times.on(state.radar());
-    Offered { all: &state.methods.all, radar: Some(state.radar()), layout: state.settings.layout.as_ref(), times }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::app::shared::Shared;
     use crate::app::state::EditCommand;
+    use crate::app::widgets::seen::User;
     use crate::app::{App, Options};
     use crate::scene::Scene;
     use egui_kittest::Harness;
@@ -221,7 +222,7 @@ mod tests {
         let draw = |ui: &mut Ui, (app, held, asked): &mut (Harness<'_, App>, Box<dyn AnyPanel>, Vec<Command>)| {
             let App { state, jobs, .. } = app.state_mut();
             held.ask(state, jobs, true);
-            held.polled().poll();
+            held.poll();
             asked.extend(held.draw(ui, state, jobs, Panel::Guide));
         };
         let held = Held::<CountPanel>::start(|| ());
@@ -231,8 +232,7 @@ mod tests {
         }
         drawn.run();
         drawn.get_by_label(&format!("{count} reflectors"));
-        drawn.get_by_label("Select all").click();
-        drawn.run();
+        drawn.clicks(&["Select all"]);
         assert_eq!(drawn.state().2, [Command::from(EditCommand::SelectAll)]);
     }
 }

@@ -1,7 +1,7 @@
 //! Keys and clipboard events, turned into commands.
 
 use super::state::{Command, EditCommand, WindowCommand, shortcuts};
-use super::widgets::nudge::nudge;
+use super::widgets::nudge;
 use eframe::egui::{Context, Event, Key, Modifiers, Popup, RawInput};
 
 /// Events of one frame that wait for the next.
@@ -128,7 +128,11 @@ mod tests {
     }
 
     fn press(key: Key) -> Event {
-        Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE }
+        pressed(key, Modifiers::NONE)
+    }
+
+    fn pressed(key: Key, modifiers: Modifiers) -> Event {
+        Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
     }
 
     /// The events by the frame in which they are handled.
@@ -159,12 +163,13 @@ mod tests {
             vec![text("p")],
         ];
         assert_eq!(frames(fast), slow);
+        let harmless = vec![text("1"), press(Key::ArrowUp), text("2")];
+        assert_eq!(frames(harmless.clone()), [harmless]);
     }
 
     #[test]
     fn letters_after_the_palettes_key_wait_for_the_palette() {
-        let modifiers = Modifiers::COMMAND;
-        let open = Event::Key { key: Key::K, physical_key: None, pressed: true, repeat: false, modifiers };
+        let open = pressed(Key::K, Modifiers::COMMAND);
         let letters = [press(Key::T), text("t")];
         let typed = [vec![open.clone()], letters.to_vec()].concat();
         assert_eq!(frames(typed), [vec![open.clone()], letters.to_vec()]);
@@ -183,11 +188,5 @@ mod tests {
         let click = vec![text("b"), Event::PointerMoved(at), button(true), button(false), text("c")];
         let apart = [vec![text("b"), Event::PointerMoved(at)], vec![button(true), button(false)], vec![text("c")]];
         assert_eq!(frames(click), apart, "what was typed before a click stays");
-    }
-
-    #[test]
-    fn an_arrow_key_shares_a_frame_with_letters() {
-        let harmless = vec![text("1"), press(Key::ArrowUp), text("2")];
-        assert_eq!(frames(harmless.clone()), [harmless]);
     }
 }

@@ -2,7 +2,6 @@
 
 use super::application::App;
 use super::apply;
-use super::jobs::Derived;
 use super::panels::bounds::BoundsPanel;
 use super::panels::chirp::ChirpPanel;
 use super::panels::doppler::DopplerPanel;
@@ -119,9 +118,9 @@ impl App {
         old
     }
 
-    /// Bounds asked for since the start.
-    pub fn bounds_asked(&self) -> u64 {
-        self.panels.derived::<BoundsPanel>(Panel::Bounds).map_or(0, Derived::requests)
+    /// Values that a panel has asked for since the start.
+    pub fn values_asked(&self, panel: Panel) -> u64 {
+        self.panels.requests(panel)
     }
 
     /// The bound on screen, if there is one.
@@ -129,24 +128,9 @@ impl App {
         self.panels.derived::<BoundsPanel>(Panel::Bounds)?.value()?.ok()?.bound.ok()
     }
 
-    /// Chains of phasors asked for since the start.
-    pub fn phasors_asked(&self) -> u64 {
-        self.panels.derived::<PhasorsPanel>(Panel::Phasors).map_or(0, Derived::requests)
-    }
-
     /// Range bin and column of the chain of phasors on screen, and the end of the chain, if there is one.
     pub fn phasor_sum(&self) -> Option<([usize; 2], Complex64)> {
         self.panels.derived::<PhasorsPanel>(Panel::Phasors)?.value()?.ok().map(|r| (r.cell, r.measured.sum()))
-    }
-
-    /// Beats asked for since the start.
-    pub fn chirps_asked(&self) -> u64 {
-        self.panels.derived::<ChirpPanel>(Panel::Chirp).map_or(0, Derived::requests)
-    }
-
-    /// Range-Doppler maps asked for since the start.
-    pub fn dopplers_asked(&self) -> u64 {
-        self.panels.derived::<DopplerPanel>(Panel::RangeDoppler).map_or(0, Derived::requests)
     }
 
     /// Range bin and column of the strongest cell of the range-Doppler map on screen.
@@ -222,14 +206,14 @@ impl App {
     pub fn is_at_work(&self) -> bool {
         let jobs = &self.jobs;
         jobs.thresholds.progress().is_some()
-            || jobs.failures.progress().is_some()
+            || jobs.failures.run.progress().is_some()
             || jobs.failures.search.progress().is_some()
             || jobs.run_time.progress().is_some()
     }
 
     /// The rows of the panel Evaluate.
     pub fn rows(&self) -> &[Row] {
-        self.jobs.failures.table().rows()
+        self.jobs.failures.table.rows()
     }
 
     /// Whether the file that keeps rows between starts holds all of them.

@@ -175,6 +175,9 @@ mod tests {
             KeptSettings { captions_seen: seen, ..KeptSettings::default() }.write(&mut storage);
             assert_eq!(read(Some(&storage), None).1, !seen);
         }
+        let view = View { one_scale: true, method: "capon".to_owned(), ..View::default() };
+        KeptSettings { view: Some(view.clone()), ..KeptSettings::default() }.write(&mut storage);
+        assert_eq!(read(Some(&storage), None).0.settings.view, view, "how scenes are looked at is kept");
         assert!(!read(None, None).1, "nowhere to keep that it was seen");
     }
 
@@ -222,14 +225,6 @@ mod tests {
             let told = problems(place.as_deref());
             assert!(told.len() == 1 && told[0].contains("can't be kept"), "{told:?}");
         }
-    }
-
-    #[test]
-    fn how_scenes_are_looked_at_is_kept() {
-        let mut storage = InMemory::default();
-        let view = View { one_scale: true, method: "capon".to_owned(), ..View::default() };
-        KeptSettings { view: Some(view.clone()), ..KeptSettings::default() }.write(&mut storage);
-        assert_eq!(read(Some(&storage), None).0.settings.view, view);
     }
 
     /// Settings written by version 0.1.0; never to be rewritten.

@@ -92,21 +92,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_address_opens_a_preset() {
+    fn an_address_opens_a_preset_or_a_shared_text() {
         let options = options_of("?scene=street").unwrap();
         let [Command::Document(DocumentCommand::Preset(index))] = options.commands[..] else { panic!() };
         assert_eq!(scene::presets::ALL[index].id, "street");
-    }
-
-    #[test]
-    fn an_address_carries_a_shared_text() {
-        assert_eq!(options_of("#apertura:1:abc").unwrap().shared.as_deref(), Some("apertura:1:abc"));
-    }
-
-    #[test]
-    fn the_cell_of_a_notebook_asks_for_nothing() {
         let options = options_of("?cell=abc#apertura:1:abc").unwrap();
-        assert!(options.commands.is_empty() && options.shared.is_some());
+        assert!(options.commands.is_empty(), "the cell of a notebook asks for nothing");
+        assert_eq!(options.shared.as_deref(), Some("apertura:1:abc"));
     }
 
     #[test]

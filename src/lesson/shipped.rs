@@ -1,6 +1,7 @@
 //! The lessons that come with the program: the files of `assets/lessons`, embedded.
 
 use super::file::{Lesson, LessonTextError};
+use std::sync::OnceLock;
 
 /// A lesson that comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,6 +44,12 @@ pub const ALL: &[Shipped] = lessons![
     "which-radar-is-the-thesis-radar",
     "what-a-network-can-know",
 ];
+
+/// Every lesson with its place in [`ALL`], read once.
+pub fn all_read() -> &'static [(usize, Lesson)] {
+    static READ: OnceLock<Vec<(usize, Lesson)>> = OnceLock::new();
+    READ.get_or_init(|| ALL.iter().enumerate().filter_map(|(index, file)| Some((index, file.load().ok()?))).collect())
+}
 
 /// The place in [`ALL`] of the lesson of this name, or of the one lesson whose name begins so.
 /// # Errors

@@ -9,10 +9,9 @@ use crate::methods;
 use crate::platform::Instant;
 use crate::recording::raw::boards;
 use crate::recording::{self, Recording, raw};
-use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use crate::scene::generate::{Generator, Kind, Purpose as ScenePurpose, Reading};
-use crate::scene::presets;
+use crate::scene::{Scene, presets};
 use crate::signal::Floor;
 use std::path::{Path, PathBuf};
 

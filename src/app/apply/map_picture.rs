@@ -52,14 +52,10 @@ mod tests {
     use eframe::egui::Color32;
 
     #[test]
-    fn a_picture_hangs_upright() {
+    fn a_picture_hangs_upright_or_is_refused_as_too_large() {
         let pixels = [Color32::RED, Color32::GREEN, Color32::BLUE, Color32::WHITE].to_vec();
         let image = upright(&ColorImage::new([2, 2], pixels)).unwrap();
         assert_eq!(image.pixels, [Color32::BLUE, Color32::WHITE, Color32::RED, Color32::GREEN]);
-    }
-
-    #[test]
-    fn a_picture_that_does_not_fit_the_clipboard_is_refused() {
         let error = upright(&ColorImage::filled([4097, 4096], Color32::RED)).unwrap_err();
         assert!(error.contains("4097 × 4096"), "{error}");
     }

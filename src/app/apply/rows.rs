@@ -15,7 +15,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
             Ok(plan) => jobs.failures.begin(plan),
             Err(error) => state.notices.error(error),
         },
-        RowsCommand::CancelTrying => jobs.failures.cancel(),
+        RowsCommand::CancelTrying => jobs.failures.run.cancel(),
         RowsCommand::OpenTable(path) if !is_table_of_rows(&path) => work::watch(state, jobs, path),
         RowsCommand::OpenFile(path) | RowsCommand::OpenTable(path) => {
             jobs.failures.open(path);
@@ -23,7 +23,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
                 state.arrangement.set_open(Panel::Failures, true);
             }
         }
-        RowsCommand::SaveTo(path) => tell(state, jobs.exports.rows(jobs.failures.table(), path)),
+        RowsCommand::SaveTo(path) => tell(state, jobs.exports.rows(&jobs.failures.table, path)),
         RowsCommand::Clear => jobs.failures.clear(),
         RowsCommand::BringBack => jobs.failures.bring_back(),
         RowsCommand::Show(index) => open_row(state, jobs, index),
@@ -56,7 +56,7 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
 /// Opens a row's scene as another document, with the row's floor and method in the settings. One undo takes back all of it. It also takes back a series of
 /// opened rows, as long as none was changed in between.
 fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
-    let table = jobs.failures.table();
+    let table = &jobs.failures.table;
     let Some(row) = table.rows().get(index).cloned() else { return };
     let generation = table.generation();
     let conditions = table.conditions();

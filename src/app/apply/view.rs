@@ -2,7 +2,7 @@
 
 use super::document;
 use crate::app::jobs::Jobs;
-use crate::app::state::{MapViews, Panel, PinnedCut, State, ViewCommand};
+use crate::app::state::{MapViews, Panel, PinnedCut, State, ViewCommand, pin_cut};
 use crate::maps::cfar::Cfar;
 use crate::reconstruct::Reconstructor;
 
@@ -58,9 +58,10 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
         ViewCommand::NextMethod => next_method(state),
         ViewCommand::PinCuts => {
             let (radar, cursor) = (state.radar().clone(), state.cut_cursor());
-            state.pins.push(PinnedCut { radar, cursor, maps: jobs.pipeline.cut_maps() });
+            pin_cut(&mut state.pins, PinnedCut { radar, cursor, maps: jobs.pipeline.cut_maps() });
         }
-        ViewCommand::Unpin(index) => state.pins.remove(index),
+        ViewCommand::Unpin(index) if index < state.pins.len() => _ = state.pins.remove(index),
+        ViewCommand::Unpin(_) => {}
         ViewCommand::UnpinAll => state.pins.clear(),
     }
 }

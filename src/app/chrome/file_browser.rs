@@ -3,8 +3,7 @@
 use crate::app::jobs::Question;
 use crate::app::state::Purpose;
 use crate::platform::fs;
-use eframe::egui;
-use eframe::egui::{Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{self, Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 
 /// Most entries of a folder that are listed.
@@ -214,7 +213,7 @@ impl Browser {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -238,84 +237,55 @@ mod tests {
         }
         let mut dialog = panel(Purpose::Open, folder.path());
         seen::assert_readable(dialog.output());
-        dialog.get_by_label("walls/").click();
-        dialog.run_steps(3);
+        dialog.clicks(&["walls/"]);
         (dialog, folder)
     }
 
     #[test]
-    fn up_leads_to_the_folder_above() {
+    fn a_folder_lists_files_of_the_kind_and_leads_up() {
         let (mut dialog, _folder) = in_walls();
-        let _below = dialog.get_by_label("a.toml");
-        dialog.get_by_label("Up").click();
-        dialog.run_steps(3);
+        assert!(dialog.query_by_label("notes.txt").is_none() && dialog.query_by_label(".hidden.toml").is_none());
+        dialog.clicks(&["All files"]);
+        let _listed = (dialog.get_by_label("notes.txt"), dialog.get_by_label("a.toml"));
+        dialog.clicks(&["Up"]);
         let _above = dialog.get_by_label("walls/");
     }
 
     #[test]
-    fn only_files_of_the_kind_are_listed_unless_all_are_asked_for() {
-        let (mut dialog, _folder) = in_walls();
-        assert!(dialog.query_by_label("notes.txt").is_none() && dialog.query_by_label(".hidden.toml").is_none());
-        dialog.get_by_label("All files").click();
-        dialog.run_steps(3);
-        let _listed = dialog.get_by_label("notes.txt");
+    fn a_name_that_can_not_be_taken_is_told() {
+        for (purpose, name, button, told) in [
+            (Purpose::Open, "missing.toml", "Open", "missing.toml is not there"),
+            (Purpose::ExportPicture, "window.jpg", "Save", "expected .png or .svg"),
+        ] {
+            let folder = tempfile::tempdir().unwrap();
+            let mut dialog = panel(purpose, folder.path());
+            // The name's field has the focus.
+            dialog.event(egui::Event::Text(name.to_owned()));
+            dialog.run_steps(2);
+            dialog.clicks(&[button]);
+            assert!(dialog.state().1.is_empty());
+            let _told = dialog.get_by_label_contains(told);
+        }
     }
 
     #[test]
     fn a_file_is_chosen_before_it_is_opened() {
         let (mut dialog, folder) = in_walls();
-        dialog.get_by_label("a.toml").click();
-        dialog.run_steps(3);
+        dialog.clicks(&["a.toml"]);
         assert!(dialog.state().1.is_empty(), "chosen, not opened");
-        dialog.get_by_label("Open").click();
-        dialog.run_steps(3);
+        dialog.clicks(&["Open"]);
         assert_eq!(dialog.state().1, [Answer::Chosen(folder.path().join("walls/a.toml"))]);
-    }
-
-    #[test]
-    fn escape_cancels() {
-        let (mut dialog, _folder) = in_walls();
-        dialog.key_press(Key::Escape);
-        dialog.run_steps(2);
+        dialog.presses(&[Key::Escape]);
         assert_eq!(dialog.state().1.last(), Some(&Answer::Cancelled));
-    }
-
-    #[test]
-    fn a_file_that_is_missing_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut dialog = panel(Purpose::Open, folder.path());
-        // The name's field has the focus.
-        dialog.event(egui::Event::Text("missing.toml".to_owned()));
-        dialog.run_steps(2);
-        dialog.get_by_label("Open").click();
-        dialog.run_steps(3);
-        assert!(dialog.state().1.is_empty());
-        let _told = dialog.get_by_label_contains("missing.toml is not there");
-    }
-
-    #[test]
-    fn an_ending_that_can_not_be_written_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut dialog = panel(Purpose::ExportPicture, folder.path());
-        dialog.event(egui::Event::Text("window.jpg".to_owned()));
-        dialog.run_steps(2);
-        dialog.get_by_label("Save").click();
-        dialog.run_steps(3);
-        assert!(dialog.state().1.is_empty());
-        let _told = dialog.get_by_label_contains("expected .png or .svg");
     }
 
     #[test]
     fn a_folder_that_can_not_be_read_is_not_entered() {
         let folder = tempfile::tempdir().unwrap();
         let mut dialog = panel(Purpose::Open, folder.path());
-        dialog.get_by_label("Name").click();
-        dialog.run_steps(2);
-        dialog.get_by_label("Folder").click();
-        dialog.run_steps(2);
+        dialog.clicks(&["Name", "Folder"]);
         dialog.event(egui::Event::Text("/nowhere".to_owned()));
-        dialog.key_press(Key::Enter);
-        dialog.run_steps(3);
+        dialog.presses(&[Key::Enter]);
         assert_eq!(dialog.state().0.folder, folder.path());
     }
 }

@@ -77,6 +77,7 @@ fn replace(ui: &mut Ui, path: &Path) -> Option<bool> {
 mod tests {
     use super::*;
     use crate::app::state::{DocumentCommand, ExportCommand};
+    use crate::app::widgets::seen::User;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -102,11 +103,9 @@ mod tests {
             [("Keep it", vec![]), ("Replace", vec![Command::Document(DocumentCommand::SaveTo(path.clone()))])]
         {
             let mut dialog = panel(question.clone());
-            dialog.get_by_label("Save").click();
-            dialog.run_steps(3);
+            dialog.clicks(&["Save"]);
             assert!(dialog.state().1.is_empty(), "not yet");
-            dialog.get_by_label(answer).click();
-            dialog.run_steps(3);
+            dialog.clicks(&[answer]);
             assert_eq!(dialog.state().1, asked);
             assert!(!dialog.state().0.is_open());
         }
@@ -118,19 +117,17 @@ mod tests {
         std::fs::write(folder.path().join("maps.npz"), "").unwrap();
         let question = Question { name: "maps".to_owned(), ..Question::beside(Purpose::ExportMaps, None) };
         let mut dialog = panel(Question { folder: Some(folder.path().to_path_buf()), ..question });
-        dialog.get_by_label("Save").click();
-        dialog.run_steps(3);
+        dialog.clicks(&["Save"]);
         assert!(dialog.state().1.is_empty() && dialog.state().0.is_open());
         let _asked = dialog.get_by_label("Replace");
     }
 
     #[test]
-    fn a_new_file_is_written_at_once() {
+    fn a_new_file_is_written_at_once_under_its_whole_name() {
         let folder = tempfile::tempdir().unwrap();
         let question = Question::beside(Purpose::ExportMaps, Some(&folder.path().join("scene.toml")));
         let mut dialog = panel(question);
-        dialog.get_by_label("Save").click();
-        dialog.run_steps(3);
+        dialog.clicks(&["Save"]);
         assert_eq!(dialog.state().1, [Command::Export(ExportCommand::MapsTo(folder.path().join("maps.npz")))]);
     }
 }

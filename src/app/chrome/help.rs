@@ -3,12 +3,6 @@
 use crate::app::state::{Command, HelpPage, WindowCommand, listed, shortcuts};
 use eframe::egui::{self, Align2, Context, Grid, Key, Modifiers, RichText, ScrollArea, Ui, vec2};
 
-/// Content of the help window.
-pub struct Input {
-    /// The page that is open.
-    pub page: Option<HelpPage>,
-}
-
 /// Pointer actions, and keys that are no command of the list: action and explanation.
 const POINTER: &[[&str; 2]] = &[
     ["Drag in the scene", "Move an object; its handles stretch, turn and spread it"],
@@ -60,8 +54,8 @@ const FIGURES: &[[&str; 2]] = &[
 ];
 
 /// Draws the window, if a page is open.
-pub fn show(ctx: &Context, input: Input) -> Vec<Command> {
-    let Some(page) = input.page else { return Vec::new() };
+pub fn show(ctx: &Context, page: Option<HelpPage>) -> Vec<Command> {
+    let Some(page) = page else { return Vec::new() };
     let mut open = true;
     let room = ctx.content_rect().size() - vec2(60.0, 120.0);
     egui::Window::new(page.title())
@@ -126,13 +120,13 @@ fn about(ui: &mut Ui) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     fn window(page: HelpPage, size: [f32; 2]) -> Harness<'static, Vec<Command>> {
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui.ctx(), Input { page: Some(page) }));
+            asked.extend(show(ui.ctx(), Some(page)));
         };
         let mut window = Harness::builder().with_size(size).build_ui_state(draw, Vec::new());
         window.run_steps(4);
@@ -153,16 +147,10 @@ mod tests {
     }
 
     #[test]
-    fn a_command_is_listed_with_its_key() {
-        let window = window(HelpPage::Keys, [900.0, 700.0]);
-        assert!(window.query_by_label("Presentation").is_some() && window.query_by_label("F11").is_some());
-    }
-
-    #[test]
-    fn escape_closes_the_page() {
+    fn a_command_is_listed_with_its_key_and_escape_closes_the_page() {
         let mut window = window(HelpPage::Keys, [900.0, 700.0]);
-        window.key_press(Key::Escape);
-        window.step();
+        assert!(window.query_by_label("Presentation").is_some() && window.query_by_label("F11").is_some());
+        window.presses(&[Key::Escape]);
         assert!(window.state().contains(&WindowCommand::CloseHelp.into()));
     }
 }

@@ -4,52 +4,17 @@ use super::column::MAX_COLUMN_WIDTH_POINTS;
 use super::unsaved;
 use crate::app::state::menus::{EDIT, FILE, HELP, VIEW};
 use crate::app::state::{
-    Command, DocumentCommand, EditCommand, HelpPage, MapKind, NewObject, Panel, Projection, Task, ViewCommand,
-    WindowCommand,
+    Command, DocumentCommand, EditCommand, HelpPage, MapKind, NewObject, Panel, Projection, Settings, State, Task,
+    ViewCommand, WindowCommand,
 };
-use crate::app::widgets::entry::{button, entry, entry_called, ticked, tooltip};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
-use crate::interact::Document;
+use crate::app::widgets::{NumberField, button, choices, entry, entry_called, item, labelled, ticked, tooltip};
 use crate::picture::ColourMap;
 use crate::platform;
 use crate::recording::presets as recordings;
 use crate::scene::generate::Kind;
 use crate::scene::presets;
-use eframe::egui;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
-use eframe::egui::{PopupCloseBehavior, Ui};
-use std::path::PathBuf;
-
-/// Content of the bar.
-pub struct Input<'a> {
-    /// Whether a presentation is shown.
-    pub presents: bool,
-    /// Whether there is something to undo.
-    pub can_undo: bool,
-    /// Whether there is something to redo.
-    pub can_redo: bool,
-    /// Whether something is selected.
-    pub selected: bool,
-    /// Coordinates of the maps.
-    pub projection: Projection,
-    /// Seed of the next random scene, and its number.
-    pub random: (u64, u32),
-    /// Files opened or saved lately, latest first.
-    pub recent: &'a [PathBuf],
-    /// Whether the method in use finds places of echoes.
-    pub finds_reflectors: bool,
-    /// Whether a recording is on screen in place of a simulated scene.
-    pub has_recording: bool,
-    /// Unsaved scenes replaced by another, the latest last.
-    pub left: &'a [Document],
-    /// The task that the panels are arranged for.
-    pub task: Task,
-    /// Whether a panel has a visible tile.
-    pub is_open: &'a dyn Fn(Panel) -> bool,
-    /// Whether the switch of a command is on; `None` where the command is no switch.
-    pub is_on: &'a dyn Fn(&Command) -> Option<bool>,
-}
+use eframe::egui::{self, PopupCloseBehavior, Ui};
 
 /// A preset as the menu lists it.
 struct Listed {
@@ -75,27 +40,27 @@ impl Default for MenuMemory {
 }
 
 /// Draws the bar.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut MenuMemory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, state: &State, memory: &mut MenuMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Panel::top("menu").show(ui, |ui| {
         let width = ui.available_width();
         let is_narrow = width < MAX_COLUMN_WIDTH_POINTS;
         egui::MenuBar::new().ui(ui, |ui| {
-            ui.menu_button("File", |ui| file(ui, &input, &mut asked));
-            ui.menu_button("Edit", |ui| edit(ui, &input, &mut asked));
-            ui.menu_button("Scene", |ui| scene(ui, input.random, memory, &mut asked));
-            ui.menu_button("View", |ui| view(ui, &input, &mut asked));
-            ui.menu_button("Tools", |ui| tools(ui, &input, memory, &mut asked));
-            ui.menu_button("Help", |ui| help(ui, &input, &mut asked));
+            ui.menu_button("File", |ui| file(ui, state, &mut asked));
+            ui.menu_button("Edit", |ui| edit(ui, state, &mut asked));
+            ui.menu_button("Scene", |ui| scene(ui, state, memory, &mut asked));
+            ui.menu_button("View", |ui| view(ui, state, &mut asked));
+            ui.menu_button("Tools", |ui| tools(ui, state, memory, &mut asked));
+            ui.menu_button("Help", |ui| help(ui, state, &mut asked));
             // In a narrow window they would reach past its edge; the menus have all of them.
             if !is_narrow {
-                buttons(ui, &input, width, &mut asked);
+                buttons(ui, state, width, &mut asked);
             }
-            if input.presents {
+            if state.is_presenting() {
                 button(ui, "End presentation", WindowCommand::Present, true, &mut asked);
             }
             let right = egui::Layout::right_to_left(egui::Align::Center);
-            ui.with_layout(right, |ui| self::right(ui, input.projection, &mut asked));
+            ui.with_layout(right, |ui| self::right(ui, state.settings.projection, &mut asked));
         });
     });
     asked
@@ -106,7 +71,7 @@ const MIN_BUTTONS_WIDTH_POINTS: f32 = 1150.0;
 /// Least width of a window with a menu of bodies, points.
 const MEDIUM: f32 = 950.0;
 
-fn buttons(ui: &mut Ui, input: &Input<'_>, width: f32, asked: &mut Vec<Command>) {
+fn buttons(ui: &mut Ui, state: &State, width: f32, asked: &mut Vec<Command>) {
     const HEAPS: [(NewObject, &str); 3] =
         [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")];
     const BODIES: [(NewObject, &str); 4] = [
@@ -131,8 +96,8 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, width: f32, asked: &mut Vec<Command>)
             .on_hover_text("Add a wall, a box, a post or a polygon");
     }
     ui.separator();
-    button(ui, "Undo", EditCommand::Undo, input.can_undo, asked);
-    button(ui, "Redo", EditCommand::Redo, input.can_redo, asked);
+    button(ui, "Undo", EditCommand::Undo, state.can_undo(), asked);
+    button(ui, "Redo", EditCommand::Redo, state.can_redo(), asked);
     ui.separator();
     button(ui, "Lessons", WindowCommand::OpenPanel(Panel::Lesson), true, asked);
 }
@@ -147,12 +112,9 @@ fn right(ui: &mut Ui, shown: Projection, asked: &mut Vec<Command>) {
         return;
     }
     ui.separator();
-    for (projection, label) in [(Projection::Cartesian, "Cartesian"), (Projection::RangeAngle, "Range–angle")] {
-        let response = ui.selectable_label(shown == projection, label);
-        if response.on_hover_text(tooltip(ui, &Command::View(ViewCommand::ToggleProjection))).clicked() {
-            asked.push(ViewCommand::SetProjection(projection).into());
-        }
-    }
+    let tip = tooltip(ui, &ViewCommand::ToggleProjection.into());
+    let of = [(Projection::Cartesian, "Cartesian", &*tip), (Projection::RangeAngle, "Range–angle", &*tip)];
+    choices(ui, shown, of, ViewCommand::SetProjection, asked);
 }
 
 fn entries(ui: &mut Ui, commands: impl IntoIterator<Item = Command>, asked: &mut Vec<Command>) {
@@ -161,14 +123,13 @@ fn entries(ui: &mut Ui, commands: impl IntoIterator<Item = Command>, asked: &mut
     }
 }
 
-fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let recent = input.recent;
+fn file(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.set_min_width(220.0);
     let [open, listen, save, export, end] = FILE;
     entries(ui, open.iter().cloned(), asked);
-    ui.add_enabled_ui(!recent.is_empty(), |ui| {
+    ui.add_enabled_ui(!state.recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
-            for path in recent {
+            for path in &state.recent {
                 let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
                 if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
                     asked.push(DocumentCommand::OpenPath(path.clone()).into());
@@ -180,28 +141,29 @@ fn file(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     if !platform::IN_A_BROWSER {
         entries(ui, listen.iter().cloned(), asked);
     }
-    unsaved::show(ui, input.left, asked);
+    unsaved::show(ui, state.editor.left(), asked);
     for group in [save, export, end] {
         ui.separator();
         entries(ui, group.iter().cloned(), asked);
     }
 }
 
-fn edit(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+fn edit(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.set_min_width(220.0);
     let [back, rest] = EDIT;
-    for (command, is_enabled) in back.iter().zip([input.can_undo, input.can_redo]) {
+    let is_selected = !state.editor.selection().is_empty();
+    for (command, is_enabled) in back.iter().zip([state.can_undo(), state.can_redo()]) {
         entry(ui, command.clone(), is_enabled, asked);
     }
     ui.separator();
     for command in rest {
         use EditCommand::{Paste, SelectAll, SelectNext, SelectPrevious};
         let is_free = matches!(command, Command::Edit(Paste | SelectAll | SelectNext | SelectPrevious));
-        entry(ui, command.clone(), is_free || input.selected, asked);
+        entry(ui, command.clone(), is_free || is_selected, asked);
     }
 }
 
-fn scene(ui: &mut Ui, random: (u64, u32), memory: &MenuMemory, asked: &mut Vec<Command>) {
+fn scene(ui: &mut Ui, state: &State, memory: &MenuMemory, asked: &mut Vec<Command>) {
     ui.set_min_width(260.0);
     entries(ui, NewObject::ALL.map(|kind| Command::Edit(EditCommand::Add(kind, None))), asked);
     ui.separator();
@@ -212,19 +174,19 @@ fn scene(ui: &mut Ui, random: (u64, u32), memory: &MenuMemory, asked: &mut Vec<C
     ui.separator();
     // A click into a field of the submenu must not close it.
     let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    SubMenuButton::new("Random scene").config(stays).ui(ui, |ui| random_scenes(ui, random, asked));
+    SubMenuButton::new("Random scene").config(stays).ui(ui, |ui| random_scenes(ui, &state.settings, asked));
     ui.separator();
     entry(ui, ViewCommand::FitScene, true, asked);
 }
 
 /// Entries for every kind of random scene, and fields for seed and number of the next.
-fn random_scenes(ui: &mut Ui, random: (u64, u32), asked: &mut Vec<Command>) {
+fn random_scenes(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     for kind in Kind::all() {
         entry_called(ui, kind.description(), Command::Document(DocumentCommand::RandomScene(kind)), true, asked);
     }
     ui.separator();
     ui.horizontal(|ui| {
-        let (mut seed, mut number) = random;
+        let (mut seed, mut number) = (settings.random_seed, settings.random_number);
         let tip =
             "The same kind, seed and number always give the same scene: that of the tables and of the command line";
         let seeds = labelled(ui, "Next: seed", tip, NumberField::new(&mut seed).speed(0.05));
@@ -247,89 +209,79 @@ fn presets_of(ui: &mut Ui, memory: &MenuMemory, failures: bool, asked: &mut Vec<
 }
 
 /// Whether a panel has content; an open panel can always be closed.
-fn is_of_use(panel: Panel, input: &Input<'_>) -> bool {
+fn is_of_use(panel: Panel, state: &State) -> bool {
     let has_content = match panel {
-        Panel::Found => input.finds_reflectors,
-        Panel::Map(MapKind::Unexplained) | Panel::Recording => input.has_recording,
+        Panel::Found => state.finds_reflectors(),
+        Panel::Map(MapKind::Unexplained) | Panel::Recording => state.is_recorded(),
         _ => true,
     };
-    has_content || (input.is_open)(panel)
-}
-
-/// An entry, with a tick where its switch is on.
-fn item(ui: &mut Ui, command: Command, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let name = command.entry().map_or("", |listed| listed.name.as_ref());
-    match (input.is_on)(&command) {
-        Some(on) => ticked(ui, name, command.clone(), on, asked),
-        None => entry(ui, command.clone(), true, asked),
-    }
+    has_content || state.arrangement.has_tile(panel)
 }
 
 fn items<C: Into<Command>>(
     ui: &mut Ui,
     commands: impl IntoIterator<Item = C>,
-    input: &Input<'_>,
+    state: &State,
     asked: &mut Vec<Command>,
 ) {
-    commands.into_iter().for_each(|command| item(ui, command.into(), input, asked));
+    commands.into_iter().for_each(|command| item(ui, state, command, asked));
 }
 
 /// Entries of panels with content, each with its key and with a tick where it is open.
-fn panels(ui: &mut Ui, panels: impl IntoIterator<Item = Panel>, input: &Input<'_>, asked: &mut Vec<Command>) {
-    for panel in panels.into_iter().filter(|panel| is_of_use(*panel, input)) {
-        let open = (input.is_open)(panel);
+fn panels(ui: &mut Ui, panels: impl IntoIterator<Item = Panel>, state: &State, asked: &mut Vec<Command>) {
+    for panel in panels.into_iter().filter(|panel| is_of_use(*panel, state)) {
+        let open = state.arrangement.has_tile(panel);
         let command = if open { WindowCommand::ClosePanel(panel) } else { WindowCommand::OpenPanel(panel) };
         ticked(ui, panel.tile_title(), command, open, asked);
     }
 }
 
 /// Tools and their commands; research tools appear where developer panels are on.
-fn tools(ui: &mut Ui, input: &Input<'_>, memory: &MenuMemory, asked: &mut Vec<Command>) {
+fn tools(ui: &mut Ui, state: &State, memory: &MenuMemory, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     let tools = Panel::tiles().into_iter().filter(|panel| panel.is_tool() && !HELP.contains(panel));
     let (of_developers, tools): (Vec<Panel>, Vec<Panel>) = tools.partition(|panel| panel.is_developer());
-    panels(ui, tools, input, asked);
+    panels(ui, tools, state, asked);
     ui.separator();
-    item(ui, ViewCommand::Flip.into(), input, asked);
+    item(ui, state, ViewCommand::Flip, asked);
     ui.menu_button("Failures explained", |ui| presets_of(ui, memory, true, asked));
     ui.separator();
-    item(ui, ViewCommand::ToggleDeveloper.into(), input, asked);
-    if (input.is_on)(&ViewCommand::ToggleDeveloper.into()) == Some(true) {
-        panels(ui, of_developers, input, asked);
+    item(ui, state, ViewCommand::ToggleDeveloper, asked);
+    if state.settings.developer {
+        panels(ui, of_developers, state, asked);
     }
 }
 
-fn help(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+fn help(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
-    panels(ui, HELP, input, asked);
-    item(ui, WindowCommand::ToggleCaptions.into(), input, asked);
+    panels(ui, HELP, state, asked);
+    item(ui, state, WindowCommand::ToggleCaptions, asked);
     ui.separator();
-    items(ui, HelpPage::ALL.map(WindowCommand::Help), input, asked);
+    items(ui, HelpPage::ALL.map(WindowCommand::Help), state, asked);
 }
 
-fn view(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+fn view(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     ui.menu_button("Panels", |ui| {
-        panels(ui, Panel::tiles().into_iter().filter(|panel| !panel.is_tool()), input, asked);
+        panels(ui, Panel::tiles().into_iter().filter(|panel| !panel.is_tool()), state, asked);
     });
     ui.menu_button("Arrangement", |ui| {
         for task in Task::ALL {
-            ticked(ui, task.name(), WindowCommand::ArrangeFor(task), input.task == task, asked);
+            ticked(ui, task.name(), WindowCommand::ArrangeFor(task), state.arrangement.task() == task, asked);
         }
     });
     ui.menu_button("Colours", |ui| {
         for colours in ColourMap::ALL {
-            let command = Command::from(ViewCommand::Colours(colours));
-            let on = (input.is_on)(&command).unwrap_or_default();
-            ticked(ui, colours.name(), command, on, asked);
+            let on = state.settings.colours == colours;
+            ticked(ui, colours.name(), ViewCommand::Colours(colours), on, asked);
         }
     });
-    ui.menu_button("Overlays", |ui| items(ui, ViewCommand::OVERLAYS, input, asked));
+    ui.menu_button("Overlays", |ui| items(ui, ViewCommand::OVERLAYS, state, asked));
     let [layout, maps, window] = VIEW;
-    items(ui, layout.iter().cloned(), input, asked);
+    items(ui, layout.iter().cloned(), state, asked);
     for group in [maps, window] {
         ui.separator();
-        items(ui, group.iter().cloned(), input, asked);
+        items(ui, group.iter().cloned(), state, asked);
     }
 }
 

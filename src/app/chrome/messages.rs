@@ -1,9 +1,8 @@
 //! Messages in the corner below scene and settings, which cover no map. They wrap, can be read aloud and closed, and vanish after a time.
 
 use crate::app::state::{Notice, NoticeKind, Notices};
-use crate::app::widgets::icons::{Icon, icon};
-use eframe::egui;
-use eframe::egui::{Align2, Area, Context, Frame, Id, Order, Pos2, vec2};
+use crate::app::widgets::{Icon, icon};
+use eframe::egui::{self, Align2, Area, Context, Frame, Id, Order, Pos2, vec2};
 
 /// Largest width of a message, points.
 const WIDTH: f32 = 380.0;

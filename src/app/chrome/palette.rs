@@ -7,15 +7,8 @@ use crate::lesson::shipped;
 use crate::reconstruct::Reconstructor;
 use crate::recording;
 use crate::scene::presets;
-use eframe::egui;
-use eframe::egui::{Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
-use std::sync::{Arc, OnceLock};
-
-/// The methods that the palette lists besides the commands.
-pub struct Input<'a> {
-    /// Methods to choose from.
-    pub methods: &'a [Arc<dyn Reconstructor>],
-}
+use eframe::egui::{self, Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
+use std::sync::Arc;
 
 /// State of the palette.
 #[derive(Default)]
@@ -70,51 +63,10 @@ struct Found {
     path: String,
 }
 
-/// Keys that were pressed for the palette and are hidden from other widgets.
-struct Keys {
-    up: bool,
-    down: bool,
-    enter: bool,
-    escape: bool,
-}
-
-impl Keys {
-    fn consume(ctx: &Context) -> Keys {
-        ctx.input_mut(|i| {
-            let mut pressed = |key| i.consume_key(Modifiers::NONE, key);
-            Keys {
-                up: pressed(Key::ArrowUp),
-                down: pressed(Key::ArrowDown),
-                enter: pressed(Key::Enter),
-                escape: pressed(Key::Escape),
-            }
-        })
-    }
-}
-
 /// Whether every word of `text` is in `name`, in either case.
 fn matches(name: &str, text: &str) -> bool {
     let name = name.to_lowercase();
     text.to_lowercase().split_whitespace().all(|word| name.contains(word))
-}
-
-/// A lesson that comes with the program.
-struct Taught {
-    index: usize,
-    title: String,
-    about: String,
-}
-
-/// Every lesson that comes with the program, read once.
-fn taught() -> &'static [Taught] {
-    static TAUGHT: OnceLock<Vec<Taught>> = OnceLock::new();
-    TAUGHT.get_or_init(|| {
-        let read = |(index, file): (usize, &shipped::Shipped)| {
-            let lesson = file.load().ok()?;
-            Some(Taught { index, title: lesson.title, about: lesson.about })
-        };
-        shipped::ALL.iter().enumerate().filter_map(read).collect()
-    })
 }
 
 /// Further search words of a command: name and text of the file that it opens.
@@ -132,7 +84,7 @@ fn words(command: &Command) -> [&'static str; 2] {
 
 /// The commands that match `text` by name, synonym, menu, tooltip or file. Matches of the name come first, then those with the text as typed, then those with
 /// it as whole words, then the most recent.
-fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<Found> {
+fn find(ctx: &Context, methods: &[Arc<dyn Reconstructor>], text: &str, recent: &[String]) -> Vec<Found> {
     let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).map(|e| Found {
         command: e.command.clone(),
         name: e.name.to_string(),
@@ -140,15 +92,15 @@ fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<
         key: e.key.map(|key| ctx.format_shortcut(&key)).unwrap_or_default(),
         path: menu_path(&e.command).join(" › "),
     });
-    let methods = input.methods.iter().map(|m| Found {
+    let methods = methods.iter().map(|m| Found {
         command: Command::View(ViewCommand::Method(m.name())),
         name: format!("Method: {}", m.name()),
         tooltip: m.description(),
         key: String::new(),
         path: Panel::Controls.title().to_owned(),
     });
-    let lessons = taught().iter().map(|lesson| Found {
-        command: LessonCommand::Begin(lesson.index).into(),
+    let lessons = shipped::all_read().iter().map(|(index, lesson)| Found {
+        command: LessonCommand::Begin(*index).into(),
         name: format!("Lesson: {}", lesson.title),
         tooltip: &lesson.about,
         key: String::new(),
@@ -167,32 +119,39 @@ fn find(ctx: &Context, input: &Input<'_>, text: &str, recent: &[String]) -> Vec<
     found
 }
 
-/// Draws the palette, if it is open.
-pub fn show(ctx: &Context, input: Input<'_>, memory: &mut PaletteMemory) -> Vec<Command> {
+/// Draws the palette, if it is open; it lists `methods` besides the commands.
+pub fn show(ctx: &Context, methods: &[Arc<dyn Reconstructor>], memory: &mut PaletteMemory) -> Vec<Command> {
     if !memory.open {
         return Vec::new();
     }
-    let keys = Keys::consume(ctx);
+    // The keys are the palette's alone.
+    let [up, down, enter, escape] = [Key::ArrowUp, Key::ArrowDown, Key::Enter, Key::Escape]
+        .map(|key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key)));
     let area = egui::Window::new("Commands")
         .title_bar(false)
         .resizable(false)
         .collapsible(false)
         .anchor(Align2::CENTER_TOP, [0.0, 60.0])
         .fixed_size([ctx.content_rect().width().clamp(240.0, 640.0) - 40.0, 340.0])
-        .show(ctx, |ui| contents(ui, &input, memory, &keys));
+        .show(ctx, |ui| contents(ui, methods, memory, [up, down, enter]));
     let Some(area) = area else { return Vec::new() };
     let run = area.inner.flatten().map(|found| {
         memory.remember(found.name);
         found.command
     });
-    if run.is_some() || keys.escape || area.response.clicked_elsewhere() {
+    if run.is_some() || escape || area.response.clicked_elsewhere() {
         memory.open = false;
     }
     run.into_iter().collect()
 }
 
 /// Draws the field first and searches by its new text: Enter may come in the same frame as the last letter.
-fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut PaletteMemory, keys: &Keys) -> Option<Found> {
+fn contents(
+    ui: &mut Ui,
+    methods: &[Arc<dyn Reconstructor>],
+    memory: &mut PaletteMemory,
+    [up, down, enter]: [bool; 3],
+) -> Option<Found> {
     let before = memory.text.clone();
     if memory.just_opened {
         // The field has no focus yet, but the frame may hold letters already.
@@ -210,9 +169,9 @@ fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut PaletteMemory, keys: &K
     if memory.text != before {
         memory.chosen = 0;
     }
-    let mut found = find(ui.ctx(), input, &memory.text, &memory.recent);
+    let mut found = find(ui.ctx(), methods, &memory.text, &memory.recent);
     let last = found.len().saturating_sub(1);
-    memory.chosen = match (keys.up, keys.down) {
+    memory.chosen = match (up, down) {
         (true, _) => memory.chosen.saturating_sub(1),
         (_, true) => memory.chosen + 1,
         _ => memory.chosen,
@@ -222,8 +181,8 @@ fn contents(ui: &mut Ui, input: &Input<'_>, memory: &mut PaletteMemory, keys: &K
     if found.is_empty() {
         ui.weak("No command is found by these words.");
     }
-    let clicked = list(ui, &found, memory.chosen, keys.up || keys.down);
-    let run = clicked.or((keys.enter && !found.is_empty()).then_some(memory.chosen))?;
+    let clicked = list(ui, &found, memory.chosen, up || down);
+    let run = clicked.or((enter && !found.is_empty()).then_some(memory.chosen))?;
     Some(found.swap_remove(run))
 }
 
@@ -254,8 +213,7 @@ fn list(ui: &mut Ui, found: &[Found], chosen: usize, moved: bool) -> Option<usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::EditCommand;
-    use crate::app::state::NewObject;
+    use crate::app::state::{EditCommand, NewObject};
     use crate::reconstruct::Baseline;
     use egui_kittest::Harness;
 
@@ -268,7 +226,7 @@ mod tests {
 
     fn names(text: &str, recent: &[&str]) -> Vec<String> {
         let recent: Vec<String> = recent.iter().map(|name| (*name).to_owned()).collect();
-        find(&Context::default(), &Input { methods: &[] }, text, &recent).into_iter().map(|f| f.name).collect()
+        find(&Context::default(), &[], text, &recent).into_iter().map(|f| f.name).collect()
     }
 
     #[test]
@@ -291,7 +249,6 @@ mod tests {
     #[test]
     fn presets_lessons_and_methods_are_found_by_any_of_their_words() {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
-        let input = Input { methods: &methods };
         for (text, wanted) in [
             ("parked cars", "Preset: street"),
             ("regulators wide sweep", "Lesson: Range and bandwidth"),
@@ -300,7 +257,7 @@ mod tests {
             ("two reflections", "Recording: cascade 86"),
             ("occlusion", "Lesson: A weak point behind a strong line"),
         ] {
-            let found = find(&Context::default(), &input, text, &[]);
+            let found = find(&Context::default(), &methods, text, &[]);
             let names: Vec<&String> = found.iter().map(|found| &found.name).collect();
             assert!(names.iter().any(|name| *name == wanted), "{text} finds {names:?}");
         }
@@ -329,7 +286,7 @@ mod tests {
     fn enter_runs_what_the_text_says_even_in_the_same_frame() {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
         let draw = |ui: &mut Ui, state: &mut (PaletteMemory, Vec<Command>)| {
-            let commands = show(ui.ctx(), Input { methods: &methods }, &mut state.0);
+            let commands = show(ui.ctx(), &methods, &mut state.0);
             state.1.extend(commands);
         };
         let mut palette = Harness::new_ui_state(draw, (PaletteMemory::default(), Vec::new()));

@@ -3,15 +3,9 @@
 use crate::app::state::{Command, DocumentCommand, Doubt, SaveAnswer, SaveQuestion};
 use eframe::egui::{Context, Id, Modal, Ui};
 
-/// The question on screen.
-pub struct Input<'a> {
-    /// The file and the doubt about it; `None` where nothing is asked.
-    pub question: Option<&'a SaveQuestion>,
-}
-
 /// Draws the question, if there is one.
-pub fn show(ctx: &Context, input: Input<'_>) -> Vec<Command> {
-    let Some(question) = input.question else { return Vec::new() };
+pub fn show(ctx: &Context, question: Option<&SaveQuestion>) -> Vec<Command> {
+    let Some(question) = question else { return Vec::new() };
     let modal = Modal::new(Id::unique("save question")).show(ctx, |ui| draw(ui, question));
     let answer = modal.inner.or(modal.should_close().then_some(SaveAnswer::Cancel));
     answer.map(|v| Command::Document(DocumentCommand::AnswerSave(v))).into_iter().collect()
@@ -62,7 +56,7 @@ mod tests {
         let losses = vec![FileLoss::Radar, FileLoss::Structure { objects: 1, points: 40 }];
         let question = SaveQuestion { path: "/there/walls.npz".into(), doubt: Doubt::Losses(losses) };
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui.ctx(), Input { question: Some(&question) }));
+            asked.extend(show(ui.ctx(), Some(&question)));
         };
         let mut question = Harness::new_ui_state(draw, Vec::new());
         question.run();
@@ -78,35 +72,21 @@ mod tests {
     }
 
     #[test]
-    fn every_button_answers() {
-        for (button, answer) in [
-            ("Save anyway", SaveAnswer::Anyway),
-            ("Save as TOML", SaveAnswer::Elsewhere),
-            ("Cancel", SaveAnswer::Cancel),
-        ] {
+    fn every_button_and_key_answers() {
+        type Input = fn(&mut Harness<'static, Vec<Command>>);
+        let cases: [(Input, SaveAnswer); 5] = [
+            (|q| q.get_by_label("Save anyway").click(), SaveAnswer::Anyway),
+            (|q| q.get_by_label("Save as TOML").click(), SaveAnswer::Elsewhere),
+            (|q| q.get_by_label("Cancel").click(), SaveAnswer::Cancel),
+            (|q| q.key_press(Key::Escape), SaveAnswer::Cancel),
+            (|q| q.key_press(Key::Enter), SaveAnswer::Elsewhere),
+        ];
+        for (given, answer) in cases {
             let mut question = asked();
             assert!(question.state().is_empty(), "nothing happens by itself");
-            question.get_by_label(button).click();
+            given(&mut question);
             question.step();
             assert_eq!(question.state(), &[Command::Document(DocumentCommand::AnswerSave(answer))]);
         }
-    }
-
-    /// The command that a key sends.
-    fn answer_by(key: Key) -> Option<Command> {
-        let mut question = asked();
-        question.key_press(key);
-        question.step();
-        question.state().first().cloned()
-    }
-
-    #[test]
-    fn escape_cancels() {
-        assert_eq!(answer_by(Key::Escape), Some(Command::Document(DocumentCommand::AnswerSave(SaveAnswer::Cancel))));
-    }
-
-    #[test]
-    fn enter_saves_where_nothing_is_lost() {
-        assert_eq!(answer_by(Key::Enter), Some(Command::Document(DocumentCommand::AnswerSave(SaveAnswer::Elsewhere))));
     }
 }

@@ -1,53 +1,37 @@
 //! One line at the bottom: the pointer's place, the number of objects, the time of the last update.
 
-use crate::app::state::Cursor;
-use crate::app::widgets::direction::angle_degrees;
+use crate::app::state::{Cursor, State};
+use crate::app::widgets::angle_degrees;
+use crate::platform;
 use crate::radar::counted;
-use eframe::egui;
-use eframe::egui::{Align, Color32, Layout, TextStyle, Ui};
+use crate::scattering::{PathEcho, heard_in_the_middle};
+use crate::scene::Scene;
+use eframe::egui::{self, Align, Color32, Layout, TextStyle, Ui};
 use std::time::Duration;
-
-/// Content of the status bar.
-pub struct Input {
-    /// The pointer's place, if it is over a map or the scene.
-    pub cursor: Option<Cursor>,
-    /// Kind and body of the echo under the pointer, in words.
-    pub echo: Option<String>,
-    /// Objects of the scene.
-    pub objects: usize,
-    /// Reflectors of the scene.
-    pub reflectors: usize,
-    /// Objects that are bodies.
-    pub bodies: usize,
-    /// Most echoes that one element gets of the bodies; `None` while a lesson asks for a prediction.
-    pub echoes: Option<usize>,
-    /// Time of the last update of maps and pictures.
-    pub took: Option<Duration>,
-    /// Whether everything is computed on the thread that draws.
-    pub alone: bool,
-}
 
 /// Gap between two texts, points.
 const GAP: f32 = 18.0;
 
 /// Draws as many texts as there is room for, the most important first.
-pub fn show(ui: &mut Ui, input: Input) {
+/// `took` is the time of the last update of maps and pictures.
+pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
+    let cursor = state.shown_cursor();
+    let echo = cursor.and_then(|cursor| echo_at(state, &cursor));
     egui::Panel::bottom("status").show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = GAP;
             let (room, font) = (ui.available_width(), TextStyle::Monospace.resolve(ui.style()));
             let painter = ui.painter().clone();
             let width = |text: &str| painter.layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE).size().x;
-            let left = texts_of(input.cursor, input.echo.as_deref()).into_iter().rfind(|text| width(text) <= room);
+            let left = texts_of(cursor, echo.as_deref()).into_iter().rfind(|text| width(text) <= room);
             let left = left.unwrap_or_default();
             let mut rest = room - width(&left) - GAP;
-            if input.cursor.is_some() {
+            if cursor.is_some() {
                 ui.monospace(left);
             } else {
                 ui.weak(left);
             }
-            let count = count_of(&input);
-            let Input { took, alone, .. } = input;
+            let count = count_of(state.editor.scene(), state.is_predicting());
             let took = took.map(|took| format!("maps {:.1} ms", took.as_secs_f64() * 1e3));
             // The monospaced width is the larger one.
             let mut fits = |text: &String| {
@@ -56,7 +40,7 @@ pub fn show(ui: &mut Ui, input: Input) {
                 rest -= if fits { wanted } else { 0.0 };
                 fits
             };
-            let alone = alone.then(|| "one thread".to_owned()).filter(&mut fits);
+            let alone = (!platform::has_threads()).then(|| "one thread".to_owned()).filter(&mut fits);
             let (count, took) = (Some(count).filter(&mut fits), took.filter(&mut fits));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if let Some(alone) = alone {
@@ -96,9 +80,11 @@ fn texts_of(cursor: Option<Cursor>, echo: Option<&str>) -> Vec<String> {
     }
 }
 
-/// The numbers of objects with their reflectors, and of bodies with their echoes.
-fn count_of(input: &Input) -> String {
-    let Input { objects, reflectors, bodies, echoes, .. } = *input;
+/// The numbers of objects with their reflectors, and of bodies with their echoes, for which a lesson may ask.
+fn count_of(scene: &Scene, is_predicting: bool) -> String {
+    let (objects, reflectors) = (scene.objects.len(), scene.reflector_count());
+    let of_bodies: Vec<usize> = scene.objects.iter().filter_map(|o| o.body()).map(|body| body.echo_count()).collect();
+    let bodies = of_bodies.len();
     let mut parts = Vec::new();
     if objects > bodies || bodies == 0 {
         parts.push(counted(objects, "object", "objects"));
@@ -106,9 +92,35 @@ fn count_of(input: &Input) -> String {
     }
     if bodies > 0 {
         parts.push(counted(bodies, "body", "bodies"));
-        parts.extend(echoes.map(|echoes| format!("up to {}", counted(echoes, "echo", "echoes"))));
+        let echoes = || format!("up to {}", counted(of_bodies.iter().sum::<usize>(), "echo", "echoes"));
+        parts.extend((!is_predicting).then(echoes));
     }
     parts.join(" · ")
+}
+
+/// Most bodies among which the echo under the pointer is searched.
+const MOST_BODIES: usize = 60;
+/// Largest distance of the pointer from an echo, in range bins and columns.
+const NEAR_CELLS: [f64; 2] = [1.5, 8.0];
+
+/// Kind and body of the strongest echo under the pointer, in words.
+fn echo_at(state: &State, cursor: &Cursor) -> Option<String> {
+    let (radar, scene) = (state.radar(), state.editor.scene());
+    let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
+    if !(1..=MOST_BODIES).contains(&bodies) {
+        return None;
+    }
+    let [bins, columns] = NEAR_CELLS;
+    let near = |(_, echo): &(usize, PathEcho)| {
+        let [x, y] = echo.place_metres;
+        let bin = radar.bin_of_range(echo.range_metres - cursor.range_metres).abs();
+        let column = (x / x.hypot(y) - cursor.cos_theta).abs() * radar.elements as f64 / radar.fold_period_cos();
+        bin < bins && column < columns
+    };
+    let strength = |(_, echo): &(usize, PathEcho)| echo.amplitude.norm_sqr();
+    let all = heard_in_the_middle(radar, scene).into_iter().filter(near);
+    let (index, echo) = all.max_by(|a, b| strength(a).total_cmp(&strength(b)))?;
+    Some(format!("{} of {}", echo.kind.name(), scene.objects[index].called(index)))
 }
 
 #[cfg(test)]
@@ -116,19 +128,23 @@ mod tests {
     use super::*;
     use crate::app::widgets::seen;
     use crate::radar::Radar;
+    use crate::scene::{GaussianCluster, Object, Wall};
     use egui_kittest::Harness;
 
-    fn of(objects: usize, reflectors: usize, bodies: usize) -> Input {
-        let echoes = Some(4 * bodies);
-        Input { cursor: None, echo: None, objects, reflectors, bodies, echoes, took: None, alone: false }
+    /// A scene of so many walls, and of clusters of so many reflectors.
+    fn scene(walls: usize, clusters: &[usize]) -> Scene {
+        let wall = |i: usize| Object::Wall(Wall::new(-15.0, 5.0 + i as f64, 1.0, 0.0));
+        let cluster = |count: &usize| Object::Gaussian(GaussianCluster::new([0.0, 9.0], [1.0, 1.0], *count));
+        let objects = (0..walls).map(wall).chain(clusters.iter().map(cluster)).collect();
+        Scene { objects, ..Scene::default() }
     }
 
     #[test]
     fn bodies_are_counted_by_their_echoes() {
-        assert_eq!(count_of(&of(2, 40, 0)), "2 objects · 40 reflectors");
-        assert_eq!(count_of(&of(9, 0, 9)), "9 bodies · up to 36 echoes");
-        assert_eq!(count_of(&of(2, 1, 1)), "2 objects · 1 reflector · 1 body · up to 4 echoes");
-        assert_eq!(count_of(&Input { echoes: None, ..of(1, 0, 1) }), "1 body", "a lesson asks for them");
+        assert_eq!(count_of(&scene(0, &[39, 1]), false), "2 objects · 40 reflectors");
+        assert_eq!(count_of(&scene(9, &[]), false), "9 bodies · up to 27 echoes");
+        assert_eq!(count_of(&scene(1, &[1]), false), "2 objects · 1 reflector · 1 body · up to 3 echoes");
+        assert_eq!(count_of(&scene(1, &[]), true), "1 body", "a lesson asks for them");
     }
 
     #[test]
@@ -141,11 +157,10 @@ mod tests {
 
     /// A bar `width` points wide, with the pointer over a map or not.
     fn bar(width: f32, has_cursor: bool) -> Harness<'static> {
-        let cursor = has_cursor.then(|| Cursor::at_cell(&Radar::default(), 258.7, 448.7));
+        let mut state = State::of(Radar::default(), scene(2, &[12_343, 1, 1]));
+        state.pointer.now = has_cursor.then(|| Cursor::at_cell(&Radar::default(), 258.7, 448.7));
         Harness::builder().with_size([width, 60.0]).build_ui(move |ui| {
-            let took = Some(Duration::from_secs_f64(12.3456));
-            let input = Input { reflectors: 12_345, took, ..of(5, 0, 2) };
-            show(ui, Input { cursor, ..input });
+            show(ui, &state, Some(Duration::from_secs_f64(12.3456)));
         })
     }
 

@@ -3,9 +3,8 @@
 use super::column;
 use crate::app::content::OLD;
 use crate::app::state::{Arrangement, Command, Panel, WindowCommand};
-use crate::app::widgets::icons::{Icon, icon};
-use eframe::egui;
-use eframe::egui::{TextStyle, Ui, WidgetText, vec2};
+use crate::app::widgets::{Icon, icon};
+use eframe::egui::{self, TextStyle, Ui, WidgetText, vec2};
 use egui_tiles::{SimplificationOptions, TileId, Tiles, UiResponse};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -225,7 +224,7 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
 mod tests {
     use super::*;
     use crate::app::state::Task;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -258,8 +257,7 @@ mod tests {
             assert!(whole(&window, title), "{title}");
         }
         seen::assert_readable(window.output());
-        window.get_by_label("ROC").click();
-        window.run_steps(3);
+        window.clicks(&["ROC"]);
         assert!(window.state().shown().contains(&Panel::Roc));
     }
 

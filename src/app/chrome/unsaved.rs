@@ -49,6 +49,7 @@ fn one(ui: &mut Ui, document: &Document, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
     use crate::scene::Scene;
     use crate::scene::file::SceneFile;
     use egui_kittest::Harness;
@@ -68,20 +69,15 @@ mod tests {
     }
 
     #[test]
-    fn the_latest_scene_comes_first() {
-        let mut menu = menu(left());
-        menu.get_by_label("Unsaved scenes").click();
-        menu.run();
-        let [latest, first] =
-            ["untitled (2 objects)", "untitled (1 object)"].map(|name| menu.get_by_label_contains(name).rect());
-        assert!(latest.bottom() <= first.top(), "{latest:?} {first:?}");
-    }
-
-    #[test]
-    fn each_scene_can_be_brought_back_or_given_up() {
+    fn the_latest_scene_is_first_and_each_can_be_brought_back() {
         let left = left();
         let ids = [left[0].id(), left[1].id()];
         let mut menu = menu(left);
+        menu.clicks(&["Unsaved scenes"]);
+        let [latest, first] =
+            ["untitled (2 objects)", "untitled (1 object)"].map(|name| menu.get_by_label_contains(name).rect());
+        assert!(latest.bottom() <= first.top(), "{latest:?} {first:?}");
+        menu.clicks(&["Unsaved scenes"]);
         for (scene, entry) in [("untitled (2 objects)", "Bring back"), ("untitled (1 object)", "Discard")] {
             for label in ["Unsaved scenes", scene, entry] {
                 menu.get_by_label_contains(label).click();

@@ -1,14 +1,14 @@
 //! Bounds of one reflector: the least position error of any unbiased estimator, and places with a similar echo.
 
 use super::derived::{Failure, Query};
-use crate::app::state::{BoundsSettings, Elements, State};
-use crate::app::widgets::textures::colour_table;
+use crate::app::state::{BoundsSettings, State};
+use crate::app::widgets::colour_table;
 use crate::bounds::{
     Ambiguity, BoundsError, Gains, PositionBound, ambiguity, cramer_rao, cramer_rao_of, noise_variance,
 };
 use crate::interact::Editor;
 use crate::picture::ColourMap;
-use crate::radar::{Decibels, Layout, LayoutError, Polar, Radar};
+use crate::radar::{Layout, LayoutError, Polar, Radar};
 use crate::scene::{Object, Reflector};
 use crate::task::Task;
 use eframe::egui::ColorImage;
@@ -18,27 +18,18 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundsRequest {
     pub radar: Radar,
-    /// The elements that listen.
-    pub elements: Elements,
-    /// Seed of random elements.
-    pub seed: u64,
+    /// Elements, noise and extent of the picture.
+    pub settings: BoundsSettings,
     /// Name of the reflector.
     pub name: String,
     pub reflector: Reflector,
-    /// Signal-to-noise ratio of a sample.
-    pub snr: Decibels,
-    /// Half of the picture's width, columns.
-    pub columns: f64,
-    /// Half of the picture's height, range bins.
-    pub bins: f64,
 }
 
 impl BoundsRequest {
     /// The bounds of the first selected object's centre, or of the first object's; `None` where there is none away from the array's middle.
     pub fn of(state: &State) -> Option<Self> {
         let (name, reflector) = subject(&state.editor)?;
-        let BoundsSettings { elements, seed, snr, columns, bins } = state.settings.bounds;
-        Some(BoundsRequest { radar: state.radar().clone(), elements, seed, name, reflector, snr, columns, bins })
+        Some(BoundsRequest { radar: state.radar().clone(), settings: state.settings.bounds, name, reflector })
     }
 }
 
@@ -79,10 +70,11 @@ const BUDGET: f64 = 2.0e6;
 /// # Errors
 /// [`LayoutError`] where the elements that listen can't be placed.
 pub fn bounds_of(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
-    let BoundsRequest { radar, elements, seed, reflector, snr, columns, bins, .. } = &request;
-    let layout = elements.layout(radar, *seed)?;
+    let BoundsRequest { radar, settings, reflector, .. } = &request;
+    let BoundsSettings { elements, seed, snr, columns, bins } = *settings;
+    let layout = elements.layout(radar, seed)?;
     let centre = radar.polar_of(reflector.x_metres, reflector.y_metres.abs());
-    let variance = noise_variance(radar, &layout, reflector, *snr);
+    let variance = noise_variance(radar, &layout, reflector, snr);
     let bound = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).map(|bounds| bounds[0]);
     let per_end = cramer_rao_of(radar, &layout, std::slice::from_ref(reflector), variance, Gains::PerEnd);
     let gain_per_end = per_end.ok().and_then(|bounds| bounds.first().copied());
@@ -130,18 +122,20 @@ impl Query for BoundsRequest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::Elements;
 
     /// Bounds of a reflector so far to the side that the picture reaches beyond end fire.
     fn found() -> BoundsResult {
         let request = BoundsRequest {
             radar: Radar { elements: 64, samples: 32, ..Radar::default() },
             reflector: Reflector { x_metres: 1.5, y_metres: 0.2, reflectivity: 1.0 },
-            elements: Elements::OneEnd,
-            seed: 0,
+            settings: BoundsSettings {
+                elements: Elements::OneEnd,
+                columns: 16.0,
+                bins: 3.0,
+                ..BoundsSettings::default()
+            },
             name: String::new(),
-            snr: Decibels(20.0),
-            columns: 16.0,
-            bins: 3.0,
         };
         bounds_of(request).unwrap()
     }

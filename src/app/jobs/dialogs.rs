@@ -224,46 +224,30 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_is_saved_under_the_name_of_its_file() {
+    fn a_dialog_begins_with_name_and_folder_of_the_file() {
         let path = Path::new("/scenes/a.npz");
         let named = |purpose, path| Question::beside(purpose, path).name;
         assert_eq!(named(Purpose::SaveScene, Some(path)), "a.toml");
         assert_eq!(named(Purpose::ExportMaps, Some(path)), "maps.npz");
         assert_eq!(named(Purpose::SaveScene, None), "scene.toml");
         assert_eq!(named(Purpose::SaveScene, Some(Path::new("chip-8-overlay.toml"))), "chip-8-overlay.toml");
-    }
-
-    #[test]
-    fn a_dialog_begins_in_the_folder_of_the_file() {
         let folder = |path: &str| Question::beside(Purpose::Open, Some(Path::new(path))).folder;
         assert_eq!(folder("/scenes/a.npz").as_deref(), Some(Path::new("/scenes")));
         assert_eq!(folder("chip-8-overlay.toml"), None);
     }
 
-    /// Dialogs of a system that shows none.
-    fn never_shown() -> Dialogs {
-        Dialogs::by(Some(Arc::new(|_, reply| {
-            reply(None);
-            Ok(())
-        })))
-    }
-
     #[test]
     fn where_the_system_shows_no_dialog_the_window_asks() {
-        let mut dialogs = never_shown();
-        for purpose in [Purpose::Open, Purpose::SaveScene] {
+        let mut dialogs = Dialogs::by(Some(Arc::new(|_, reply| {
+            reply(None);
+            Ok(())
+        })));
+        for (purpose, told) in [(Purpose::Open, Some(APOLOGY)), (Purpose::SaveScene, None)] {
             let question = || Question::beside(purpose, Some(Path::new("/scenes/a.npz")));
-            assert!(answer(&mut dialogs, question()).0.is_empty());
+            assert_eq!(answer(&mut dialogs, question()), (Vec::new(), told), "told once");
             assert_eq!(dialogs.take_unanswered(), Some(question()));
         }
         assert_eq!(dialogs.take_unanswered(), None);
-    }
-
-    #[test]
-    fn dialogs_that_are_never_shown_are_told_once() {
-        let mut dialogs = never_shown();
-        let told = [Purpose::Open, Purpose::SaveScene].map(|p| answer(&mut dialogs, Question::beside(p, None)).1);
-        assert_eq!(told, [Some(APOLOGY), None]);
     }
 
     /// Commands, message and question that follow where the user closes every dialog except the one for a scene to open.
@@ -279,13 +263,9 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_dialog_is_no_failure() {
+    fn a_chosen_scene_is_opened_and_a_closed_dialog_is_no_failure() {
+        let chosen = vec![Command::Document(DocumentCommand::OpenPath("a.toml".into()))];
+        assert_eq!(answered(Purpose::Open).0, chosen);
         assert_eq!(answered(Purpose::ExportMaps), (Vec::new(), None, None));
-    }
-
-    #[test]
-    fn a_scene_that_was_chosen_is_opened() {
-        let (chosen, ..) = answered(Purpose::Open);
-        assert_eq!(chosen, [Command::Document(DocumentCommand::OpenPath("a.toml".into()))]);
     }
 }

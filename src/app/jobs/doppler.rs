@@ -4,7 +4,7 @@ use super::derived::{Failure, Query};
 use super::memo::Memo;
 use super::source::Source;
 use crate::app::state::State;
-use crate::app::widgets::textures::picture;
+use crate::app::widgets::picture;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler_for};
 use crate::maps::{LogMap, Normalisation};
 use crate::picture::ColourMap;

@@ -3,7 +3,7 @@
 use super::background::Background;
 use crate::app::shared::Shared;
 use crate::app::state::{LessonCommand, LessonRun, State};
-use crate::app::widgets::textures::picture;
+use crate::app::widgets::picture;
 use crate::lesson::{Guess, Judgement, Lesson, MapName, Measured, Stage, Step};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
@@ -65,7 +65,8 @@ fn shrunk(radar: &Radar, map: &RangeAngleMap) -> Arc<ColorImage> {
 /// The worker of judgements, its last request, the hidden scene's picture, and lesson files being read.
 pub struct Lessons {
     worker: Worker<Request, (Request, Outcome)>,
-    opened: Background<Result<LessonCommand, String>>,
+    /// Lesson files being tried out: each ends in a command that begins the lesson, or in the reason why it can't begin.
+    pub opened: Background<Result<LessonCommand, String>>,
     asked: Option<Request>,
     hidden: Option<Arc<ColorImage>>,
 }
@@ -81,7 +82,7 @@ impl Lessons {
         Lessons { worker, opened: Background::new(wake.clone()), asked: None, hidden: None }
     }
 
-    /// Reads a lesson file and tries its steps out; [`Lessons::opened`] returns the result.
+    /// Reads a lesson file and tries its steps out; [`Lessons::opened`] has the result.
     ///
     /// # Errors
     /// When the system can't start a thread.
@@ -91,16 +92,6 @@ impl Lessons {
             Err(error) => Err(format!("{error}\nNo lesson was opened.")),
         };
         self.opened.begin("lesson files", work, |why| Err(format!("The lesson can't be tried out ({why}).")))
-    }
-
-    /// Whether a lesson file is being tried out.
-    pub fn is_reading(&self) -> bool {
-        self.opened.is_busy()
-    }
-
-    /// Results of lesson files tried out: a command that begins the lesson, or the reason why it can't begin.
-    pub fn opened(&self) -> Vec<Result<LessonCommand, String>> {
-        self.opened.finished()
     }
 
     /// Asks for judgement and measurement of the lesson on screen, if that changed.

@@ -42,7 +42,7 @@ pub use bounds::{BoundsRequest, BoundsResult};
 pub use calibration::Calibrated;
 pub use calibration::CalibrationQuery;
 pub use chirp::{ChirpQuery, ChirpResult};
-pub use derived::{Derived, Failure, Polled, Query};
+pub use derived::{Derived, Failure, Query};
 pub use dialogs::{Dialogs, Question};
 pub use doppler::{DopplerQuery, DopplerResult};
 pub use export::Exports;
@@ -154,11 +154,8 @@ impl Jobs {
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
         let mut chosen = self.chosen(state);
-        for opened in self.lessons.opened() {
-            match opened {
-                Ok(lesson) => chosen.push(lesson.into()),
-                Err(error) => errors.push(error),
-            }
+        for opened in self.lessons.opened.finished() {
+            opened.map_or_else(|error| errors.push(error), |lesson| chosen.push(lesson.into()));
         }
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.finished() {
@@ -248,7 +245,7 @@ impl Jobs {
             || self.kinds.is_busy()
             || self.theory.is_busy()
             || self.several.is_busy()
-            || self.lessons.is_reading()
+            || self.lessons.opened.is_busy()
             || self.failures.is_busy()
             || self.autosave.as_ref().is_some_and(|a| a.is_busy())
     }

@@ -3,8 +3,7 @@
 use super::sentence::sentence;
 use super::subject::{Paint, Subject};
 use crate::app::state::{MapKind, Projection};
-use crate::app::widgets::textures::colour_table;
-use crate::app::widgets::theme;
+use crate::app::widgets::{colour_table, theme};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::{RangeAngleMap, cartesian};
 use crate::picture::{CellVerdict, ColourMap, finer, in_place, told_apart};
@@ -268,43 +267,26 @@ mod tests {
     }
 
     /// Differences of 0, -0.03, 0.03 and 0.02.
-    fn difference(absolute: bool, whole: bool) -> Picture {
+    fn difference(absolute: bool, whole: bool, beside: f32) -> Picture {
         let view = DifferenceView { absolute, whole };
-        let paint = Paint::Difference { view, colours: ColourMap::Grey, beside: 0.0 };
+        let paint = Paint::Difference { view, colours: ColourMap::Grey, beside };
         let (map, minus) = (lambda(array![[0.5, 0.5, 0.5, 0.5]]), lambda(array![[0.5, 0.53, 0.47, 0.48]]));
         let subject = Subject { map, minus: Some(minus), paint, projection: Projection::RangeAngle };
         Painter::default().paint(&Radar::default(), MapKind::Difference, &subject)
     }
 
     #[test]
-    fn a_difference_fills_its_scale() {
-        let (signed, whole, table) =
-            (difference(false, false), difference(false, true), colour_table(ColourMap::Diverging));
-        assert_eq!((signed.end, whole.end), (0.05, 1.0));
-        assert_eq!(signed.image.pixels[1], table[51], "three fifths of the way down");
+    fn a_difference_fills_its_scale_and_shares_it() {
+        let table = colour_table(ColourMap::Diverging);
+        let [signed, whole, beside] = [(false, 0.0), (true, 0.0), (false, 0.15)].map(|(w, b)| difference(false, w, b));
+        assert_eq!([signed.end, whole.end, beside.end], [0.05, 1.0, 0.2]);
+        assert_eq!(signed.image.pixels[..2], [table[128], table[51]], "the middle, and three fifths of the way down");
         assert_eq!(whole.image.pixels[2], table[131], "hardly to be seen on the whole scale");
     }
 
     #[test]
-    fn two_differences_beside_each_other_have_one_scale() {
-        let (map, minus) = (lambda(array![[0.5, 0.5]]), lambda(array![[0.5, 0.53]]));
-        let of = |beside| {
-            let paint = Paint::Difference { view: DifferenceView::default(), colours: ColourMap::Grey, beside };
-            let subject =
-                Subject { map: map.clone(), minus: Some(minus.clone()), paint, projection: Projection::RangeAngle };
-            Painter::default().paint(&Radar::default(), MapKind::Difference, &subject).end
-        };
-        assert_eq!([of(0.0), of(0.15)], [0.05, 0.2]);
-    }
-
-    #[test]
-    fn no_difference_is_the_middle_of_the_scale() {
-        assert_eq!(difference(false, false).image.pixels[0], colour_table(ColourMap::Diverging)[128]);
-    }
-
-    #[test]
     fn an_absolute_difference_has_no_sign() {
-        let absolute = difference(true, false);
+        let absolute = difference(true, false, 0.0);
         assert_eq!(absolute.end, 0.05);
         assert_eq!(absolute.image.pixels[1], absolute.image.pixels[2]);
         assert_eq!(absolute.image.pixels[0], colour_table(ColourMap::Grey)[0]);

@@ -178,44 +178,25 @@ mod tests {
     }
 
     #[test]
-    fn maps_of_an_unchanged_radar_are_not_made_again() {
+    fn only_maps_of_another_radar_are_made_again() {
         let (radar, recording) = recorded();
         let mut maps = RecordedMaps::new(&recording, &radar, &BuiltArray::default());
         let (a, b) = (maps.frame(&WANTED), maps.frame(&WANTED));
         assert!(Arc::ptr_eq(&a.full.unwrap().lambda, &b.full.unwrap().lambda) && !b.report.ran(EngineStage::FullMap));
+        let other = Radar { window: crate::radar::WindowFunction::Hamming, end_elements: 9, ..radar };
+        let frame = RecordedMaps::new(&recording, &other, &BuiltArray::default()).frame(&WANTED);
+        assert_eq!(frame.ends.unwrap().first.nrows(), 9);
     }
 
     #[test]
-    fn a_radar_of_other_ends_has_maps_of_its_own() {
-        let (radar, recording) = recorded();
-        let hamming = Radar { window: crate::radar::WindowFunction::Hamming, end_elements: 9, ..radar.clone() };
-        assert_eq!(
-            RecordedMaps::new(&recording, &hamming, &BuiltArray::default()).frame(&WANTED).ends.unwrap().first.nrows(),
-            9
-        );
-    }
-
-    /// Maps of a recording by the two ends alone.
-    fn of_two_ends() -> RecordedMaps {
+    fn two_ends_have_no_target_and_are_explained_by_their_own_map() {
         let (radar, recording) = recorded();
         let ends = Recording { samples: Recorded::Ends(recording.two_ends()), ..Recording::clone(&recording) };
-        RecordedMaps::new(&Arc::new(ends), &radar, &BuiltArray::default())
-    }
-
-    #[test]
-    fn two_ends_have_no_target() {
-        let frame = of_two_ends().frame(&WANTED);
-        assert!(frame.full.is_none() && frame.first.is_some());
-    }
-
-    #[test]
-    fn two_ends_are_explained_by_their_own_map() {
-        let mut maps = of_two_ends();
+        let mut maps = RecordedMaps::new(&Arc::new(ends), &radar, &BuiltArray::default());
         let frame = maps.frame(&WANTED);
-        assert_eq!(
-            maps.unexplained(&Arc::default(), WANTED.normalisation).unwrap().map.lambda,
-            frame.first.unwrap().lambda
-        );
+        assert!(frame.full.is_none());
+        let left = maps.unexplained(&Arc::default(), WANTED.normalisation).unwrap();
+        assert_eq!(left.map.lambda, frame.first.unwrap().lambda);
     }
 
     #[test]

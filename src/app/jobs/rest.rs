@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_rests_a_moment_after_its_last_change() {
+    fn a_scene_rests_a_moment_after_its_last_change_or_hold() {
         let mut look = looks();
         assert_eq!(look(0, Floor::Thesis, false, at(0)), Motion::RestsIn(QUIET));
         assert_eq!(look(0, Floor::Thesis, false, at(40)), Motion::RestsIn(at(60)));
@@ -82,12 +82,6 @@ mod tests {
         assert_eq!(look(1, Floor::Thesis, false, at(101)), Motion::RestsIn(QUIET), "another scene");
         assert_eq!(look(1, Floor::Exact, false, at(150)), Motion::RestsIn(QUIET), "another floor");
         assert_eq!(look(1, Floor::Exact, false, at(250)), Motion::AtRest);
-    }
-
-    #[test]
-    fn a_scene_that_is_held_never_rests() {
-        let mut look = looks();
-        assert_eq!(look(1, Floor::Exact, false, at(0)), Motion::RestsIn(QUIET));
         assert_eq!(look(1, Floor::Exact, true, at(900)), Motion::Held);
         assert_eq!(look(1, Floor::Exact, false, at(901)), Motion::RestsIn(QUIET), "let go just now");
     }

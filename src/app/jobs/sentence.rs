@@ -2,8 +2,7 @@
 
 use super::subject::{Paint, Subject};
 use crate::app::state::Cursor;
-use crate::app::widgets::direction::angle_degrees;
-use crate::app::widgets::numbers::signed;
+use crate::app::widgets::{angle_degrees, signed};
 use crate::evaluate::TARGET_ETA;
 use crate::picture::CellVerdict;
 use crate::radar::Radar;

@@ -2,10 +2,10 @@
 
 use super::bounds::subject;
 use super::derived::{Failure, Query};
-use crate::app::state::{BoundsSettings, Elements, Panel, State};
+use crate::app::state::{BoundsSettings, Panel, State};
 use crate::bounds::{cramer_rao, noise_variance};
 use crate::maps::Aperture;
-use crate::radar::{Decibels, End, Radar};
+use crate::radar::{End, Radar};
 use crate::scene::Reflector;
 use crate::task::Task;
 use crate::theory::{Ellipse, Overlay};
@@ -17,12 +17,8 @@ pub struct TheoryRequest {
     /// Name of the reflector.
     pub name: String,
     pub reflector: Reflector,
-    /// The elements that the bound is computed for.
-    pub elements: Elements,
-    /// Seed of random elements.
-    pub seed: u64,
-    /// Signal-to-noise ratio of a sample, for the bound.
-    pub snr: Decibels,
+    /// Elements and noise that the bound is computed for.
+    pub settings: BoundsSettings,
 }
 
 /// Predictions and position bound of a reflector.
@@ -40,8 +36,7 @@ impl TheoryRequest {
     pub fn of(state: &State) -> Option<Self> {
         let looked_at = state.arrangement.shown().iter().any(|panel| matches!(panel, Panel::Map(_)));
         let (name, reflector) = subject(&state.editor).filter(|_| state.settings.show_theory && looked_at)?;
-        let BoundsSettings { elements, seed, snr, .. } = state.settings.bounds;
-        Some(TheoryRequest { radar: state.radar().clone(), name, reflector, elements, seed, snr })
+        Some(TheoryRequest { radar: state.radar().clone(), name, reflector, settings: state.settings.bounds })
     }
 }
 
@@ -53,7 +48,7 @@ impl Query for TheoryRequest {
     const ADVICE: &'static str = "Move the reflector to try again.";
 
     fn compute(&self, (): &mut (), _: &Task) -> Result<TheoryResult, Failure> {
-        let TheoryRequest { radar, reflector, elements, seed, snr, .. } = self;
+        let TheoryRequest { radar, reflector, settings: BoundsSettings { elements, seed, snr, .. }, .. } = self;
         let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
         let overlays = apertures.map(|aperture| Overlay::of(radar, reflector, aperture));
         let ellipse = elements.layout(radar, *seed).ok().and_then(|layout| {
@@ -75,9 +70,7 @@ mod tests {
             radar: Radar { elements: 64, samples: 32, ..Radar::default() },
             name: "point 1".to_owned(),
             reflector: Reflector { x_metres: 1.5, y_metres, reflectivity: 1.0 },
-            elements: Elements::TwoEnds,
-            seed: 0,
-            snr: Decibels(20.0),
+            settings: BoundsSettings::default(),
         };
         request.compute(&mut (), &Task::default()).unwrap()
     }

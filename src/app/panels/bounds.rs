@@ -5,34 +5,15 @@ mod ellipse;
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{BoundsRequest, BoundsResult, Jobs};
 use crate::app::state::{BoundsSettings, Command, Elements, State, ViewCommand};
-use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::Chart;
-use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::direction::direction;
-use crate::app::widgets::labelled::{choice, labelled};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::numbers::significant;
-use crate::app::widgets::padded::{computed, padded};
-use crate::app::widgets::textures::{Texture, colour_table};
-use crate::app::widgets::theme;
+use crate::app::widgets::{
+    Axis, Bar, Chart, NumberField, Texture, axes, choice, colour_table, computed, direction, labelled, padded,
+    significant, theme,
+};
 use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
-use eframe::egui;
-use eframe::egui::{Grid, Sense, Stroke, TextureOptions, Ui, vec2};
+use eframe::egui::{self, Grid, Sense, Stroke, TextureOptions, Ui, vec2};
 use ellipse::ellipse;
-
-/// The chosen settings and the computed bounds.
-pub struct Input<'a> {
-    /// Elements, SNR and extent that the user chose.
-    pub settings: BoundsSettings,
-    /// Number of elements of the radar, the largest that can be chosen at random.
-    pub elements: usize,
-    /// Whether there is a reflector ahead of the array.
-    pub has_subject: bool,
-    /// The latest bounds, or the reason why there are none; `None` before the first result.
-    pub result: Option<Result<&'a BoundsResult, &'a str>>,
-}
 
 /// Texture of the ambiguity function.
 #[derive(Default)]
@@ -52,29 +33,28 @@ impl Content for BoundsPanel {
     }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let state = &*cx.state;
-        let input = Input {
-            settings: state.settings.bounds,
-            elements: state.radar().elements,
-            has_subject: BoundsRequest::of(state).is_some(),
-            result: cx.value,
-        };
-        show(ui, input, cx.memory)
+        show(ui, cx.state, cx.value, cx.memory)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut BoundsMemory) -> Vec<Command> {
-    if !input.has_subject {
+/// Draws the panel with the bounds, or with the reason why there are none; `None` before the first.
+pub fn show(
+    ui: &mut Ui,
+    state: &State,
+    result: Option<Result<&BoundsResult, &str>>,
+    memory: &mut BoundsMemory,
+) -> Vec<Command> {
+    if BoundsRequest::of(state).is_none() {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));
         return Vec::new();
     }
     padded(ui, |ui, asked| {
-        let mut settings = input.settings;
-        choices(ui, &mut settings, input.elements);
-        if settings != input.settings {
+        let mut settings = state.settings.bounds;
+        choices(ui, &mut settings, state.radar().elements);
+        if settings != state.settings.bounds {
             asked.push(ViewCommand::SetBounds(settings).into());
         }
-        let Some(result) = computed(ui, input.result) else { return };
+        let Some(result) = computed(ui, result) else { return };
         let texture = memory.texture.of(ui.ctx(), "ambiguity", &result.image, TextureOptions::LINEAR);
         strip(ui, &result.request.radar, &result.layout);
         let size = ui.available_size();
@@ -125,7 +105,7 @@ fn strip(ui: &mut Ui, radar: &Radar, layout: &Layout) {
 
 /// Draws the ambiguity function over columns and metres from the reflector, with its colour bar.
 fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
-    let BoundsRequest { radar, columns, bins, .. } = &result.request;
+    let BoundsRequest { radar, settings: BoundsSettings { columns, bins, .. }, .. } = &result.request;
     let half = [*columns, bins * radar.range_resolution_metres()];
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
@@ -229,55 +209,27 @@ fn millimetres(metres: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
-    use crate::scene::Reflector;
+    use crate::app::widgets::seen::{self, User};
+    use crate::scene::Scene;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
+    /// The panel with the bounds of one point.
+    fn panel(size: [f32; 2]) -> Harness<'static, (BoundsMemory, Vec<Command>)> {
+        let state = State::of(Radar { elements: 64, samples: 32, ..Radar::default() }, Scene::of_points([(1.5, 9.0)]));
+        let result = BoundsRequest::of(&state).and_then(|request| crate::app::jobs::bounds_of(request).ok());
+        let draw = move |ui: &mut Ui, (memory, asked): &mut (BoundsMemory, Vec<Command>)| {
+            asked.extend(show(ui, &state, result.as_ref().map(Ok), memory));
+        };
+        Harness::builder().with_size(size).build_ui_state(draw, Default::default())
+    }
+
     #[test]
     fn another_choice_of_elements_is_asked_for() {
-        let draw = |ui: &mut Ui, state: &mut (BoundsMemory, Vec<Command>)| {
-            let settings = BoundsSettings::default();
-            let input = Input { settings, elements: 64, has_subject: true, result: None };
-            let commands = show(ui, input, &mut state.0);
-            state.1.extend(commands);
-        };
-        let mut bounds = Harness::builder().with_size([500.0, 400.0]).build_ui_state(draw, Default::default());
-        bounds.get_by_label("Seen by").click();
-        bounds.run();
-        bounds.get_by_label("the whole array").click();
-        bounds.run();
+        let mut bounds = panel([500.0, 400.0]);
+        bounds.clicks(&["Seen by", "the whole array"]);
         let all = BoundsSettings { elements: Elements::All, ..BoundsSettings::default() };
         assert_eq!(bounds.state().1, [Command::View(ViewCommand::SetBounds(all))]);
-    }
-
-    /// The panel with the bounds of one point.
-    fn panel(size: [f32; 2]) -> Harness<'static, BoundsMemory> {
-        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
-        let reflector = Reflector { x_metres: 1.5, y_metres: 9.0, reflectivity: 1.0 };
-        let request = BoundsRequest {
-            radar,
-            elements: Elements::TwoEnds,
-            seed: 0,
-            name: "point 1".to_owned(),
-            reflector,
-            snr: crate::radar::Decibels(20.0),
-            columns: 12.0,
-            bins: 4.0,
-        };
-        let result = crate::app::jobs::bounds_of(request);
-        let draw = move |ui: &mut Ui, memory: &mut BoundsMemory| {
-            let (settings, result) = (BoundsSettings::default(), result.as_ref().ok());
-            let input = Input { settings, elements: 64, has_subject: true, result: result.map(Ok) };
-            _ = show(ui, input, memory);
-        };
-        Harness::builder().with_size(size).build_ui_state(draw, BoundsMemory::default())
-    }
-
-    #[test]
-    fn the_likeness_has_a_colour_bar() {
-        let texts = seen::texts(panel([460.0, 640.0]).output());
-        assert!(["likeness", "1.0"].into_iter().all(|text| texts.iter().any(|t| t.text == text)), "{texts:?}");
     }
 
     #[test]
@@ -306,19 +258,14 @@ mod tests {
     }
 
     #[test]
-    fn the_bound_with_a_gain_an_end_stands_beside_the_other() {
-        let bounds = panel([460.0, 640.0]);
-        let texts = seen::texts(bounds.output());
-        for text in ["one gain", "a gain an end", "amplitude"] {
-            assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
+    fn likeness_and_bounds_are_there_in_wide_and_narrow_panels() {
+        for (size, wanted) in [
+            ([460.0, 640.0], &["likeness", "1.0", "one gain", "a gain an end", "amplitude"][..]),
+            ([410.0, 200.0], &["likeness", "cos θ off, columns"]),
+        ] {
+            let bounds = panel(size);
+            seen::assert_readable(bounds.output());
+            assert!(wanted.iter().all(|text| bounds.reads(text)), "{:?}", seen::texts(bounds.output()));
         }
-    }
-
-    #[test]
-    fn a_narrow_panel_cuts_nothing_off() {
-        let bounds = panel([410.0, 200.0]);
-        seen::assert_readable(bounds.output());
-        let texts = seen::texts(bounds.output());
-        assert!(["likeness", "cos θ off, columns"].into_iter().all(|text| texts.iter().any(|t| t.text == text)));
     }
 }

@@ -47,7 +47,7 @@ fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str)
 pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     let scene = state.editor.scene();
     if state.shows_captions() {
-        return Some(hint(scene, state.radar(), state.editor.document().recording().is_some()));
+        return Some(hint(scene, state.radar(), state.is_recorded()));
     }
     let is_told = state.tells_first_drag && state.lesson.is_none() && state.editor.dragged().is_none();
     let places_metres = is_told.then(|| post_and_wall(scene)).flatten()?;

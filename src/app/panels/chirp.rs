@@ -3,14 +3,10 @@
 mod choices;
 
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::ChirpResult;
-use crate::app::jobs::{ChirpQuery, Jobs};
-use crate::app::state::{ChirpSettings, Command, State};
-use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::{Chart, Drawn};
+use crate::app::jobs::{ChirpQuery, ChirpResult, Jobs};
+use crate::app::state::{Command, State};
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::padded;
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::{Axis, Chart, Drawn, Inks, axes, padded};
 use crate::radar::{Carrier, Radar};
 use crate::scene::Scene;
 use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
@@ -47,14 +43,9 @@ const LEAST_CHARTS_HEIGHT: f32 = 230.0;
 /// Decibels that the spectrum spans.
 const SPECTRUM_DB: f64 = 100.0;
 
-/// The settings and results that the panel draws.
+/// The beat that the panel draws.
 pub struct Input<'a> {
-    pub radar: &'a Radar,
-    pub scene: &'a Scene,
-    /// The chosen element.
-    pub settings: ChirpSettings,
-    /// Whether a recording takes the place of the scene: its radar is fixed, and the true objects are unknown.
-    pub is_recorded: bool,
+    pub state: &'a State,
     /// The beat, or the reason why there is none; `None` before the first result.
     pub result: Option<Result<&'a ChirpResult, &'a str>>,
 }
@@ -71,15 +62,7 @@ impl Content for ChirpPanel {
     }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let state = &*cx.state;
-        let input = Input {
-            radar: state.radar(),
-            scene: state.scene(),
-            settings: state.settings.chirp,
-            is_recorded: state.editor.document().recording().is_some(),
-            result: cx.value,
-        };
-        show(ui, input)
+        show(ui, Input { state: cx.state, result: cx.value })
     }
 }
 
@@ -94,18 +77,18 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
 /// Draws the contents of a panel `height` points high; a low panel scrolls to its charts.
 fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command>) {
     let top = ui.cursor().top();
-    let chirp = ChirpShape::of(input.radar);
-    let element = input.settings.element.min(input.radar.elements - 1);
-    let echoes = match input.is_recorded {
+    let chirp = ChirpShape::of(input.state.radar());
+    let element = input.state.settings.chirp.element.min(input.state.radar().elements - 1);
+    let echoes = match input.state.is_recorded() {
         true => Vec::new(),
-        false => heard(input.radar, input.scene, element),
+        false => heard(input.state.radar(), input.state.scene(), element),
     };
-    choices::show(ui, input.radar, element, asked);
-    let stretch = stretch(input.radar, &chirp);
+    choices::show(ui, input.state.radar(), element, asked);
+    let stretch = stretch(input.state.radar(), &chirp);
     legend(ui, input, stretch);
-    tell_beats(ui, input.scene, &chirp, &echoes);
-    if input.radar.carrier == Carrier::OneWay {
-        let half_gigahertz = input.radar.carrier_hz / 2e9;
+    tell_beats(ui, input.state.scene(), &chirp, &echoes);
+    if input.state.radar().carrier == Carrier::OneWay {
+        let half_gigahertz = input.state.radar().carrier_hz / 2e9;
         ui.weak(format!("Drawn rising; the thesis' formula falls from {half_gigahertz} GHz: the same beats."));
     }
     let left = (height - 1.0 - (ui.cursor().top() - top)).max(LEAST_CHARTS_HEIGHT);
@@ -147,14 +130,14 @@ fn legend(ui: &mut Ui, input: &Input<'_>, stretch: f64) {
     let inks = Inks::of(ui.visuals());
     let line = |colour, name: &str| Entry { sign: Sign::Line, colour, name: name.to_owned() };
     let mut entries = vec![line(inks.selected, "sent")];
-    if !input.is_recorded {
+    if !input.state.is_recorded() {
         let returns = match stretch > 1.0 {
             true => format!("returns, delays drawn {stretch:.0} times as long"),
             false => "returns".to_owned(),
         };
         entries.push(line(inks.ends[0], &returns));
     }
-    if input.scene.disturbances.interferer.is_some() && !input.is_recorded {
+    if input.state.scene().disturbances.interferer.is_some() && !input.state.is_recorded() {
         entries.push(line(inks.ends[1], "interferer"));
     }
     legend::row(ui, &entries);
@@ -229,7 +212,9 @@ impl Shown<'_> {
                 chart.line([[time, returned], [time, sent]], stroke, LineStyle::Dashed { length: 2.5 });
             }
         }
-        if let Some(interferer) = self.input.scene.disturbances.interferer.filter(|_| !self.input.is_recorded) {
+        if let Some(interferer) =
+            self.input.state.scene().disturbances.interferer.filter(|_| !self.input.state.is_recorded())
+        {
             let at = |part: f64| {
                 let seconds = part * chirp.duration_seconds;
                 [
@@ -246,7 +231,7 @@ impl Shown<'_> {
 
     /// Draws the handles at both ends of the sent chirp: the beginning is dragged up and down for the carrier, the end for bandwidth and duration.
     fn handles(&self, ui: &mut Ui, drawn: &Drawn, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
-        let mut radar = self.input.radar.clone();
+        let mut radar = self.input.state.radar().clone();
         let size = vec2(6.0 * HANDLE, 6.0 * HANDLE);
         for (at, name, icon) in [
             ([0.0, 0.0], "Beginning of the chirp: its carrier", CursorIcon::ResizeVertical),
@@ -257,7 +242,7 @@ impl Shown<'_> {
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, name));
             let by = response.drag_delta();
             let up = f64::from(-by.y / drawn.rect.height());
-            if response.dragged() && !self.input.is_recorded {
+            if response.dragged() && !self.input.state.is_recorded() {
                 let [low, high] = if at[1] == 0.0 { DRAGGED_CARRIER_HZ } else { DRAGGED_BANDWIDTH_HZ };
                 let hertz = if at[1] == 0.0 { &mut radar.carrier_hz } else { &mut radar.bandwidth_hz };
                 *hertz = (*hertz * (1.0 + up)).clamp(low, high);
@@ -277,7 +262,7 @@ impl Shown<'_> {
             );
             response.on_hover_cursor(icon).on_hover_text(name);
         }
-        choices::set(self.input.radar, radar, asked);
+        choices::set(self.input.state.radar(), radar, asked);
     }
 
     /// Draws the beat over the time of the chirp, its samples as dots.
@@ -318,7 +303,7 @@ impl Shown<'_> {
             let bin = bin.round().clamp(0.0, bins - 1.0);
             let level = result.spectrum.get(bin as usize).map_or(-SPECTRUM_DB, decibels);
             let beat = bin / self.chirp.duration_seconds / 1e6;
-            let range = self.input.radar.range_of_bin_metres(bin);
+            let range = self.input.state.radar().range_of_bin_metres(bin);
             Some(format!("range bin {bin:.0}: {range:.2} m, beat {beat:.3} MHz\n{level:.1} dB"))
         });
     }
@@ -328,21 +313,20 @@ impl Shown<'_> {
 mod tests {
     use super::*;
     use crate::app::state::RadarCommand;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use num_complex::Complex64;
 
     fn panel(size: [f32; 2], result: Result<(), &'static str>) -> Harness<'static, Vec<Command>> {
         let radar = Radar { elements: 64, samples: 64, bandwidth_hz: 2.5e8, ..Radar::default() };
-        let scene = Scene::of_points([(0.0, 12.0), (3.0, 20.0)]);
+        let mut state = State::of(radar, Scene::of_points([(0.0, 12.0), (3.0, 20.0)]));
+        state.settings.chirp.element = 3;
         let samples = (0..64).map(|k| Complex64::from_polar(1.0, 0.3 * f64::from(k))).collect();
         let beat =
             ChirpResult { element: 3, samples, spectrum: (0..64).map(|bin| 1.0 / (1.0 + f64::from(bin))).collect() };
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let settings = ChirpSettings { element: 3 };
-            let result = Some(result.map(|()| &beat));
-            asked.extend(show(ui, Input { radar: &radar, scene: &scene, settings, is_recorded: false, result }));
+            asked.extend(show(ui, Input { state: &state, result: Some(result.map(|()| &beat)) }));
         };
         Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
     }
@@ -361,29 +345,19 @@ mod tests {
             assert!(texts.iter().any(|t| t.text.contains("the thesis' formula falls from 38.5 GHz")), "{texts:?}");
             seen::assert_readable(panel.output());
         }
+        let _said = panel([900.0, 420.0], Err("every element is needed")).get_by_label("every element is needed");
     }
 
     #[test]
     fn dragging_the_end_of_the_chirp_changes_bandwidth_and_duration() {
         let mut panel = panel([900.0, 420.0], Ok(()));
         let at = panel.get_by_label("End of the chirp: bandwidth and duration").rect().center();
-        panel.hover_at(at);
-        panel.step();
-        panel.drag_at(at);
-        panel.step();
-        panel.hover_at(at + vec2(20.0, -20.0));
-        panel.step();
+        panel.drags(&[at, at + vec2(20.0, -20.0)]);
         let mut radars = panel.state().iter().filter_map(|c| match c {
             Command::Radar(RadarCommand::Set(radar)) => Some(radar),
             _ => None,
         });
         let dragged = |radar: &Radar| radar.bandwidth_hz > 2.5e8 && radar.chirp_seconds > 25.6e-6;
         assert!(radars.next_back().is_some_and(|radar| dragged(radar)), "{:?}", panel.state());
-    }
-
-    #[test]
-    fn an_error_is_said() {
-        let panel = panel([900.0, 420.0], Err("every element is needed here"));
-        let _said = panel.get_by_label("every element is needed here");
     }
 }

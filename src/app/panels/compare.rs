@@ -1,15 +1,10 @@
 //! The panel that compares two methods on the scene on screen: side by side, or flipped in place.
 
 use super::map::{self, MapMemory, caption_of as caption, is_updating, map_input, marks_of, verdict};
-use crate::app::content::{Content, Cx, Nothing, offered};
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, Wants};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
-use crate::app::widgets::entry::button;
-use crate::app::widgets::labelled::{choice_told, labelled};
-use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
-use crate::app::widgets::numbers::percent;
-use crate::app::widgets::padded::padded;
-use crate::app::widgets::progress::progress;
+use crate::app::widgets::{LIST_HEIGHT, button, choice_told, labelled, method_list, padded, percent, progress};
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 
 /// A map and its title.
@@ -19,13 +14,9 @@ pub struct Titled<'a> {
     pub map: map::Input<'a>,
 }
 
-/// The compared maps, and the methods to choose from.
+/// The compared maps.
 pub struct Input<'a> {
-    /// The chosen second method, layout and maps to flip.
-    pub compare: &'a Compare,
-    pub methods: Offered<'a>,
-    /// Names of the first and of the second method.
-    pub chosen: [&'static str; 2],
+    pub state: &'a State,
     /// The maps of [`Compare::maps`].
     pub maps: Vec<Titled<'a>>,
     /// Progress of the second method, while it runs.
@@ -55,13 +46,7 @@ impl Content for ComparePanel {
             map: map_input(state, jobs, &marks, texture, *kind),
         };
         let second = jobs.pipeline.method(MethodSlot::Second);
-        let input = Input {
-            compare: &state.settings.compare,
-            methods: offered(state),
-            chosen: MethodSlot::BOTH.map(|slot| state.method_in(slot).map_or("", |m| m.name())),
-            maps: kinds.iter().zip(textures).map(map).collect(),
-            progress: second.progress(),
-        };
+        let input = Input { state, maps: kinds.iter().zip(textures).map(map).collect(), progress: second.progress() };
         let asked = show(ui, input, &mut view, &mut memory.hand);
         *state.map_views.of(projection) = view;
         asked
@@ -102,7 +87,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map:
     padded(ui, |ui, asked| {
         choices(ui, &input, asked);
         let area = ui.available_rect_before_wrap();
-        let Input { compare, maps, .. } = input;
+        let Input { state, maps, .. } = input;
+        let compare = &state.settings.compare;
         let places = match compare.layout {
             Layout::Beside => grid(area, maps.len()),
             Layout::Flip => vec![area],
@@ -136,15 +122,16 @@ fn grid(area: Rect, count: usize) -> Vec<Rect> {
 }
 
 fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let mut compare = input.compare.clone();
+    let state = input.state;
+    let mut compare = state.settings.compare.clone();
     ui.horizontal_wrapped(|ui| {
-        let [first, second] = input.chosen;
-        method(ui, "First", first, input.methods, |v| Command::View(ViewCommand::Method(v)), asked);
+        let [first, second] = MethodSlot::BOTH.map(|slot| state.method_in(slot).map_or("", |m| m.name()));
+        method(ui, "First", first, state, |v| Command::View(ViewCommand::Method(v)), asked);
         let second_is = |name: &str| {
-            let compare = Compare { second: name.to_owned(), ..input.compare.clone() };
+            let compare = Compare { second: name.to_owned(), ..state.settings.compare.clone() };
             Command::View(ViewCommand::SetCompare(Box::new(compare)))
         };
-        method(ui, "Second", second, input.methods, second_is, asked);
+        method(ui, "Second", second, state, second_is, asked);
         for layout in Layout::ALL {
             let tip = match layout {
                 Layout::Beside => "Both outputs above, their differences from the target below",
@@ -171,7 +158,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
         });
     });
-    if compare != *input.compare {
+    if compare != state.settings.compare {
         asked.push(ViewCommand::SetCompare(Box::new(compare)).into());
     }
 }
@@ -181,23 +168,20 @@ fn method(
     ui: &mut Ui,
     label: &str,
     chosen: &'static str,
-    methods: Offered<'_>,
+    state: &State,
     choose: impl Fn(&'static str) -> Command,
     asked: &mut Vec<Command>,
 ) {
     let combo = ComboBox::from_id_salt(label).width(100.0).height(LIST_HEIGHT).selected_text(chosen);
-    let list = |ui: &mut Ui| combo.show_ui(ui, |ui| method_list(ui, methods, chosen, choose, asked)).response;
+    let list = |ui: &mut Ui| combo.show_ui(ui, |ui| method_list(ui, state, chosen, choose, asked)).response;
     labelled(ui, label, "", list);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
-    use crate::interact::Selection;
-    use crate::radar::Radar;
+    use crate::app::widgets::seen::{self, User};
     use crate::reconstruct::{Baseline, CAPON, Reconstructor};
-    use crate::scene::Scene;
     use eframe::egui::TextureId;
     use eframe::egui::accesskit::Role;
     use egui_kittest::Harness;
@@ -205,37 +189,35 @@ mod tests {
     use std::sync::Arc;
 
     struct Held {
-        compare: Compare,
+        state: State,
         progress: Option<f32>,
         refused: bool,
         asked: Vec<Command>,
     }
 
     fn panel(layout: Layout) -> Harness<'static, Held> {
-        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
-        let (radar, scene, selection) = (Radar::default(), Scene::default(), Selection::default());
-        let look = crate::view::View::default();
         let (mut view, mut memory) = (MapView::default(), map::HandMemory::default());
         let draw = move |ui: &mut Ui, held: &mut Held| {
+            let state = &held.state;
             let titled = |kind: MapKind| {
                 let refused = held.refused && kind == MapKind::Second;
                 let error = refused.then_some(map::Problem { reason: "needs more samples", instead: None });
                 let texture = (!refused).then(TextureId::default);
-                let map = map::Input::bare(kind, &radar, &look, &scene, &selection);
+                let map = map::Input::bare(kind, state);
                 Titled { title: kind.title().to_owned(), map: map::Input { texture, error, ..map } }
             };
             let input = Input {
-                compare: &held.compare,
-                methods: Offered::untimed(&methods),
-                chosen: ["baseline", "capon"],
-                maps: held.compare.maps().into_iter().map(titled).collect(),
+                state,
+                maps: state.settings.compare.maps().into_iter().map(titled).collect(),
                 progress: held.progress,
             };
             let asked = show(ui, input, &mut view, &mut memory);
             held.asked.extend(asked.into_iter().filter(|c| !matches!(c, Command::View(ViewCommand::Hover(_)))));
         };
-        let compare = Compare { layout, ..Compare::default() };
-        let held = Held { compare, progress: None, refused: false, asked: Vec::new() };
+        let mut state = State::new(vec![Arc::new(Baseline), Arc::new(CAPON)]);
+        state.settings.method = Baseline.name().to_owned();
+        state.settings.compare.layout = layout;
+        let held = Held { state, progress: None, refused: false, asked: Vec::new() };
         let mut panel = Harness::builder().with_size([900.0, 560.0]).build_ui_state(draw, held);
         panel.run_steps(3);
         panel
@@ -257,10 +239,9 @@ mod tests {
         let mut panel = panel(Layout::Flip);
         let first = panel.get_by_label("Output map").rect();
         assert!(panel.query_by_label("Second output map").is_none());
-        panel.get_by_label("Flip maps").click();
-        panel.step();
+        panel.clicks(&["Flip maps"]);
         assert_eq!(panel.state().asked, [Command::View(ViewCommand::Flip)]);
-        panel.state_mut().compare.flip();
+        panel.state_mut().state.settings.compare.flip();
         panel.run_steps(2);
         assert_eq!(panel.get_by_label("Second output map").rect(), first);
         assert!(panel.query_by_label("Output map").is_none());
@@ -275,41 +256,25 @@ mod tests {
     }
 
     #[test]
-    fn the_second_method_is_chosen_from_a_list() {
+    fn the_second_method_and_map_are_chosen_from_lists() {
         let mut panel = panel(Layout::Flip);
-        panel.get_by_label("Second").click();
-        panel.run_steps(2);
+        panel.clicks(&["Second"]);
         panel.get_by_role_and_label(Role::Button, "baseline").click();
         panel.run_steps(2);
         assert_eq!(asked_for(&panel).second, "baseline");
-    }
-
-    #[test]
-    fn the_second_map_is_chosen_from_a_list() {
-        let mut panel = panel(Layout::Flip);
-        panel.get_by_label("and").click();
-        panel.run_steps(2);
-        panel.get_by_label("Target").click();
-        panel.run_steps(2);
+        panel.clicks(&["and", "Target"]);
         assert_eq!(asked_for(&panel).maps, [MapKind::Output, MapKind::Target]);
     }
 
     #[test]
-    fn a_second_method_that_runs_can_be_cancelled() {
+    fn a_second_method_can_be_cancelled_or_says_why_it_refuses() {
         let mut panel = panel(Layout::Beside);
         panel.state_mut().progress = Some(0.4);
         panel.run_steps(2);
-        panel.get_by_label("Cancel").click();
-        panel.run_steps(2);
+        panel.clicks(&["Cancel"]);
         assert_eq!(panel.state().asked.last(), Some(&Command::Work(WorkCommand::CancelSecond)));
-    }
-
-    #[test]
-    fn a_second_method_that_refuses_says_why() {
-        let mut panel = panel(Layout::Beside);
         panel.state_mut().refused = true;
         panel.run_steps(2);
-        let texts = seen::texts(panel.output());
-        assert!(texts.iter().any(|t| t.text == "needs more samples"), "{texts:?}");
+        assert!(panel.reads("needs more samples"));
     }
 }

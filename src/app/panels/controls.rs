@@ -1,30 +1,23 @@
 //! The settings panel: reconstruction with its current figures, maps, and display.
 
-mod choices;
 mod detector;
 mod display;
 mod false_alarms;
 mod maps;
 
-use crate::app::content::{Content, Cx, Nothing, offered};
+use crate::app::content::{Content, Cx, Nothing};
 pub use false_alarms::{FalseAlarmsMemory, Search};
 
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::panels::map;
-use crate::app::state::{Command, MethodSlot, Settings, Units, ViewCommand, WorkCommand};
-use crate::app::widgets::levels::{level, with_unit};
-use crate::app::widgets::method_menu::{LIST_HEIGHT, Offered, method_list};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::numbers::percent;
-use crate::app::widgets::padded::scrolled;
-use crate::app::widgets::progress::progress;
-use crate::app::widgets::setting_row::{group, row};
+use crate::app::state::{Command, MethodSlot, State, Units, ViewCommand, WorkCommand};
+use crate::app::widgets::{
+    LIST_HEIGHT, NumberField, group, level, method_list, percent, progress, row, scrolled, with_unit,
+};
 use crate::evaluate::eta_text;
 use crate::lesson::Uses;
-use crate::radar::Radar;
 use crate::reconstruct::Reconstructor;
-use eframe::egui;
-use eframe::egui::{ComboBox, Grid, Slider, SliderClamping, Ui};
+use eframe::egui::{self, ComboBox, Grid, Slider, SliderClamping, Ui};
 use std::time::Duration;
 
 /// Gap between two figures, points.
@@ -32,18 +25,8 @@ const FIGURES_GAP: f32 = 20.0;
 
 /// Settings, and the state of the reconstruction.
 pub struct Input<'a> {
-    /// Whether a recording takes the place of the scene: its floor is fixed.
-    pub is_recorded: bool,
-    /// The user's settings.
-    pub settings: &'a Settings,
-    /// The radar, which has the carrier and the window.
-    pub radar: &'a Radar,
-    /// Seed of the scene's noise.
-    pub noise_seed: u64,
-    /// The methods to choose from.
-    pub methods: Offered<'a>,
-    /// The method in use.
-    pub method: Option<&'a dyn Reconstructor>,
+    pub state: &'a State,
+    /// η of the method in use.
     pub eta: f32,
     /// Decibels that the target's Lambda spans, where its scale is known.
     pub range_db: Option<f64>,
@@ -98,12 +81,7 @@ impl Content for ControlsPanel {
             search: Search { progress: jobs.thresholds.progress(), note: jobs.thresholds.note() },
         };
         let input = Input {
-            is_recorded: state.editor.document().recording().is_some(),
-            settings: &state.settings,
-            radar: state.radar(),
-            noise_seed: state.editor.scene().noise_seed,
-            methods: offered(state),
-            method: state.method().map(|m| m.as_ref()),
+            state,
             eta: pipeline.eta(state, MethodSlot::First),
             range_db: pipeline.range_db(),
             run,
@@ -114,29 +92,26 @@ impl Content for ControlsPanel {
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut FalseAlarmsMemory) -> Vec<Command> {
-    let settings = input.settings;
     scrolled(ui, |ui, asked| {
         if input.uses.output {
             group(ui, "Reconstruction", |ui| reconstruction(ui, &input, memory, asked));
         } else if input.uses.threshold {
             group(ui, "Threshold", |ui| thresholds(ui, &input, None, memory, asked));
         }
-        group(ui, "Maps", |ui| {
-            maps::show(ui, input.is_recorded, settings, input.radar, input.noise_seed, asked);
-        });
-        group(ui, "Display", |ui| display::show(ui, settings, asked));
+        group(ui, "Maps", |ui| maps::show(ui, input.state, asked));
+        group(ui, "Display", |ui| display::show(ui, &input.state.settings, asked));
     })
 }
 
 fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut FalseAlarmsMemory, asked: &mut Vec<Command>) {
-    let Some(method) = input.method else {
+    let Some(method) = input.state.method().map(AsRef::as_ref) else {
         ui.weak("This build has no reconstruction method.");
         return;
     };
     row(ui, "Method", method.description(), |ui| {
         let combo = ComboBox::from_id_salt("method").width(150.0).height(LIST_HEIGHT).selected_text(method.name());
         let listed = combo.show_ui(ui, |ui| {
-            method_list(ui, input.methods, method.name(), |v| Command::View(ViewCommand::Method(v)), asked);
+            method_list(ui, input.state, method.name(), |v| Command::View(ViewCommand::Method(v)), asked);
         });
         listed.response
     });
@@ -154,8 +129,8 @@ fn thresholds(
     memory: &mut FalseAlarmsMemory,
     asked: &mut Vec<Command>,
 ) {
-    detector::choice(ui, input.settings, asked);
-    match &input.settings.cfar {
+    detector::choice(ui, &input.state.settings, asked);
+    match &input.state.settings.cfar {
         Some(cfar) => detector::cells(ui, cfar, input.run.detector_error, asked),
         None => {
             if let Some(method) = method {
@@ -177,7 +152,7 @@ fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked:
         asked.extend(
             moved(input.eta, eta).map(|eta| Command::View(ViewCommand::SetMethodEta(method.name(), Some(eta)))),
         );
-        let own = input.settings.method_eta.contains_key(method.name());
+        let own = input.state.settings.method_eta.contains_key(method.name());
         let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
         let back = match method.reads_eta() {
             true => "Back to the η that fits each output".to_owned(),
@@ -194,17 +169,17 @@ fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked:
 /// Draws the threshold of the target.
 fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
-        let mut eta = input.settings.target_eta;
+        let mut eta = input.state.settings.target_eta;
         let slider = threshold(ui, "η' in numbers", &mut eta);
-        asked.extend(moved(input.settings.target_eta, eta).map(|v| Command::View(ViewCommand::SetTargetEta(v))));
-        in_decibels(ui, input, input.settings.target_eta);
+        asked.extend(moved(input.state.settings.target_eta, eta).map(|v| Command::View(ViewCommand::SetTargetEta(v))));
+        in_decibels(ui, input, input.state.settings.target_eta);
         slider
     });
 }
 
 /// Writes a threshold in decibels relative to the target's peak, where decibels are chosen and the scale is known.
 fn in_decibels(ui: &mut Ui, input: &Input<'_>, eta: f32) {
-    if let Some(range_db) = input.range_db.filter(|_| input.settings.units == Units::Decibels) {
+    if let Some(range_db) = input.range_db.filter(|_| input.state.settings.units == Units::Decibels) {
         ui.weak(with_unit(&level(range_db * (f64::from(eta) - 1.0), range_db)));
     }
 }

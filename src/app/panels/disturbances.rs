@@ -1,20 +1,10 @@
 //! The disturbances panel: an interfering radar, and a wall that mirrors.
 
 use crate::app::content::{Content, Cx, Nothing};
-use crate::app::state::{Command, RadarCommand};
-use crate::app::widgets::labelled::{Quantity, labelled};
-use crate::app::widgets::padded::scrolled;
-use crate::radar::Radar;
-use crate::scene::{Disturbances, Interferer, Mirror};
+use crate::app::state::{Command, RadarCommand, State};
+use crate::app::widgets::{Quantity, labelled, scrolled};
+use crate::scene::{Interferer, Mirror};
 use eframe::egui::{Grid, Ui};
-
-/// The scene's disturbances, and the radar.
-pub struct Input<'a> {
-    pub disturbances: &'a Disturbances,
-    pub radar: &'a Radar,
-    /// Whether a recording takes the place of the scene: no disturbance can be added to it.
-    pub is_recorded: bool,
-}
 
 pub struct DisturbancesPanel;
 
@@ -23,21 +13,19 @@ impl Content for DisturbancesPanel {
     type Remembers = ();
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let document = cx.state.editor.document();
-        let is_recorded = document.recording().is_some();
-        show(ui, Input { disturbances: &document.scene().disturbances, radar: cx.state.radar(), is_recorded })
+        show(ui, cx.state)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
-        if input.is_recorded {
+        if state.is_recorded() {
             ui.weak("A recording has the disturbances that it was made with.");
             return;
         }
-        interferer(ui, &input, asked);
+        interferer(ui, state, asked);
         ui.add_space(8.0);
-        mirror(ui, input.disturbances.mirror, asked);
+        mirror(ui, state.editor.scene().disturbances.mirror, asked);
     })
 }
 
@@ -60,12 +48,12 @@ fn number(ui: &mut Ui, quantity: Quantity, value: &mut f64) {
     ui.end_row();
 }
 
-fn interferer(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let now = input.disturbances.interferer;
+fn interferer(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
+    let now = state.editor.scene().disturbances.interferer;
     let mut on = now.is_some();
     let tooltip = "Another radar whose chirps are not synchronised: received while its frequency crosses ours";
     if ui.checkbox(&mut on, "Interferer").on_hover_text(tooltip).changed() {
-        asked.push(RadarCommand::SetInterferer(on.then(|| Interferer::before(input.radar))).into());
+        asked.push(RadarCommand::SetInterferer(on.then(|| Interferer::before(state.radar()))).into());
         return;
     }
     let Some(now) = now else { return };
@@ -115,70 +103,55 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui;
+    use crate::app::panels::recording::some_recording;
+    use crate::app::widgets::seen::User;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn panel(is_recorded: bool) -> Harness<'static, Disturbances> {
-        let draw = move |ui: &mut Ui, state: &mut Disturbances| {
-            for command in show(ui, Input { disturbances: &state.clone(), radar: &Radar::default(), is_recorded }) {
-                match command {
-                    Command::Radar(RadarCommand::SetInterferer(interferer)) => state.interferer = interferer,
-                    Command::Radar(RadarCommand::SetMirror(mirror)) => state.mirror = mirror,
+    fn panel(state: State) -> Harness<'static, State> {
+        let draw = move |ui: &mut Ui, state: &mut State| {
+            for command in show(ui, state) {
+                state.editor.edit("disturbances", None, |scene, _| match command {
+                    Command::Radar(RadarCommand::SetInterferer(interferer)) => {
+                        scene.disturbances.interferer = interferer;
+                    }
+                    Command::Radar(RadarCommand::SetMirror(mirror)) => scene.disturbances.mirror = mirror,
                     other => panic!("{other:?}"),
-                }
+                });
             }
         };
-        let mut panel = Harness::builder().with_size([360.0, 420.0]).build_ui_state(draw, Disturbances::default());
+        let mut panel = Harness::builder().with_size([360.0, 420.0]).build_ui_state(draw, state);
         panel.run();
         panel
     }
 
-    fn click(panel: &mut Harness<'static, Disturbances>, label: &str) {
-        panel.get_by_label(label).click();
-        panel.run();
+    fn disturbances(panel: &Harness<'static, State>) -> (Option<Interferer>, Option<Mirror>) {
+        let disturbances = &panel.state().editor.scene().disturbances;
+        (disturbances.interferer, disturbances.mirror)
     }
 
     /// The panel with interferer and mirror switched on.
-    fn panel_of_both() -> Harness<'static, Disturbances> {
-        let mut panel = panel(false);
-        ["Interferer", "Mirror"].into_iter().for_each(|label| click(&mut panel, label));
+    fn panel_of_both() -> Harness<'static, State> {
+        let mut panel = panel(State::new(Vec::new()));
+        panel.clicks(&["Interferer", "Mirror"]);
         panel
     }
 
     #[test]
     fn what_is_switched_on_has_its_usual_numbers() {
-        let panel = panel_of_both();
-        assert_eq!(panel.state().interferer, Some(Interferer::default()), "as it stands before the radar of table 3.1");
-        assert_eq!(panel.state().mirror, Some(Mirror::default()));
+        assert!(panel(State::recorded(some_recording())).query_by_label("Mirror").is_none(), "not over a recording");
+        let mut panel = panel_of_both();
+        let usual = (Some(Interferer::default()), Some(Mirror::default()));
+        assert_eq!(disturbances(&panel), usual, "as they stand before the radar of table 3.1");
+        panel.clicks(&["Interferer"]);
+        assert_eq!(disturbances(&panel), (None, usual.1), "either is switched off by itself");
     }
 
     #[test]
     fn a_number_that_is_typed_changes_no_other() {
         let mut panel = panel_of_both();
-        let field = panel.get_by(|n| {
-            n.label().as_deref() == Some("crossing time (% of chirp)") && n.role() == egui::accesskit::Role::SpinButton
-        });
-        field.focus();
-        panel.run();
-        panel.event(egui::Event::Text("25".to_owned()));
-        panel.run();
-        panel.key_press(egui::Key::Enter);
-        panel.run();
-        let edited = panel.state().interferer.unwrap();
+        panel.enters("crossing time (% of chirp)", "25");
+        let edited = disturbances(&panel).0.unwrap();
         assert_eq!(edited, Interferer { crossing: 0.25, ..Interferer::default() });
-    }
-
-    #[test]
-    fn either_is_switched_off_by_itself() {
-        let mut panel = panel_of_both();
-        click(&mut panel, "Interferer");
-        assert_eq!((panel.state().interferer, panel.state().mirror.is_some()), (None, true));
-    }
-
-    #[test]
-    fn nothing_is_added_to_a_recording() {
-        let panel = panel(true);
-        assert!(panel.query_by_label("Mirror").is_none());
     }
 }

@@ -2,22 +2,14 @@
 
 use super::recording::frame_slider;
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::DopplerResult;
-use crate::app::jobs::{DopplerQuery, Jobs};
+use crate::app::jobs::{DopplerQuery, DopplerResult, Jobs};
 use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
-use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::{Chart, Drawn};
-use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::entry::{press, tick};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::{computed, padded, warning};
-use crate::app::widgets::textures::{Texture, colour_table};
-use crate::app::widgets::theme;
+use crate::app::widgets::{
+    Axis, Bar, Chart, Drawn, NumberField, Texture, axes, colour_table, computed, labelled, padded, press, theme, tick,
+    warning,
+};
 use crate::maps::Normalisation;
-use crate::picture::ColourMap;
 use crate::radar::{MAX_CHIRPS, Radar};
-use crate::scene::Scene;
 use crate::theory::doppler::{DopplerBlob, folded};
 use eframe::egui::{self, Rect, Sense, Slider, Stroke, TextureOptions, Ui, vec2};
 use egui_plot::{LineStyle, VLine};
@@ -31,27 +23,9 @@ const MARKS: usize = 200;
 /// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.
 const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
 
-/// The map and the settings that the panel draws.
+/// The map that the panel draws.
 pub struct Input<'a> {
-    pub radar: &'a Radar,
-    /// The scene at `seconds`.
-    pub scene: &'a Scene,
-    /// Time of the scene, seconds.
-    pub seconds: f64,
-    /// Whether the scene plays.
-    pub is_playing: bool,
-    /// Whether true objects are marked.
-    pub marks: bool,
-    /// Colours of maps.
-    pub colours: ColourMap,
-    /// Normalisation of the coloured levels.
-    pub normalisation: Normalisation,
-    /// Whether a recording takes the place of the scene: its file sets the chirps.
-    pub is_recorded: bool,
-    /// Index of the shown frame of the recording, and the number of frames, where there are several.
-    pub frames: Option<[u64; 2]>,
-    /// Whether static clutter is removed from a recording's map.
-    pub static_clutter_out: bool,
+    pub state: &'a State,
     /// The map, or the reason why there is none; `None` before the first result.
     pub result: Option<Result<&'a DopplerResult, &'a str>>,
 }
@@ -74,36 +48,22 @@ impl Content for DopplerPanel {
     }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let state = &*cx.state;
-        let input = Input {
-            radar: state.radar(),
-            scene: state.scene(),
-            seconds: state.timeline.seconds(),
-            is_playing: state.timeline.is_playing(),
-            marks: state.settings.show_reflectors,
-            colours: state.settings.colours,
-            normalisation: state.settings.normalisation,
-            is_recorded: state.editor.document().recording().is_some(),
-            frames: state.frames(),
-            static_clutter_out: state.settings.static_clutter_out,
-            result: cx.value,
-        };
-        show(ui, input, cx.memory)
+        show(ui, Input { state: cx.state, result: cx.value }, cx.memory)
     }
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
         chirps(ui, &input, asked);
-        match (input.frames, input.is_recorded) {
+        match (input.state.frames(), input.state.is_recorded()) {
             (Some(frames), _) => frames_played(ui, &input, frames, asked),
             (None, true) => {}
             (None, false) => timeline(ui, &input, asked),
         }
         said(ui, &input, asked);
         match input.result {
-            _ if !input.is_recorded && input.radar.chirps < 2 => {}
-            None if input.is_recorded => {}
+            _ if !input.state.is_recorded() && input.state.radar().chirps < 2 => {}
+            None if input.state.is_recorded() => {}
             value => {
                 let Some(result) = computed(ui, value) else { return };
                 let texture = memory.texture.of(ui.ctx(), "range-Doppler", &result.image, TextureOptions::NEAREST);
@@ -115,8 +75,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Co
 
 /// Draws the fields of the chirps' number and interval, and the velocities that follow.
 fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let mut radar = input.radar.clone();
-    ui.add_enabled_ui(!input.is_recorded, |ui| {
+    let mut radar = input.state.radar().clone();
+    ui.add_enabled_ui(!input.state.is_recorded(), |ui| {
         ui.horizontal_wrapped(|ui| {
             let count = NumberField::new(&mut radar.chirps).range(1..=MAX_CHIRPS).speed(0.5);
             labelled(ui, "Chirps", "Chirps that are sent one after another: columns of the map", count);
@@ -131,9 +91,9 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
         });
     });
-    let of_file = input.result.and_then(Result::ok).filter(|_| input.is_recorded).map(|result| &result.radar);
-    ui.weak(follows(of_file.unwrap_or(input.radar)));
-    if radar != *input.radar && !input.is_recorded {
+    let of_file = input.result.and_then(Result::ok).filter(|_| input.state.is_recorded()).map(|result| &result.radar);
+    ui.weak(follows(of_file.unwrap_or(input.state.radar())));
+    if radar != *input.state.radar() && !input.state.is_recorded() {
         radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
         asked.push(RadarCommand::Set(Box::new(radar)).into());
     }
@@ -150,17 +110,22 @@ fn follows(radar: &Radar) -> String {
 
 /// Draws the time of the scene, and the buttons that play it.
 fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    ui.add_enabled_ui(input.scene.is_moving(), |ui| {
+    ui.add_enabled_ui(input.state.scene().is_moving(), |ui| {
         ui.horizontal_wrapped(|ui| {
-            play(ui, input.is_playing, "Let every object move by its velocity; all maps follow", asked);
-            let mut seconds = input.seconds;
+            play(
+                ui,
+                input.state.timeline.is_playing(),
+                "Let every object move by its velocity; all maps follow",
+                asked,
+            );
+            let mut seconds = input.state.timeline.seconds();
             let slider = Slider::new(&mut seconds, 0.0..=TIMELINE_SECONDS).fixed_decimals(2).suffix(" s");
             let tooltip = "Time at which the scene is looked at; its file has time 0";
             if labelled(ui, "Time", tooltip, slider).changed() {
                 asked.push(ViewCommand::SetTime(seconds).into());
             }
-            if input.seconds > 0.0 && ui.button("Back to 0 s").clicked() {
-                asked.push(ViewCommand::SetTime(0.0).into());
+            if input.state.timeline.seconds() > 0.0 {
+                press(ui, "Back to 0 s", "", ViewCommand::SetTime(0.0), asked);
             }
         });
     });
@@ -169,19 +134,19 @@ fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
 /// Draws the frames of a recording, and the button that plays them.
 fn frames_played(ui: &mut Ui, input: &Input<'_>, frames: [u64; 2], asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        play(ui, input.is_playing, "Show one frame after another; all maps and methods follow", asked);
+        play(ui, input.state.timeline.is_playing(), "Show one frame after another; all maps and methods follow", asked);
         asked.extend(frame_slider(ui, frames).map(|way| DocumentCommand::ReadAnotherWay(way).into()));
     });
 }
 
 /// Draws the button that plays or pauses.
 fn play(ui: &mut Ui, is_playing: bool, tip: &str, asked: &mut Vec<Command>) {
-    press(ui, if is_playing { "Pause" } else { "Play" }, tip, || ViewCommand::TogglePlay, asked);
+    press(ui, if is_playing { "Pause" } else { "Play" }, tip, ViewCommand::TogglePlay, asked);
 }
 
 /// Writes why there is no map, or a note on the map.
 fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    if input.is_recorded {
+    if input.state.is_recorded() {
         let text = match input.result {
             None => "The loops of a raw capture's frame, or of an array, make this map. One chirp tells no velocity.",
             Some(Ok(result)) if !result.knows_interval => {
@@ -192,22 +157,21 @@ fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         ui.weak(text);
         let tooltip = "The mean over the loops, which holds all that stands still";
         if input.result.is_some() {
-            let out = input.static_clutter_out;
+            let out = input.state.settings.static_clutter_out;
             tick(ui, out, "Static clutter out", tooltip, ViewCommand::TakeOutStaticClutter, asked);
         }
-    } else if input.radar.chirps < 2 {
+    } else if input.state.radar().chirps < 2 {
         ui.horizontal_wrapped(|ui| {
             ui.label("One chirp tells no velocity.");
-            if ui.button(format!("Send {FIRST_CHIRPS} chirps")).clicked() {
-                let chirp_interval_seconds = input.radar.chirp_interval_seconds.max(input.radar.chirp_seconds);
-                let radar = Radar { chirps: FIRST_CHIRPS, chirp_interval_seconds, ..input.radar.clone() };
-                asked.push(RadarCommand::Set(Box::new(radar)).into());
-            }
+            let mut radar = input.state.radar().clone();
+            radar.chirps = FIRST_CHIRPS;
+            radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
+            press(ui, format!("Send {FIRST_CHIRPS} chirps"), "", RadarCommand::Set(Box::new(radar)), asked);
         });
-    } else if !input.scene.is_moving() {
+    } else if !input.state.scene().is_moving() {
         ui.weak("Nothing moves: everything stands at 0 m/s. The Inspector sets velocities.");
     } else {
-        warning(ui, folded(input.radar, input.scene).as_deref());
+        warning(ui, folded(input.state.radar(), input.state.scene()).as_deref());
     }
 }
 
@@ -233,21 +197,21 @@ fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::Te
         chart.add(VLine::new("", edge).stroke(stroke).style(LineStyle::dashed_dense()));
     }
     let drawn = chart.show(ui, area.with_max_x(area.right() - axes::RIGHT + 12.0), Sense::hover());
-    if input.marks {
+    if input.state.settings.show_reflectors {
         marks(ui, input, &drawn, radar);
     }
-    let (low, high, title) = match input.normalisation {
+    let (low, high, title) = match input.state.settings.normalisation {
         Normalisation::DynamicRange(range) => (-range.0, 0.0, "dB"),
         Normalisation::MinMax => (0.0, 1.0, "Λ"),
     };
-    let bar = Bar::new(colour_table(input.colours), low, high, title);
+    let bar = Bar::new(colour_table(input.state.settings.colours), low, high, title);
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
     drawn.tell(|[velocity, range]| told(result, velocity, range));
 }
 
 /// Draws a ring at the predicted place of each object, dashed where its velocity folds.
 fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn, radar: &Radar) {
-    for (index, object) in input.scene.objects.iter().take(MARKS).enumerate() {
+    for (index, object) in input.state.scene().objects.iter().take(MARKS).enumerate() {
         let blob = DopplerBlob::of(radar, object);
         let at = drawn.at([blob.apparent_velocity_metres_per_second, blob.apparent_range_metres]);
         for (width, colour) in [(3.0, theme::MARK_EDGE), (1.4, theme::MARK)] {

@@ -2,21 +2,16 @@
 //! and calibration on the selected reflector.
 
 mod heard;
-mod input;
 mod list;
 mod strip;
 #[cfg(test)]
 mod tests;
 
-use self::input::Input;
 use self::strip::MOST_MILLIMETRES;
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::{CalibrationQuery, Jobs};
+use crate::app::jobs::{Calibrated, CalibrationQuery, Jobs};
 use crate::app::state::{Command, RadarCommand, State};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::scrolled;
+use crate::app::widgets::{NumberField, labelled, press, scrolled};
 use crate::radar::{BuiltArray, Decibels, ElementError, Tolerances};
 use eframe::egui::{Grid, Ui};
 use std::sync::Arc;
@@ -49,51 +44,49 @@ impl Content for ElementsPanel {
     }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let recording = cx.state.editor.document().recording();
-        let input = Input {
-            radar: cx.state.radar(),
-            elements: &cx.state.editor.scene().disturbances.elements,
-            layout: cx.state.settings.layout.as_ref(),
-            has_ends_alone: recording.is_some_and(|recording| recording.signal().is_none()),
-            calibration: cx.value,
-        };
-        show(ui, input, cx.memory)
+        show(ui, cx.state, cx.value, cx.memory)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ElementsMemory) -> Vec<Command> {
-    memory.chosen = memory.chosen.min(input.radar.elements - 1);
+/// Draws the panel with the calibration on the selected point, or the reason why there is none; `None` where no point is selected.
+pub fn show(
+    ui: &mut Ui,
+    state: &State,
+    calibrated: Option<Result<&Calibrated, &str>>,
+    memory: &mut ElementsMemory,
+) -> Vec<Command> {
+    memory.chosen = memory.chosen.min(state.radar().elements - 1);
     scrolled(ui, |ui, asked| {
-        summary(ui, &input, asked);
-        heard::show(ui, &input, &mut memory.heard, asked);
-        if let Some((n, error)) = strip::show(ui, &input, &mut memory.chosen) {
-            asked.push(with(&input, n, |e| *e = error));
+        summary(ui, state.elements(), asked);
+        heard::show(ui, state, &mut memory.heard, asked);
+        if let Some((n, error)) = strip::show(ui, state, &mut memory.chosen) {
+            asked.push(with(state, n, |e| *e = error));
         }
-        one(ui, &input, memory, asked);
+        one(ui, state, memory, asked);
         ui.separator();
-        draw_from_seed(ui, &input, memory, asked);
-        list::show(ui, input.radar, input.elements, &mut memory.list, asked);
+        draw_from_seed(ui, state, memory, asked);
+        list::show(ui, state.radar(), state.elements(), &mut memory.list, asked);
         ui.separator();
-        calibration(ui, &input, asked);
+        calibration(ui, calibrated, asked);
     })
 }
 
 /// The command for an array with element `n` changed.
-fn with(input: &Input<'_>, n: usize, change: impl FnOnce(&mut ElementError)) -> Command {
-    let mut elements = input.elements.elements.clone();
-    elements.resize(input.radar.elements, ElementError::default());
+fn with(state: &State, n: usize, change: impl FnOnce(&mut ElementError)) -> Command {
+    let mut elements = state.elements().elements.clone();
+    elements.resize(state.radar().elements, ElementError::default());
     change(&mut elements[n]);
     Command::Radar(RadarCommand::SetElements(Arc::new(BuiltArray { elements })))
 }
 
-fn summary(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
+fn summary(ui: &mut Ui, elements: &BuiltArray, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        if input.elements.is_ideal() {
+        if elements.is_ideal() {
             ui.weak("No element errors. Click an element to disable it.");
             return;
         }
-        let living = input.elements.elements.len() - input.elements.dead();
-        ui.label(told(input.elements)).on_hover_text(spread_tooltip(living));
+        let living = elements.elements.len() - elements.dead();
+        ui.label(told(elements)).on_hover_text(spread_tooltip(living));
         let tooltip = "Remove all element errors; undo brings them back";
         if ui.small_button("Ideal array").on_hover_text(tooltip).clicked() {
             asked.push(RadarCommand::SetElements(Arc::default()).into());
@@ -136,33 +129,33 @@ fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64
 }
 
 /// Draws the fields of the chosen element.
-fn one(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
+fn one(ui: &mut Ui, state: &State, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
     let n = memory.chosen;
-    let error = input.elements.element(n);
+    let error = state.elements().element(n);
     ui.horizontal_wrapped(|ui| {
-        let most = input.radar.elements - 1;
+        let most = state.radar().elements - 1;
         labelled(ui, "element", "", NumberField::new(&mut memory.chosen).range(0..=most).speed(0.2));
         let mut dead = error.dead;
         if ui.checkbox(&mut dead, "dead").changed() {
-            asked.push(with(input, n, |e| e.dead = dead));
+            asked.push(with(state, n, |e| e.dead = dead));
         }
         if let Some(db) = number(ui, "gain", " dB", error.gain.0, 60.0, 0.05) {
-            asked.push(with(input, n, |e| e.gain = Decibels(db)));
+            asked.push(with(state, n, |e| e.gain = Decibels(db)));
         }
         if let Some(degrees) = number(ui, "phase", "°", error.phase_degrees, 360.0, 0.5) {
-            asked.push(with(input, n, |e| e.phase_degrees = degrees));
+            asked.push(with(state, n, |e| e.phase_degrees = degrees));
         }
         if let Some(mm) = number(ui, "place", " mm", error.position_millimetres, MOST_MILLIMETRES, 0.01) {
-            asked.push(with(input, n, |e| e.position_millimetres = mm));
+            asked.push(with(state, n, |e| e.position_millimetres = mm));
         }
         if let Some(mm) = number(ui, "forward", " mm", error.forward_millimetres, MOST_MILLIMETRES, 0.01) {
-            asked.push(with(input, n, |e| e.forward_millimetres = mm));
+            asked.push(with(state, n, |e| e.forward_millimetres = mm));
         }
     });
 }
 
 /// Draws the fields of random errors for all elements, from a seed.
-fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
+fn draw_from_seed(ui: &mut Ui, state: &State, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let Tolerances { gain, phase_degrees, position_millimetres } = &mut memory.tolerances;
         for (name, value, unit, most) in [
@@ -176,21 +169,21 @@ fn draw_from_seed(ui: &mut Ui, input: &Input<'_>, memory: &mut ElementsMemory, a
         labelled(ui, "seed", "", NumberField::new(&mut memory.seed).speed(0.05));
         let tooltip = "Give every element an error of its own; the dead stay dead";
         if ui.button("Draw").on_hover_text(tooltip).clicked() {
-            let mut drawn = memory.tolerances.build(input.radar, memory.seed);
-            drawn.elements.iter_mut().enumerate().for_each(|(n, e)| e.dead = input.elements.element(n).dead);
+            let mut drawn = memory.tolerances.build(state.radar(), memory.seed);
+            drawn.elements.iter_mut().enumerate().for_each(|(n, e)| e.dead = state.elements().element(n).dead);
             asked.push(RadarCommand::SetElements(Arc::new(drawn)).into());
         }
     });
 }
 
-fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let found = match &input.calibration {
+fn calibration(ui: &mut Ui, calibrated: Option<Result<&Calibrated, &str>>, asked: &mut Vec<Command>) {
+    let found = match calibrated {
         None => {
             ui.weak("Select a point to calibrate the elements on its echo.");
             return;
         }
         Some(Err(reason)) => {
-            ui.weak(*reason);
+            ui.weak(reason);
             return;
         }
         Some(Ok(found)) => found,
@@ -210,11 +203,5 @@ fn calibration(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         }
     });
     let tooltip = "Divide every element's samples by what was found of it";
-    press(
-        ui,
-        "Calibrate on this reflector",
-        tooltip,
-        || RadarCommand::SetElements(Arc::new(found.left.clone())),
-        asked,
-    );
+    press(ui, "Calibrate on this reflector", tooltip, RadarCommand::SetElements(Arc::new(found.left.clone())), asked);
 }

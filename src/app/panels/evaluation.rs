@@ -3,8 +3,7 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Memo;
 use crate::app::state::{Command, FailureChoice, RowsCommand};
-use crate::app::widgets::padded::{scrolled_both, warning};
-use crate::app::widgets::progress::{bar, start_or_cancel};
+use crate::app::widgets::{bar, scrolled_both, start_or_cancel, warning};
 use crate::evaluate::eta_text;
 use crate::evaluate::rows::{Column, Row, Text};
 use crate::evaluate::tables::{Estimate, PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally};
@@ -65,14 +64,14 @@ impl Content for EvaluationPanel {
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, job) = (&*cx.state, &cx.jobs.failures);
-        let table = job.table();
+        let table = &job.table;
         let lines = &*cx.memory.of(table.version(), |_| lines(table.rows()));
         let input = Input {
             method: state.method().map(|m| m.name()),
             radar: if lines.is_empty() { state.radar() } else { &table.conditions().radar },
-            progress: job.progress(),
+            progress: job.run.progress(),
             lines,
-            note: job.note(),
+            note: job.run.note(),
         };
         show(ui, input)
     }
@@ -216,7 +215,7 @@ fn with_error(Estimate { mean, standard_error, median }: Estimate, scale: f64, d
 mod tests {
     use super::*;
     use crate::app::jobs::some_row;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use crate::radar::{Carrier, WindowFunction};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -229,8 +228,7 @@ mod tests {
             asked.extend(show(ui, input));
         };
         let mut evaluation = Harness::builder().with_size([700.0, 300.0]).build_ui_state(draw, Vec::new());
-        evaluation.get_by_label("Evaluate").click();
-        evaluation.step();
+        evaluation.clicks(&["Evaluate"]);
         let [Command::Rows(RowsCommand::Try(choice))] = evaluation.state().as_slice() else { panic!("one choice") };
         assert_eq!((choice.methods.as_slice(), choice.kinds.as_slice()), (&["capon"][..], &Kind::TEST_SETS[..]));
         let _told = evaluation.get_by_label_contains("With a two-way carrier");

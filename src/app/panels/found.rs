@@ -5,11 +5,8 @@ mod attempts;
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, MapKind, MethodSlot};
-use crate::app::widgets::direction::{CONVENTION, angle_degrees};
-use crate::app::widgets::numbers::{plain, signed};
-use crate::app::widgets::padded::padded;
-use crate::reconstruct::Attempt;
-use crate::reconstruct::Detection;
+use crate::app::widgets::{CONVENTION, angle_degrees, padded, plain, signed};
+use crate::reconstruct::{Attempt, Detection};
 use crate::scene::Object;
 use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
 
@@ -138,13 +135,19 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn panel(found: Option<Vec<Detection>>, refusal: Option<&'static str>, has_ranges: bool) -> Harness<'static> {
+    fn panel(found: Option<Vec<Detection>>, change: fn(Input<'_>) -> Input<'_>) -> Harness<'static> {
         let mut panel = Harness::builder().with_size([360.0, 300.0]).build_ui(move |ui| {
-            let (method, found) = (Some("iaa"), found.as_deref());
-            let (attempts, objects) = (&[], &[]);
-            let input = Input { draws_only: None, method, found, attempts, objects, refusal, stale: false, has_ranges };
-            let asked = show(ui, input);
-            assert!(asked.is_empty());
+            let input = Input {
+                draws_only: None,
+                method: Some("iaa"),
+                found: found.as_deref(),
+                attempts: &[],
+                objects: &[],
+                refusal: None,
+                stale: false,
+                has_ranges: true,
+            };
+            assert!(show(ui, change(input)).is_empty());
         });
         panel.run();
         panel
@@ -166,7 +169,7 @@ mod tests {
 
     #[test]
     fn angles_ranges_and_decibels_are_listed() {
-        let shown = panel(Some(two()), None, true);
+        let shown = panel(Some(two()), |input| input);
         let _told = [
             "iaa found 2 echoes, the strongest first",
             "+6.96°",
@@ -182,44 +185,21 @@ mod tests {
     }
 
     #[test]
-    fn a_snapshot_lists_no_range() {
-        let snapshot = panel(Some(two()), None, false);
+    fn what_is_not_listed_is_told() {
+        let many = (0..250).map(|i| detection(0.0, f64::from(i), -1.0)).collect();
+        type Case = (Option<Vec<Detection>>, fn(Input<'_>) -> Input<'_>, &'static str);
+        let cases: [Case; 4] = [
+            (Some(two()), |input| Input { draws_only: Some("live"), ..input }, "live draws a map"),
+            (Some(Vec::new()), |input| input, "iaa found nothing."),
+            (Some(many), |input| input, "and 50 weaker ones"),
+            (None, |input| Input { refusal: Some("needs 4 samples"), ..input }, "needs 4 samples"),
+        ];
+        for (found, change, told) in cases {
+            let panel = panel(found, change);
+            assert!(panel.query_by_label_contains(told).is_some(), "{told}");
+            assert!(panel.query_by_label("15.00 m").is_none() || told.contains("weaker"), "{told}");
+        }
+        let snapshot = panel(Some(two()), |input| Input { has_ranges: false, ..input });
         assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");
-    }
-
-    #[test]
-    fn a_method_that_only_draws_has_no_list() {
-        let panel = Harness::new_ui(|ui| {
-            let list = [detection(6.96, 15.0, 0.0)];
-            let input = Input {
-                draws_only: Some("live"),
-                method: Some("iaa"),
-                found: Some(&list),
-                attempts: &[],
-                objects: &[],
-                refusal: None,
-                stale: false,
-                has_ranges: true,
-            };
-            show(ui, input);
-        });
-        let _told = panel.get_by_label_contains("live draws a map");
-        assert!(panel.query_by_label("15.00 m").is_none());
-    }
-
-    #[test]
-    fn a_method_that_found_nothing_says_so() {
-        let _nothing = panel(Some(Vec::new()), None, true).get_by_label("iaa found nothing.");
-    }
-
-    #[test]
-    fn echoes_that_are_not_listed_are_counted() {
-        let many = panel(Some((0..250).map(|i| detection(0.0, f64::from(i), -1.0)).collect()), None, true);
-        let _more = many.get_by_label("and 50 weaker ones");
-    }
-
-    #[test]
-    fn a_refusal_is_told() {
-        let _refused = panel(None, Some("needs at least 4 samples"), true).get_by_label("needs at least 4 samples");
     }
 }

@@ -4,106 +4,86 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{
     Command, DocumentCommand, MapKind, Panel, Projection, RadarCommand, ViewCommand, WindowCommand,
 };
-use crate::app::widgets::inline::inline;
-use crate::app::widgets::padded::padded;
+use crate::app::widgets::{inline, padded};
 use crate::maps::Normalisation;
 use crate::radar::{Carrier, Decibels, WindowFunction};
 use crate::scene::presets;
 use crate::signal::Floor;
-use eframe::egui;
-use eframe::egui::{ScrollArea, Ui};
+use eframe::egui::{self, ScrollArea, Ui};
 
 /// The text: chapters that begin with a heading, in the order of [`CHAPTERS`].
 const TEXT: &str = include_str!("../../../assets/guide.md");
 
 /// A button: its label and its commands.
-struct Step {
-    label: &'static str,
-    commands: fn() -> Vec<Command>,
-}
+type Step = (&'static str, fn() -> Vec<Command>);
 
 /// The buttons below each chapter of the text.
 const CHAPTERS: &[&[Step]] = &[
-    &[Step { label: "Open the street", commands: || scene("street", thesis()) }],
+    &[("Open the street", || scene("street", thesis()))],
     &[
-        Step { label: "One reflector at 20 m", commands: || scene("one-at-20-m", thesis()) },
-        Step { label: "A tenth of a radian off", commands: || scene("one-at-20-m-a-tenth-of-a-radian-off", thesis()) },
+        ("One reflector at 20 m", || scene("one-at-20-m", thesis())),
+        ("A tenth of a radian off", || scene("one-at-20-m-a-tenth-of-a-radian-off", thesis())),
     ],
-    &[Step { label: "Rings around four blobs", commands: || scene("four-reflectors", rings(thesis())) }],
+    &[("Rings around four blobs", || scene("four-reflectors", rings(thesis())))],
     &[
-        Step { label: "Four reflectors, Hann", commands: || scene("four-reflectors", window(WindowFunction::Hann)) },
-        Step { label: "No window", commands: || scene("four-reflectors", window(WindowFunction::Rectangular)) },
-        Step { label: "Hamming", commands: || scene("four-reflectors", window(WindowFunction::Hamming)) },
-    ],
-    &[
-        Step { label: "Points by a line", commands: || scene("points-by-a-line", thesis()) },
-        Step { label: "A point behind a line", commands: || scene("point-behind-a-line", thesis()) },
+        ("Four reflectors, Hann", || scene("four-reflectors", window(WindowFunction::Hann))),
+        ("No window", || scene("four-reflectors", window(WindowFunction::Rectangular))),
+        ("Hamming", || scene("four-reflectors", window(WindowFunction::Hamming))),
     ],
     &[
-        Step { label: "Two points, two bins apart", commands: || scene("two-close-in-range", thesis()) },
-        Step { label: "Show the bounds", commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Bounds))] },
+        ("Points by a line", || scene("points-by-a-line", thesis())),
+        ("A point behind a line", || scene("point-behind-a-line", thesis())),
     ],
     &[
-        Step {
-            label: "One-way",
-            commands: || scene("four-reflectors", vec![Command::Radar(RadarCommand::SetCarrier(Carrier::OneWay))]),
-        },
-        Step {
-            label: "Two-way",
-            commands: || scene("four-reflectors", vec![Command::Radar(RadarCommand::SetCarrier(Carrier::TwoWay))]),
-        },
+        ("Two points, two bins apart", || scene("two-close-in-range", thesis())),
+        ("Show the bounds", || open(Panel::Bounds)),
     ],
     &[
-        Step { label: "Beyond the range", commands: || scene("beyond-the-range", thesis()) },
-        Step {
-            label: "The same, Cartesian",
-            commands: || {
-                scene("beyond-the-range", vec![Command::View(ViewCommand::SetProjection(Projection::Cartesian))])
-            },
-        },
+        ("One-way", || scene("four-reflectors", vec![RadarCommand::SetCarrier(Carrier::OneWay).into()])),
+        ("Two-way", || scene("four-reflectors", vec![RadarCommand::SetCarrier(Carrier::TwoWay).into()])),
     ],
     &[
-        Step { label: "Thesis floor", commands: || floor(Floor::Thesis, Normalisation::MinMax) },
-        Step { label: "No floor", commands: || floor(Floor::Exact, Normalisation::MinMax) },
-        Step {
-            label: "100 dB below the peak",
-            commands: || floor(Floor::Exact, Normalisation::DynamicRange(Decibels(100.0))),
-        },
-        Step { label: "SNR 20 dB", commands: || floor(Floor::Snr(Decibels(20.0)), Normalisation::MinMax) },
+        ("Beyond the range", || scene("beyond-the-range", thesis())),
+        ("The same, Cartesian", || {
+            scene("beyond-the-range", vec![ViewCommand::SetProjection(Projection::Cartesian).into()])
+        }),
     ],
     &[
-        Step {
-            label: "Difference",
-            commands: || {
-                scene("test-set-3", vec![Command::Window(WindowCommand::OpenPanel(Panel::Map(MapKind::Difference)))])
-            },
-        },
-        Step { label: "ROC", commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Roc))] },
-        Step { label: "Tables", commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Evaluation))] },
+        ("Thesis floor", || floor(Floor::Thesis, Normalisation::MinMax)),
+        ("No floor", || floor(Floor::Exact, Normalisation::MinMax)),
+        ("100 dB below the peak", || floor(Floor::Exact, Normalisation::DynamicRange(Decibels(100.0)))),
+        ("SNR 20 dB", || floor(Floor::Snr(Decibels(20.0)), Normalisation::MinMax)),
     ],
     &[
-        Step { label: "The failing U-Net", commands: || output_by("unet") },
-        Step { label: "The thesis' network", commands: || output_by("thesis") },
-        Step { label: "The live network", commands: || output_by("live") },
-        Step { label: "A search for reflectors", commands: || output_by("hybrid") },
+        ("Difference", || scene("test-set-3", open(Panel::Map(MapKind::Difference)))),
+        ("ROC", || open(Panel::Roc)),
+        ("Tables", || open(Panel::Evaluation)),
     ],
     &[
-        Step { label: "Failures", commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Failures))] },
-        Step { label: "live: missed", commands: || failure("live-missed", "live") },
-        Step { label: "live: merged", commands: || failure("live-merged", "live") },
-        Step { label: "live: ghost", commands: || failure("live-ghost", "live") },
-        Step { label: "live: wrong tooth", commands: || failure("live-wrong-tooth", "live") },
-        Step { label: "hybrid: merged", commands: || failure("hybrid-merged", "hybrid") },
-        Step { label: "thesis: missed", commands: || failure("thesis-missed", "thesis") },
-        Step { label: "thesis: merged", commands: || failure("thesis-merged", "thesis") },
-        Step { label: "thesis: ghost", commands: || failure("thesis-ghost", "thesis") },
-        Step { label: "thesis: wrong tooth", commands: || failure("thesis-wrong-tooth", "thesis") },
-        Step {
-            label: "Compare two methods",
-            commands: || vec![Command::Window(WindowCommand::OpenPanel(Panel::Compare))],
-        },
+        ("The failing U-Net", || output_by("unet")),
+        ("The thesis' network", || output_by("thesis")),
+        ("The live network", || output_by("live")),
+        ("A search for reflectors", || output_by("hybrid")),
+    ],
+    &[
+        ("Failures", || open(Panel::Failures)),
+        ("live: missed", || failure("live-missed", "live")),
+        ("live: merged", || failure("live-merged", "live")),
+        ("live: ghost", || failure("live-ghost", "live")),
+        ("live: wrong tooth", || failure("live-wrong-tooth", "live")),
+        ("hybrid: merged", || failure("hybrid-merged", "hybrid")),
+        ("thesis: missed", || failure("thesis-missed", "thesis")),
+        ("thesis: merged", || failure("thesis-merged", "thesis")),
+        ("thesis: ghost", || failure("thesis-ghost", "thesis")),
+        ("thesis: wrong tooth", || failure("thesis-wrong-tooth", "thesis")),
+        ("Compare two methods", || open(Panel::Compare)),
     ],
 ];
+
+/// The command that opens a panel.
+fn open(panel: Panel) -> Vec<Command> {
+    vec![WindowCommand::OpenPanel(panel).into()]
+}
 
 /// Commands that open a preset, followed by `then`.
 fn scene(id: &str, then: Vec<Command>) -> Vec<Command> {
@@ -124,10 +104,7 @@ fn failure(which: &str, method: &'static str) -> Vec<Command> {
 
 /// Commands that choose a method and open its map.
 fn output_by(method: &'static str) -> Vec<Command> {
-    vec![
-        Command::Window(WindowCommand::OpenPanel(Panel::Map(MapKind::Output))),
-        Command::View(ViewCommand::Method(method)),
-    ]
+    [open(Panel::Map(MapKind::Output)), vec![ViewCommand::Method(method).into()]].concat()
 }
 
 /// Commands that set the thesis' conventions.
@@ -207,10 +184,10 @@ pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
             ui.heading(heading(chapter));
             ui.label(inline(ui, chapter.split_once('\n').map_or("", |(_, text)| text), 1.0));
             ui.horizontal_wrapped(|ui| {
-                for step in *steps {
-                    let button = ui.button(step.label);
+                for (label, commands) in *steps {
+                    let button = ui.button(*label);
                     if button.on_hover_text("Set it up; undo brings your scene and your settings back").clicked() {
-                        asked.push(Command::Guided((step.commands)()));
+                        asked.push(Command::Guided(commands()));
                     }
                 }
             });
@@ -290,23 +267,17 @@ mod tests {
     }
 
     #[test]
-    fn every_chapter_has_its_buttons() {
+    fn every_chapter_has_buttons_that_open_something_first() {
         assert_eq!(chapters().count(), CHAPTERS.len());
         for (chapter, steps) in chapters().zip(CHAPTERS) {
             assert!(chapter.lines().count() > 1 && !steps.is_empty(), "{chapter}");
-        }
-    }
-
-    #[test]
-    fn every_button_opens_something_first() {
-        for step in CHAPTERS.iter().copied().flatten() {
-            let commands = (step.commands)();
-            assert!(!commands.is_empty(), "{}", step.label);
-            let opens = matches!(
-                commands[0],
-                Command::Document(DocumentCommand::Preset(_)) | Command::Window(WindowCommand::OpenPanel(_))
-            );
-            assert!(opens, "{}: a preset of that name", step.label);
+            for (label, commands) in *steps {
+                use Command::{Document, Window};
+                let first = commands().into_iter().next();
+                let opens =
+                    matches!(first, Some(Document(DocumentCommand::Preset(_)) | Window(WindowCommand::OpenPanel(_))));
+                assert!(opens, "{label}: a preset of that name");
+            }
         }
     }
 }

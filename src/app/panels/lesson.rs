@@ -7,29 +7,14 @@ mod list;
 mod memory;
 
 use crate::app::content::{Content, Cx, Nothing};
-use crate::app::state::{Command, LessonCommand, LessonRun};
-use crate::app::widgets::entry::{button, press};
-use crate::app::widgets::inline::inline;
-use crate::lesson::Progress;
+use crate::app::state::{Command, LessonCommand, LessonRun, State};
+use crate::app::widgets::{button, inline, press};
 use answer::{answer, answered, judgement};
 use challenge::requirements;
-use eframe::egui;
-use eframe::egui::{ScrollArea, TextureId, TextureOptions, Ui};
+use eframe::egui::{self, ScrollArea, TextureId, TextureOptions, Ui};
 use large::{LARGE_TEXT_RATIO, large};
 use list::list;
 pub use memory::LessonMemory;
-
-/// The lesson, the learner's progress and the map to reproduce.
-pub struct Input<'a> {
-    /// The running lesson; `None` for the list of lessons.
-    pub run: Option<&'a LessonRun>,
-    /// The learner's progress in all lessons.
-    pub progress: &'a Progress,
-    /// Texture of the map to reproduce, where a challenge hides its scene.
-    pub hidden: Option<TextureId>,
-    /// Whether the lesson has the whole screen.
-    pub presenting: bool,
-}
 
 pub struct LessonPanel;
 
@@ -40,33 +25,29 @@ impl Content for LessonPanel {
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let hidden = cx.jobs.lessons.hidden();
         let texture = hidden.map(|image| cx.memory.hidden.of(ui.ctx(), "hidden", image, TextureOptions::NEAREST));
-        let input = Input {
-            run: cx.state.lesson.as_ref(),
-            progress: &cx.state.progress,
-            hidden: texture,
-            presenting: cx.state.is_presenting(),
-        };
-        show(ui, input, cx.memory)
+        show(ui, cx.state, texture, cx.memory)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut LessonMemory) -> Vec<Command> {
+/// Draws the lesson, or the list of lessons; `hidden` is the map to reproduce, where a challenge hides its scene.
+pub fn show(ui: &mut Ui, state: &State, hidden: Option<TextureId>, memory: &mut LessonMemory) -> Vec<Command> {
     let mut asked = Vec::new();
-    if input.presenting {
+    let (lesson, presenting) = (state.lesson.as_ref(), state.is_presenting());
+    if presenting {
         // Larger text for the last row of a lecture hall, as far as there is room.
         let times = (ui.available_height() / PROJECTED_HEIGHT).clamp(1.0, 1.4);
         ui.style_mut().text_styles.values_mut().for_each(|font| font.size *= times);
     }
-    let begins = match input.run {
+    let begins = match lesson {
         Some(run) => memory.begin(run),
         None => false,
     };
-    if let Some(run) = input.run {
+    if let Some(run) = lesson {
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 6));
-        egui::Panel::bottom("steps").frame(frame).show(ui, |ui| steps(ui, run, input.presenting, &mut asked));
+        egui::Panel::bottom("steps").frame(frame).show(ui, |ui| steps(ui, run, presenting, &mut asked));
     }
-    let is_pinned = memory.overflows && input.run.is_some_and(LessonRun::is_predicting);
-    if let Some(run) = input.run.filter(|_| is_pinned) {
+    let is_pinned = memory.overflows && lesson.is_some_and(LessonRun::is_predicting);
+    if let Some(run) = lesson.filter(|_| is_pinned) {
         pinned_question(ui, run, memory, &mut asked);
     }
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
@@ -75,17 +56,17 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut LessonMemory) -> Vec<Com
             scroll = scroll.vertical_scroll_offset(0.0);
         }
         let drawn = scroll.show(ui, |ui| {
-            ui.set_max_width(ui.available_width().min(if input.presenting { 900.0 } else { 620.0 }));
-            match input.run {
+            ui.set_max_width(ui.available_width().min(if presenting { 900.0 } else { 620.0 }));
+            match lesson {
                 None => {
-                    whole_screen(ui, input.presenting, &mut asked);
-                    list(ui, input.progress, memory, &mut asked);
+                    whole_screen(ui, presenting, &mut asked);
+                    list(ui, &state.progress, memory, &mut asked);
                 }
-                Some(run) => step(ui, run, &input, is_pinned, memory, &mut asked),
+                Some(run) => step(ui, run, hidden, is_pinned, memory, &mut asked),
             }
         });
         let overflows = drawn.content_size.y > drawn.inner_rect.height() + 1.0;
-        if input.run.is_some() && overflows != memory.overflows && !is_pinned {
+        if lesson.is_some() && overflows != memory.overflows && !is_pinned {
             memory.overflows = overflows;
             ui.ctx().request_discard("the question is kept in view");
         }
@@ -118,7 +99,7 @@ const PROJECTED_HEIGHT: f32 = 380.0;
 fn step(
     ui: &mut Ui,
     run: &LessonRun,
-    input: &Input<'_>,
+    hidden: Option<TextureId>,
     is_pinned: bool,
     memory: &mut LessonMemory,
     asked: &mut Vec<Command>,
@@ -146,7 +127,7 @@ fn step(
     }
     if let Some(challenge) = step.challenge.as_ref().filter(|_| !run.is_predicting()) {
         ui.add_space(8.0);
-        requirements(ui, run, challenge, input.hidden, asked);
+        requirements(ui, run, challenge, hidden, asked);
     }
 }
 
@@ -157,11 +138,11 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
             asked.push(LessonCommand::Step(run.step - 1).into());
         }
         let is_last = run.step + 1 == run.lesson.steps.len();
-        if !is_last && ui.button("Next").clicked() {
-            asked.push(LessonCommand::Step(run.step + 1).into());
+        if !is_last {
+            press(ui, "Next", "", LessonCommand::Step(run.step + 1), asked);
         }
         let leave = if is_last { "Finish" } else { "Exit lesson" };
-        press(ui, leave, "Your scene, settings, panels and zoom come back", || LessonCommand::Leave, asked);
+        press(ui, leave, "Your scene, settings, panels and zoom come back", LessonCommand::Leave, asked);
         // In a presentation the button is in the bar at the top.
         if !presenting {
             whole_screen(ui, presenting, asked);

@@ -1,23 +1,13 @@
 //! The objects panel: a list of the scene's objects, with place and reflectivity. A click selects an object.
 
 use crate::app::content::{Content, Cx, Nothing};
-use crate::app::state::{Command, EditCommand};
-use crate::app::widgets::axes;
-use crate::app::widgets::list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
-use crate::interact::{Coordinates, Field, Selection, SelectionMode};
-use crate::scene::{Object, Scene};
-use eframe::egui;
+use crate::app::state::{Command, EditCommand, State};
+use crate::app::widgets::{Window, axes, bring_in_sight, colour_behind, focus_after_click};
+use crate::interact::{Coordinates, Field, SelectionMode};
+use crate::scene::Object;
 use eframe::egui::{
-    Align2, EventFilter, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
+    self, Align2, EventFilter, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
 };
-
-/// The scene, its selection, and the coordinates of places.
-pub struct Input<'a> {
-    pub scene: &'a Scene,
-    pub selection: &'a Selection,
-    /// Coordinates in which places are shown.
-    pub coordinates: Coordinates,
-}
 
 /// State of the list, kept between frames.
 #[derive(Default)]
@@ -37,15 +27,13 @@ impl Content for ObjectsPanel {
     type Remembers = ObjectsMemory;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (editor, coordinates) = (&cx.state.editor, cx.state.settings.coordinates);
-        let input = Input { scene: editor.scene(), selection: editor.selection(), coordinates };
-        show(ui, input, cx.memory)
+        show(ui, cx.state, cx.memory)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ObjectsMemory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
-    if input.scene.objects.is_empty() {
+    if state.editor.scene().objects.is_empty() {
         egui::Frame::NONE.inner_margin(egui::Margin::symmetric(10, 8)).show(ui, |ui| ui.weak("The scene is empty."));
         return asked;
     }
@@ -58,19 +46,19 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ObjectsMemory) -> Vec<Co
         list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Objects"));
         focus_after_click(&list, &mut memory.was_clicked);
         if list.has_focus() {
-            asked.extend(keys(ui, &list, &input));
+            asked.extend(keys(ui, &list, state));
         }
-        heading(ui, input.coordinates);
-        rows(ui, &input, memory, &mut asked);
+        heading(ui, state.settings.coordinates);
+        rows(ui, state, memory, &mut asked);
     });
     asked
 }
 
 /// Handles the arrow keys: an arrow selects the next object, with Shift the objects between, too.
-fn keys(ui: &Ui, list: &Response, input: &Input<'_>) -> Option<Command> {
+fn keys(ui: &Ui, list: &Response, state: &State) -> Option<Command> {
     let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|m| m.set_focus_lock_filter(list.id, filter));
-    let last = input.scene.objects.len() - 1;
+    let last = state.editor.scene().objects.len() - 1;
     ui.input_mut(|i| {
         let mut asked = None;
         for (modifiers, mode) in [(Modifiers::SHIFT, SelectionMode::Range), (Modifiers::NONE, SelectionMode::Replace)] {
@@ -79,7 +67,7 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>) -> Option<Command> {
             if down == up {
                 continue;
             }
-            let to = match input.selection.latest() {
+            let to = match state.editor.selection().latest() {
                 Some(from) => (from + down).saturating_sub(up).min(last),
                 None => {
                     if down > up {
@@ -128,9 +116,9 @@ fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
     }
 }
 
-fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut ObjectsMemory, asked: &mut Vec<Command>) {
+fn rows(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory, asked: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
-    let latest = input.selection.latest();
+    let latest = state.editor.selection().latest();
     let mut area = ScrollArea::vertical().auto_shrink([false, false]);
     if latest != memory.latest
         && let Some(row) = latest
@@ -141,10 +129,10 @@ fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut ObjectsMemory, asked: &mut 
         }
     }
     memory.latest = latest;
-    let output = area.show_rows(ui, ROW_HEIGHT, input.scene.objects.len(), |ui, range| {
+    let output = area.show_rows(ui, ROW_HEIGHT, state.editor.scene().objects.len(), |ui, range| {
         for index in range {
-            let Some(object) = input.scene.objects.get(index) else { break };
-            if let Some(mode) = row(ui, input, index, object) {
+            let Some(object) = state.editor.scene().objects.get(index) else { break };
+            if let Some(mode) = row(ui, state, index, object) {
                 memory.was_clicked = true;
                 asked.push(EditCommand::Select(vec![index], mode).into());
             }
@@ -159,9 +147,9 @@ fn list_window(ui: &Ui) -> egui::Id {
 }
 
 /// Draws a row. Returns the mode of selection, if it was clicked.
-fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<SelectionMode> {
+fn row(ui: &mut Ui, state: &State, index: usize, object: &Object) -> Option<SelectionMode> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::CLICK);
-    let selected = input.selection.contains(index);
+    let selected = state.editor.selection().contains(index);
     let name = object.called(index);
     response.widget_info(|| {
         egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, selected, format!("{name} in the list"))
@@ -174,7 +162,7 @@ fn row(ui: &mut Ui, input: &Input<'_>, index: usize, object: &Object) -> Option<
         let digits = if field == Field::AngleDegrees { 0.1 } else { 0.01 };
         field.get(object).map(|v| axes::tick_text(v, digits)).unwrap_or_default()
     };
-    let [x, y] = place_fields(input.coordinates).map(place);
+    let [x, y] = place_fields(state.settings.coordinates).map(place);
     let many = match object.reflector_count() {
         0 | 1 => name,
         n => format!("{name} (×{n})"),
@@ -194,26 +182,25 @@ fn mode_of(modifiers: Modifiers) -> SelectionMode {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
+    use crate::interact::Selection;
+    use crate::radar::Radar;
+    use crate::scene::Scene;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    struct Held {
-        scene: Scene,
-        selection: Selection,
-        memory: ObjectsMemory,
-    }
+    type Held = (State, ObjectsMemory);
 
     fn panel(points: usize) -> Harness<'static, Held> {
-        let draw = |ui: &mut Ui, held: &mut Held| {
-            let input = Input { scene: &held.scene, selection: &held.selection, coordinates: Coordinates::Cartesian };
-            for command in show(ui, input, &mut held.memory) {
+        let draw = |ui: &mut Ui, (state, memory): &mut Held| {
+            for command in show(ui, state, memory) {
                 let Command::Edit(EditCommand::Select(objects, mode)) = command else { panic!("{command:?}") };
-                held.selection.pick(objects, mode);
+                state.editor.select(objects, mode);
             }
         };
-        let scene = Scene::of_points((0..points).map(|i| (i as f64, 5.0)));
-        let held = Held { scene, selection: Selection::default(), memory: ObjectsMemory::default() };
-        let mut list = Harness::builder().with_size([300.0, 200.0]).build_ui_state(draw, held);
+        let state = State::of(Radar::default(), Scene::of_points((0..points).map(|i| (i as f64, 5.0))));
+        let mut list =
+            Harness::builder().with_size([300.0, 200.0]).build_ui_state(draw, (state, ObjectsMemory::default()));
         list.step();
         list
     }
@@ -227,34 +214,32 @@ mod tests {
     fn clicks_select_one_several_and_a_range() {
         let mut list = panel(6);
         click(&mut list, "point 2 in the list", Modifiers::NONE);
-        assert_eq!(list.state().selection, Selection::of([1]));
+        assert_eq!(*list.state().0.editor.selection(), Selection::of([1]));
         click(&mut list, "point 4 in the list", Modifiers::COMMAND);
-        assert_eq!(list.state().selection, Selection::of([1, 3]));
+        assert_eq!(*list.state().0.editor.selection(), Selection::of([1, 3]));
         click(&mut list, "point 6 in the list", Modifiers::SHIFT);
-        assert_eq!(list.state().selection, Selection::of([3, 4, 5]));
+        assert_eq!(*list.state().0.editor.selection(), Selection::of([3, 4, 5]));
         click(&mut list, "point 1 in the list", Modifiers::NONE);
-        assert_eq!(list.state().selection, Selection::of([0]));
+        assert_eq!(*list.state().0.editor.selection(), Selection::of([0]));
     }
 
     #[test]
     fn arrow_keys_move_the_selection() {
         let mut list = panel(6);
         click(&mut list, "point 2 in the list", Modifiers::NONE);
-        list.key_press(Key::ArrowDown);
-        list.run();
+        list.presses(&[Key::ArrowDown]);
         list.key_press_modifiers(Modifiers::SHIFT, Key::ArrowDown);
         list.run();
-        assert_eq!(list.state().selection, Selection::of([2, 3]));
-        list.key_press(Key::ArrowUp);
-        list.run();
-        assert_eq!(list.state().selection, Selection::of([2]));
+        assert_eq!(*list.state().0.editor.selection(), Selection::of([2, 3]));
+        list.presses(&[Key::ArrowUp]);
+        assert_eq!(*list.state().0.editor.selection(), Selection::of([2]));
     }
 
     #[test]
     fn the_list_scrolls_to_the_selection() {
         let mut list = panel(1000);
         assert!(list.query_by_label("point 700 in the list").is_none(), "only rows in sight are drawn");
-        list.state_mut().selection.pick([699], SelectionMode::Replace);
+        list.state_mut().0.editor.select([699], SelectionMode::Replace);
         list.run();
         let _in_sight = list.get_by_label("point 700 in the list");
     }

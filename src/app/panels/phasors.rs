@@ -1,17 +1,10 @@
 //! The phasors panel: the contribution of every element to the cell under the cursor, added head to tail in the complex plane.
 
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::PhasorsResult;
-use crate::app::jobs::{Jobs, PhasorsQuery};
+use crate::app::jobs::{Jobs, PhasorsQuery, PhasorsResult};
 use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
-use crate::app::widgets::axes::Axis;
-use crate::app::widgets::chart::{Chart, Drawn};
-use crate::app::widgets::direction::direction;
-use crate::app::widgets::labelled::labelled;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::numbers::plain;
-use crate::app::widgets::padded::{computed, padded};
-use crate::app::widgets::theme::{self, Inks};
+use crate::app::widgets::{Axis, Chart, Drawn, Inks, computed, direction, labelled, padded, plain, theme};
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
 use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, emath::Rot2};
@@ -23,19 +16,6 @@ const PLAY_SECONDS: f32 = 4.0;
 
 /// Length of the arrow's head, points.
 const HEAD: f32 = 12.0;
-
-/// The chains and the settings that the panel draws.
-pub struct Input<'a> {
-    pub radar: &'a Radar,
-    /// The chosen map, window and chains.
-    pub settings: PhasorSettings,
-    /// Whether the chosen method lists reflectors, which the residual chain needs.
-    pub finds_reflectors: bool,
-    /// Whether a recording takes the place of the scene's echoes.
-    pub is_recorded: bool,
-    /// The chains, or the reason why there are none; `None` before the first result.
-    pub result: Option<Result<&'a PhasorsResult, &'a str>>,
-}
 
 /// Progress of playing the chain.
 #[derive(Default)]
@@ -57,33 +37,31 @@ impl Content for PhasorsPanel {
     }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let state = &*cx.state;
-        let input = Input {
-            radar: state.radar(),
-            settings: state.settings.phasors,
-            finds_reflectors: state.finds_reflectors(),
-            is_recorded: state.editor.document().recording().is_some(),
-            result: cx.value,
-        };
-        show(ui, input, cx.memory)
+        show(ui, cx.state, cx.value, cx.memory)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut PhasorsMemory) -> Vec<Command> {
+/// Draws the panel with the chains, or with the reason why there are none; `None` before the first.
+pub fn show(
+    ui: &mut Ui,
+    state: &State,
+    result: Option<Result<&PhasorsResult, &str>>,
+    memory: &mut PhasorsMemory,
+) -> Vec<Command> {
     padded(ui, |ui, asked| {
-        let mut settings = input.settings;
-        choices(ui, &input, &mut settings);
-        if settings != input.settings {
+        let mut settings = state.settings.phasors;
+        choices(ui, state, &mut settings);
+        if settings != state.settings.phasors {
             asked.push(ViewCommand::SetPhasors(settings).into());
         }
-        let Some(result) = computed(ui, input.result) else { return };
+        let Some(result) = computed(ui, result) else { return };
         play(ui, result, memory);
-        said(ui, input.radar, result);
-        chart(ui, input.radar, result, memory.part.unwrap_or(1.0));
+        said(ui, state.radar(), result);
+        chart(ui, state.radar(), result, memory.part.unwrap_or(1.0));
     })
 }
 
-fn choices(ui: &mut Ui, input: &Input<'_>, settings: &mut PhasorSettings) {
+fn choices(ui: &mut Ui, state: &State, settings: &mut PhasorSettings) {
     ui.horizontal_wrapped(|ui| {
         for map in PhasorMap::ALL {
             ui.selectable_value(&mut settings.map, map, map.name()).on_hover_text("The map whose cell is taken apart");
@@ -96,11 +74,11 @@ fn choices(ui: &mut Ui, input: &Input<'_>, settings: &mut PhasorSettings) {
             "Also draw the chain without the curvature of the wave from this place: a near reflector's chain becomes straight.",
         );
         let echoes = egui::Checkbox::new(&mut settings.echoes, "Echoes alone");
-        ui.add_enabled(!input.is_recorded, echoes)
+        ui.add_enabled(!state.is_recorded(), echoes)
             .on_hover_text("Also draw the chain of the scene's echoes without noise")
             .on_disabled_hover_text("A recording is echoes and noise together.");
         let residual = egui::Checkbox::new(&mut settings.residual, "Residual");
-        ui.add_enabled(input.finds_reflectors, residual)
+        ui.add_enabled(state.finds_reflectors(), residual)
             .on_hover_text("Also draw the chain of what the method's reflectors leave")
             .on_disabled_hover_text("The chosen method draws a map and names no reflectors.");
     });
@@ -273,6 +251,8 @@ fn arrow(drawn: &Drawn, end: [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
+    use crate::scene::Scene;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -288,33 +268,26 @@ mod tests {
     }
 
     fn panel(result: Option<Result<PhasorsResult, &'static str>>) -> Harness<'static, (PhasorsMemory, Vec<Command>)> {
-        let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+        let state = State::of(Radar { elements: 64, samples: 32, ..Radar::default() }, Scene::default());
         let draw = move |ui: &mut Ui, (memory, asked): &mut (PhasorsMemory, Vec<Command>)| {
-            let input = Input {
-                radar: &radar,
-                settings: PhasorSettings::default(),
-                finds_reflectors: false,
-                is_recorded: false,
-                result: result.as_ref().map(|r| r.as_ref().map_err(|e| *e)),
-            };
-            asked.extend(show(ui, input, memory));
+            asked.extend(show(ui, &state, result.as_ref().map(|r| r.as_ref().map_err(|e| *e)), memory));
         };
         Harness::builder().with_size([420.0, 360.0]).build_ui_state(draw, (PhasorsMemory::default(), Vec::new()))
     }
 
     #[test]
-    fn the_cell_is_told_in_numbers() {
+    fn the_cell_is_told_in_numbers_or_an_error_is_said() {
         let panel = panel(Some(Ok(result())));
         // 1 + j - 1 = j: a third of the length of three contributions.
         let _told = panel.get_by_label_contains("amplitude 1.000e0, phase 90°; 33.3 %");
         let _chart = panel.get_by_label("Phasors in the complex plane");
+        let _said = self::panel(Some(Err("The two ends alone."))).get_by_label("The two ends alone.");
     }
 
     #[test]
     fn a_choice_asks_for_another_map() {
         let mut panel = panel(Some(Ok(result())));
-        panel.get_by_label("Input 1").click();
-        panel.run_steps(2);
+        panel.clicks(&["Input 1"]);
         let wanted = PhasorSettings { map: PhasorMap::Input1, ..PhasorSettings::default() };
         assert_eq!(panel.state().1.first(), Some(&ViewCommand::SetPhasors(wanted).into()));
     }
@@ -322,18 +295,10 @@ mod tests {
     #[test]
     fn play_adds_one_element_after_the_other() {
         let mut panel = panel(Some(Ok(result())));
-        panel.get_by_label("Play").click();
-        panel.run_steps(3);
+        panel.clicks(&["Play"]);
         let part = panel.state().0.part.unwrap();
         assert!(part > 0.0 && part < 1.0, "{part}");
-        panel.get_by_label("Pause").click();
-        panel.run_steps(2);
+        panel.clicks(&["Pause"]);
         assert!(!panel.state().0.is_playing);
-    }
-
-    #[test]
-    fn an_error_is_said() {
-        let panel = panel(Some(Err("The recording has the two ends alone.")));
-        let _said = panel.get_by_label("The recording has the two ends alone.");
     }
 }

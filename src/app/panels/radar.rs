@@ -7,26 +7,14 @@ mod strip;
 mod table;
 
 use crate::app::content::{Content, Cx, Nothing};
-use crate::app::state::{Command, RadarCommand};
-use crate::app::widgets::labelled::{Quantity, labelled};
-use crate::app::widgets::padded::scrolled_both;
+use crate::app::state::{Command, RadarCommand, State};
+use crate::app::widgets::{Quantity, labelled, scrolled_both};
 use crate::lesson::Step;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
-pub use budget::Selected;
+use budget::Selected;
 use eframe::egui::{ComboBox, Grid, Label, RichText, Ui};
 use table::{GAP, Table, number};
-
-/// The radar, its recording and the selected object.
-pub struct Input<'a> {
-    pub radar: &'a Radar,
-    /// The recording made with the radar, if there is one; its constants are fixed.
-    pub measured: Option<Measured>,
-    /// The selected object, where it is a single one and made of points.
-    pub selected: Option<Selected>,
-    /// Name of the constant or the group that is to be brought into sight.
-    pub sought: Option<&'static str>,
-}
 
 /// Record of the challenge whose constant was scrolled into sight.
 #[derive(Default)]
@@ -66,20 +54,11 @@ impl Content for RadarPanel {
     const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let editor = &cx.state.editor;
-        let measured = editor.document().recording().map(|r| Measured { by_all_elements: r.signal().is_some() });
-        let selected = editor.selection().single().and_then(|index| {
-            let object = editor.scene().objects.get(index).filter(|o| o.body().is_none())?;
-            let name = object.called(index);
-            let of_many = if object.reflector_count() == 1 { name } else { format!("a reflector of {name}") };
-            let (place_metres, reflectivity) = (object.centre_metres(), object.reflectivity());
-            Some(Selected { name: of_many, place_metres, reflectivity })
-        });
         let run = cx.state.lesson.as_ref().filter(|run| !run.is_predicting());
         let step = run.map(|run| (run.id.clone(), run.step));
         let is_new = std::mem::replace(&mut cx.memory.step, step.clone()) != step;
         let sought = run.filter(|_| is_new).and_then(|run| solved_by(run.current()?));
-        show(ui, Input { radar: cx.state.radar(), measured, selected, sought })
+        show(ui, cx.state, sought)
     }
 }
 
@@ -100,18 +79,30 @@ fn solved_by(step: &Step) -> Option<&'static str> {
     changes.into_iter().find(|(_, is_changed)| *is_changed).map(|(name, _)| name)
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+/// The selected object, where it is a single one and made of points.
+fn selected(state: &State) -> Option<Selected> {
+    let index = state.editor.selection().single()?;
+    let object = state.editor.scene().objects.get(index).filter(|o| o.body().is_none())?;
+    let name = object.called(index);
+    let name = if object.reflector_count() == 1 { name } else { format!("a reflector of {name}") };
+    Some(Selected { name, place_metres: object.centre_metres(), reflectivity: object.reflectivity() })
+}
+
+/// Draws the panel; `sought` is the constant or the group that is to be brought into sight.
+pub fn show(ui: &mut Ui, state: &State, sought: Option<&'static str>) -> Vec<Command> {
+    let recording = state.editor.document().recording();
+    let measured = recording.map(|r| Measured { by_all_elements: r.signal().is_some() });
     scrolled_both(ui, |ui, asked| {
-        match input.measured {
+        match measured {
             Some(measured) => _ = ui.weak(measured.told()),
-            None => preset(ui, input.radar, asked),
+            None => preset(ui, state.radar(), asked),
         }
         ui.add_space(4.0);
-        let mut radar = input.radar.clone();
+        let mut radar = state.radar().clone();
         let follows = Consequences::of(&radar);
-        let constants = input.measured.is_none();
-        let free = Free { constants, ends: input.measured.is_none_or(|m| m.by_all_elements) };
-        let table = Table::that_fits(ui, NAMES, input.sought);
+        let constants = measured.is_none();
+        let free = Free { constants, ends: measured.is_none_or(|m| m.by_all_elements) };
+        let table = Table::that_fits(ui, NAMES, sought);
         match table.consequence_width {
             Some(_) => {
                 _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
@@ -126,9 +117,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         }
         strip::show(ui, &mut radar, free.constants);
         places::show(ui, &mut radar, free.constants);
-        budget::show(ui, table, &mut radar, input.selected.as_ref());
+        budget::show(ui, table, &mut radar, selected(state).as_ref());
         radar.end_elements = radar.end_elements.min(radar.most_end_elements());
-        if radar != *input.radar {
+        if radar != *state.radar() {
             asked.push(RadarCommand::Set(Box::new(radar)).into());
         }
     })

@@ -2,11 +2,7 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{CardPlan, Command, DocumentCommand, Purpose, Way, WorkCommand};
-use crate::app::widgets::entry::button;
-use crate::app::widgets::labelled::{choice_told, labelled};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::scrolled;
-use crate::app::widgets::theme;
+use crate::app::widgets::{NumberField, button, choice_told, labelled, scrolled, theme};
 use crate::platform;
 use crate::recording::card::{CardSummary, USUAL_PORT};
 use crate::recording::raw::boards;
@@ -204,40 +200,39 @@ fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
     });
 }
 
+/// A recording of 20 frames, whose layout is in doubt.
+#[cfg(test)]
+pub fn some_recording() -> Recording {
+    let offer = |described: &str, log_odds: f64| Offer {
+        described: described.to_owned(),
+        log_odds,
+        power: (0..64).map(|bin| if bin == 9 { 1e6 } else { 1.0 }).collect(),
+        toml: String::new(),
+    };
+    let origin = Origin {
+        data: "a.bin".into(),
+        config: Some("a.cfg".into()),
+        offers: vec![offer("I Q in pairs", 9.0), offer("Q I in pairs", 2.0)],
+        taken: 0,
+        sentences: vec!["One echo stands out.".to_owned()],
+        doubts: Vec::new(),
+        board: Some("xWR1642"),
+        frames: 20,
+        frame: 3,
+    };
+    let radar = crate::radar::Radar { elements: 8, end_elements: 3, samples: 64, ..crate::radar::Radar::default() };
+    let silence = crate::signal::BeatSignal::silence(&radar);
+    let doubts = vec!["Antennas are taken for granted.".to_owned()];
+    Recording { origin: Some(std::sync::Arc::new(origin)), doubts, ..Recording::of_signal(radar, silence) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
-    use crate::radar::Radar;
+    use crate::app::widgets::seen::{self, User};
     use crate::recording::packets::PacketCounts;
-    use crate::signal::BeatSignal;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
-    use std::sync::Arc;
-
-    fn recording() -> Recording {
-        let offer = |described: &str, log_odds: f64| Offer {
-            described: described.to_owned(),
-            log_odds,
-            power: (0..64).map(|bin| if bin == 9 { 1e6 } else { 1.0 }).collect(),
-            toml: String::new(),
-        };
-        let origin = Origin {
-            data: "a.bin".into(),
-            config: Some("a.cfg".into()),
-            offers: vec![offer("I Q in pairs", 9.0), offer("Q I in pairs", 2.0)],
-            taken: 0,
-            sentences: vec!["One echo stands out.".to_owned()],
-            doubts: Vec::new(),
-            board: Some("xWR1642"),
-            frames: 20,
-            frame: 3,
-        };
-        let radar = Radar { elements: 8, end_elements: 3, samples: 64, ..Radar::default() };
-        let silence = BeatSignal::silence(&radar);
-        let doubts = vec!["Antennas are taken for granted.".to_owned()];
-        Recording { origin: Some(Arc::new(origin)), doubts, ..Recording::of_signal(radar, silence) }
-    }
 
     fn panel(recording: Option<Recording>) -> Harness<'static, Vec<Command>> {
         listening(recording, None)
@@ -256,8 +251,10 @@ mod tests {
     }
 
     #[test]
-    fn layouts_frames_board_and_doubts_are_shown() {
-        let mut panel = panel(Some(recording()));
+    fn layouts_frames_board_and_doubts_of_a_recording_are_shown() {
+        let empty = panel(None);
+        assert!(seen::texts(empty.output()).iter().any(|t| t.text.contains("Drop a capture")));
+        let mut panel = panel(Some(some_recording()));
         let texts = seen::texts(panel.output());
         for text in
             ["I Q in pairs", "Frame of 20", "xWR1642", "Antennas are taken for granted.", "One echo stands out."]
@@ -266,29 +263,20 @@ mod tests {
         }
         seen::assert_readable(panel.output());
         assert_eq!(panel.query_all_by_label("Range profile").count(), 2, "one a layout");
-        panel.get_by_label("Q I in pairs").click();
-        panel.run();
+        panel.clicks(&["Q I in pairs"]);
         assert_eq!(panel.state(), &[Command::Document(DocumentCommand::ReadAnotherWay(Way::Layout(1)))]);
     }
 
     #[test]
     fn a_card_is_listened_to_with_what_is_on_screen() {
-        let mut panel = panel(Some(recording()));
-        panel.get_by_label("Listen").click();
-        panel.run();
+        let mut panel = panel(Some(some_recording()));
+        panel.clicks(&["Listen"]);
         let plan = CardPlan { port: USUAL_PORT, config: "a.cfg".into(), board: Some("xWR1642") };
         assert_eq!(panel.state(), &[Command::Work(WorkCommand::Listen(plan.clone()))]);
-        let mut panel = listening(Some(recording()), Some(plan));
+        let mut panel = listening(Some(some_recording()), Some(plan));
         let said = "7 frames came, 2 were dropped, 1456 bytes and 0 whole frames lost";
-        assert!(seen::texts(panel.output()).iter().any(|t| t.text == said), "{:?}", seen::texts(panel.output()));
-        panel.get_by_label("Stop listening").click();
-        panel.run();
+        assert!(panel.reads(said), "{:?}", seen::texts(panel.output()));
+        panel.clicks(&["Stop listening"]);
         assert_eq!(panel.state(), &[Command::Work(WorkCommand::StopListening)]);
-    }
-
-    #[test]
-    fn no_recording_tells_what_to_drop() {
-        let panel = panel(None);
-        assert!(seen::texts(panel.output()).iter().any(|t| t.text.contains("Drop a capture")));
     }
 }

@@ -3,15 +3,11 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, MethodSlot};
-use crate::app::widgets::axes::{Axis, Tick};
-use crate::app::widgets::chart::Chart;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::numbers::percent;
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::{Axis, Chart, Inks, Tick, percent};
 use crate::evaluate::{Metrics, RocPoint, eta_text};
 use crate::maps::cfar::Cfar;
-use eframe::egui;
-use eframe::egui::{Sense, Stroke, Ui};
+use eframe::egui::{self, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 
 /// Least P_FA of the logarithmic axis; smaller ones are drawn there.

@@ -2,17 +2,12 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, WorkCommand};
-use crate::app::widgets::axes::{Axis, Tick};
-use crate::app::widgets::chart::Chart;
-use crate::app::widgets::labelled::choice;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::{padded, warning};
-use crate::app::widgets::progress::{bar, start_or_cancel};
+use crate::app::widgets::{Axis, Chart, Tick, bar, choice, padded, start_or_cancel, warning};
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
 use crate::signal::{Algorithm, Precision};
-use eframe::egui;
-use eframe::egui::{Color32, Sense, Ui};
+use eframe::egui::{self, Color32, Sense, Ui};
 use egui_plot::{HLine, LineStyle, MarkerShape, Points};
 use std::collections::BTreeSet;
 
@@ -197,6 +192,7 @@ fn power_of_ten(exponent: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -210,21 +206,17 @@ mod tests {
         };
         let mut run_time = Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, Default::default());
         let _told = run_time.get_by_label_contains("128 elements");
-        for label in labels {
-            run_time.get_by_label(label).click();
-            run_time.run_steps(2);
-        }
+        run_time.clicks(labels);
         run_time.state().1.clone()
     }
 
     #[test]
-    fn a_thorough_measurement_is_asked_for() {
-        let asked = asked(None, &["thorough", "Measure"]);
-        assert_eq!(asked, [Command::Work(WorkCommand::Measure { thorough: true })]);
-    }
-
-    #[test]
-    fn a_measurement_that_runs_can_be_cancelled() {
-        assert_eq!(asked(Some(0.5), &["Cancel"]), [Command::Work(WorkCommand::CancelMeasurement)]);
+    fn a_thorough_measurement_is_asked_for_and_can_be_cancelled() {
+        for (progress, labels, command) in [
+            (None, &["thorough", "Measure"][..], WorkCommand::Measure { thorough: true }),
+            (Some(0.5), &["Cancel"], WorkCommand::CancelMeasurement),
+        ] {
+            assert_eq!(asked(progress, labels), [Command::Work(command)]);
+        }
     }
 }

@@ -1,27 +1,10 @@
 //! The panel that compares settings: one map several times, side by side, for several values of one constant.
 
-use crate::app::content::{Content, Cx, Nothing, offered};
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Small;
-use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Variant, ViewCommand};
-use crate::app::widgets::kind_boxes::member_box;
-use crate::app::widgets::labelled::{choice, choice_told, labelled};
-use crate::app::widgets::method_menu::{Offered, method_lines};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::padded;
-use crate::app::widgets::textures::Texture;
-use crate::radar::Radar;
-use eframe::egui;
-use eframe::egui::{Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
-
-/// The maps, and the choice of what differs between them.
-pub struct Input<'a> {
-    /// The chosen parameter, its values, and the kind of map.
-    pub several: &'a Several,
-    /// The radar of the scene.
-    pub radar: &'a Radar,
-    pub methods: Offered<'a>,
-    pub maps: &'a [Small],
-}
+use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, State, Variant, ViewCommand};
+use crate::app::widgets::{NumberField, Texture, choice, choice_told, labelled, member_box, method_lines, padded};
+use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 
 /// Textures of the maps.
 #[derive(Default)]
@@ -40,32 +23,25 @@ impl Content for SeveralPanel {
     const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let state = &*cx.state;
-        let input = Input {
-            several: &state.settings.several,
-            radar: state.radar(),
-            methods: offered(state),
-            maps: cx.jobs.several.shown(),
-        };
-        show(ui, input, cx.memory)
+        show(ui, cx.state, cx.jobs.several.shown(), cx.memory)
     }
 }
 
-/// Draws the panel. A click on a map gives the scene its value.
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut SeveralMemory) -> Vec<Command> {
+/// Draws the panel with these maps. A click on a map gives the scene its value.
+pub fn show(ui: &mut Ui, state: &State, maps: &[Small], memory: &mut SeveralMemory) -> Vec<Command> {
     padded(ui, |ui, asked| {
-        choices(ui, &input, asked);
-        if input.maps.is_empty() {
+        choices(ui, state, asked);
+        if maps.is_empty() {
             ui.weak("No radar can have these values.");
             return;
         }
-        memory.textures.resize_with(input.maps.len(), Texture::default);
+        memory.textures.resize_with(maps.len(), Texture::default);
         let area = ui.available_rect_before_wrap();
-        let (columns, size) = grid(input.maps.len(), area.size());
-        for (index, (small, texture)) in input.maps.iter().zip(&mut memory.textures).enumerate() {
+        let (columns, size) = grid(maps.len(), area.size());
+        for (index, (small, texture)) in maps.iter().zip(&mut memory.textures).enumerate() {
             let corner = vec2((index % columns) as f32 * size.x, (index / columns) as f32 * size.y);
             let place = Rect::from_min_size(area.min + corner, size).shrink(3.0);
-            tile(ui, place, small, texture, input.several.parameter, asked);
+            tile(ui, place, small, texture, state.settings.several.parameter, asked);
         }
     })
 }
@@ -78,23 +54,23 @@ fn grid(count: usize, area: Vec2) -> (usize, Vec2) {
     (columns, size(columns))
 }
 
-fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let mut several = input.several.clone();
+fn choices(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
+    let mut several = state.settings.several.clone();
     ui.horizontal_wrapped(|ui| {
         let mut parameter = several.parameter;
         choice(ui, "Compare", "", &mut parameter, Parameter::ALL, |p| p.name().to_owned());
         if parameter != several.parameter {
-            several = several.with(parameter, input.radar);
+            several = several.with(parameter, state.radar());
         }
         let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
         choice_told(ui, "in", "", &mut several.map, maps, |map| (map.title().to_owned(), map.describe()));
         match several.parameter.unit() {
             Some(unit) => numbers(ui, &mut several, unit),
-            None if several.parameter == Parameter::Method => methods(ui, &mut several, input.methods),
+            None if several.parameter == Parameter::Method => methods(ui, &mut several, state),
             None => {}
         }
     });
-    if several != *input.several {
+    if several != state.settings.several {
         asked.push(ViewCommand::SetSeveral(Box::new(several)).into());
     }
 }
@@ -111,9 +87,9 @@ fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
     labelled(ui, "maps", "", count);
 }
 
-fn methods(ui: &mut Ui, several: &mut Several, methods: Offered<'_>) {
+fn methods(ui: &mut Ui, several: &mut Several, state: &State) {
     ui.menu_button("Methods", |ui| {
-        method_lines(ui, methods, |ui, method| {
+        method_lines(ui, state, |ui, method| {
             member_box(ui, method.name(), method.name().to_owned(), &mut several.methods)
         });
     })
@@ -179,21 +155,17 @@ fn take(variant: &Variant, parameter: Parameter) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
+    use crate::radar::Radar;
     use crate::signal::Floor;
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
     use std::sync::Arc;
 
-    struct Drawn {
-        several: Several,
-        memory: SeveralMemory,
-        asked: Vec<Command>,
-    }
-
-    fn harness(parameter: Parameter) -> Harness<'static, Drawn> {
-        let draw = |ui: &mut Ui, drawn: &mut Drawn| {
-            let radar = Radar::default();
-            let variants = drawn.several.variants(&radar, Floor::Thesis, None, &[]);
+    fn harness(parameter: Parameter) -> Harness<'static, Vec<Command>> {
+        let (mut state, mut memory) = (State::new(Vec::new()), SeveralMemory::default());
+        state.settings.several = Several::default().with(parameter, &Radar::default());
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+            let variants = state.settings.several.variants(&Radar::default(), Floor::Thesis, None, &[]);
             let maps: Vec<Small> = variants
                 .into_iter()
                 .map(|variant| Small {
@@ -202,29 +174,21 @@ mod tests {
                     is_current: true,
                 })
                 .collect();
-            let input = Input { several: &drawn.several, radar: &radar, methods: Offered::untimed(&[]), maps: &maps };
-            let asked = show(ui, input, &mut drawn.memory);
-            drawn.asked.extend(asked);
+            asked.extend(show(ui, &state, &maps, &mut memory));
         };
-        let several = Several::default().with(parameter, &Radar::default());
-        let drawn = Drawn { several, memory: SeveralMemory::default(), asked: Vec::new() };
-        Harness::builder().with_size([900.0, 500.0]).build_ui_state(draw, drawn)
+        Harness::builder().with_size([900.0, 500.0]).build_ui_state(draw, Vec::new())
     }
 
     #[test]
     fn a_map_that_is_clicked_puts_its_value_before_the_scene() {
         let mut panel = harness(Parameter::Window);
-        panel.get_by_label("window: rectangular").click();
-        panel.step();
-        assert_eq!(
-            panel.state().asked,
-            [Command::Radar(RadarCommand::SetWindow(crate::radar::WindowFunction::Rectangular))]
-        );
+        panel.clicks(&["window: rectangular"]);
+        let rectangular = crate::radar::WindowFunction::Rectangular;
+        assert_eq!(panel.state(), &[Command::Radar(RadarCommand::SetWindow(rectangular))]);
         let mut panel = harness(Parameter::Bandwidth);
-        panel.get_by_label("bandwidth: 4.00 GHz").click();
-        panel.step();
-        let [Command::Radar(RadarCommand::Set(radar))] = panel.state().asked.as_slice() else {
-            panic!("{:?}", panel.state().asked)
+        panel.clicks(&["bandwidth: 4.00 GHz"]);
+        let [Command::Radar(RadarCommand::Set(radar))] = panel.state().as_slice() else {
+            panic!("{:?}", panel.state())
         };
         assert!((radar.bandwidth_hz - 4e9).abs() < 1.0);
     }
@@ -232,13 +196,11 @@ mod tests {
     #[test]
     fn another_parameter_comes_with_its_usual_values_and_map() {
         let mut panel = harness(Parameter::Window);
-        panel.get_by_label("Compare").click();
+        panel.clicks(&["Compare"]);
         panel.step();
-        panel.step();
-        panel.get_by_label("elements of an end").click();
-        panel.step();
-        let Some(Command::View(ViewCommand::SetSeveral(several))) = panel.state().asked.last() else {
-            panic!("{:?}", panel.state().asked)
+        panel.clicks(&["elements of an end"]);
+        let Some(Command::View(ViewCommand::SetSeveral(several))) = panel.state().last() else {
+            panic!("{:?}", panel.state())
         };
         assert_eq!((several.parameter, several.map, several.low), (Parameter::EndElements, MapKind::Input0, 3.0));
     }

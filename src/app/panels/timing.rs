@@ -2,16 +2,10 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::Command;
-use crate::app::widgets::padded::scrolled;
+use crate::app::widgets::scrolled;
 use crate::engine::{EngineReport, StageOutcome};
 use eframe::egui::{Grid, Label, RichText, Ui};
 use std::time::Duration;
-
-/// The last update to list.
-pub struct Input<'a> {
-    /// The last update, if there was one.
-    pub update: Option<Update<'a>>,
-}
 
 /// An update of the maps.
 pub struct Update<'a> {
@@ -42,12 +36,12 @@ impl Content for TimingPanel {
             output: pipeline.output().map(|o| (o.method, o.took)),
             outdated: pipeline.output_is_outdated(),
         });
-        show(ui, Input { update })
+        show(ui, update)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
-    let Some(update) = input.update else {
+pub fn show(ui: &mut Ui, update: Option<Update<'_>>) -> Vec<Command> {
+    let Some(update) = update else {
         ui.weak("No update yet.");
         return Vec::new();
     };
@@ -113,7 +107,7 @@ mod tests {
             let took = Duration::from_millis(12);
             let update =
                 Update { report: &frame.report, took, painted: 7, output: Some(("capon", took)), outdated: true };
-            asked.extend(show(ui, Input { update: Some(update) }));
+            asked.extend(show(ui, Some(update)));
         };
         let mut timing = Harness::builder().with_size([280.0, 700.0]).build_ui_state(draw, Vec::new());
         timing.run_steps(3);

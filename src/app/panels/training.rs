@@ -3,25 +3,11 @@
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, LOG_INTERVAL, Log, LogQuery, Watched};
 use crate::app::state::{Command, Purpose, State};
-use crate::app::widgets::axes::Axis;
-use crate::app::widgets::chart::Chart;
-use crate::app::widgets::entry::button;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::padded::{padded, warning};
-use crate::app::widgets::theme;
+use crate::app::widgets::{Axis, Chart, button, padded, theme, warning};
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 use std::path::Path;
-
-/// The log of the training.
-pub struct Input<'a> {
-    /// Path of the log.
-    pub path: Option<&'a Path>,
-    /// Contents of the log.
-    pub log: Option<&'a Log>,
-    /// Error of the last reading.
-    pub note: Option<&'a str>,
-}
 
 pub struct TrainingPanel;
 
@@ -39,26 +25,28 @@ impl Content for TrainingPanel {
         if path.is_some() {
             ui.ctx().request_repaint_after(LOG_INTERVAL);
         }
-        show(ui, Input { path, log: cx.value.and_then(Result::ok), note: cx.value.and_then(Result::err) })
+        show(ui, path, cx.value)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+/// Draws the log at `path`, or the error of its last reading.
+pub fn show(ui: &mut Ui, path: Option<&Path>, read: Option<Result<&Log, &str>>) -> Vec<Command> {
+    let error = read.and_then(Result::err);
     padded(ui, |ui, asked| {
         button(ui, "Open training log…", Purpose::OpenLog, true, asked);
-        warning(ui, input.note);
-        match input.log.filter(|l| !l.loss.is_empty()) {
+        warning(ui, error);
+        match read.and_then(Result::ok).filter(|l| !l.loss.is_empty()) {
             Some(log) => curves(ui, log),
-            None => _ = ui.weak(waiting(&input)),
+            None => _ = ui.weak(waiting(path, error.is_some())),
         }
     })
 }
 
 /// Text in place of the curve, while there is none.
-fn waiting(input: &Input<'_>) -> String {
-    match input.path {
+fn waiting(path: Option<&Path>, has_failed: bool) -> String {
+    match path {
         // There is no waiting for a log that can't be read.
-        Some(path) if input.note.is_none() => format!("Waiting for the first line of {}…", path.display()),
+        Some(path) if !has_failed => format!("Waiting for the first line of {}…", path.display()),
         Some(path) => format!("{} has no line.", path.display()),
         None => "Open the log.csv of a training (apertura train), and watch its loss while it learns.".to_owned(),
     }
@@ -108,7 +96,7 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     fn panel(note: Option<&'static str>) -> Harness<'static> {
-        let draw = move |ui: &mut Ui| _ = show(ui, Input { path: Some(Path::new("log.csv")), log: None, note });
+        let draw = move |ui: &mut Ui| _ = show(ui, Some(Path::new("log.csv")), note.map(Err));
         Harness::builder().with_size([500.0, 300.0]).build_ui(draw)
     }
 

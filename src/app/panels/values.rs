@@ -1,13 +1,10 @@
 //! The values panel: the value of every map under the pointer, in one small table.
 
-use super::map::Cells;
-use super::map::{cells, is_updating};
+use super::map::{Cells, cells, is_updating};
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
-use crate::app::state::{Command, Cursor, MapKind, MethodSlot, Panel};
-use crate::app::widgets::direction::{CONVENTION, direction};
-use crate::app::widgets::padded::padded;
-use crate::radar::Radar;
+use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
+use crate::app::widgets::{CONVENTION, direction, padded};
 use eframe::egui::{Align, Grid, Layout, RichText, ScrollArea, Ui};
 
 /// The maps that are listed, from the inputs to the differences.
@@ -34,15 +31,6 @@ pub struct Row<'a> {
     pub updating: bool,
 }
 
-/// The maps to list, and the place of their values.
-pub struct Input<'a> {
-    pub radar: &'a Radar,
-    /// Place of the pointer, or its last place.
-    pub cursor: Cursor,
-    /// The maps.
-    pub rows: &'a [Row<'a>],
-}
-
 pub struct ValuesPanel;
 
 impl Content for ValuesPanel {
@@ -61,17 +49,16 @@ impl Content for ValuesPanel {
             Some(Row { kind, method, cells, updating: is_updating(jobs, kind) })
         };
         let rows: Vec<Row<'_>> = LISTED.into_iter().filter(listed).filter_map(row).collect();
-        show(ui, Input { radar: state.radar(), cursor: state.cut_cursor(), rows: &rows })
+        show(ui, state, &rows)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+/// Draws the panel with the maps to list.
+pub fn show(ui: &mut Ui, state: &State, rows: &[Row<'_>]) -> Vec<Command> {
     padded(ui, |ui, _| {
-        let Some((bin, column)) = input.cursor.cell(input.radar) else {
-            ui.weak("The pointer is beyond the maps.");
-            return;
-        };
-        let (range, way) = (input.cursor.range_metres, direction(input.cursor.cos_theta, 1));
+        let cursor = state.cut_cursor();
+        let Some((bin, column)) = cursor.cell(state.radar()) else { return };
+        let (range, way) = (cursor.range_metres, direction(cursor.cos_theta, 1));
         ui.label(format!("range {range:.2} m · {way}")).on_hover_text(CONVENTION);
         ui.weak(format!("range bin {bin}, column {column}"));
         ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
@@ -88,7 +75,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                     ui.strong(heading).on_hover_text(tooltip);
                 }
                 ui.end_row();
-                input.rows.iter().for_each(|row| line(ui, row, bin, column));
+                rows.iter().for_each(|row| line(ui, row, bin, column));
             });
         });
     })
@@ -116,18 +103,21 @@ fn line(ui: &mut Ui, row: &Row<'_>, bin: usize, column: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::state::Cursor;
     use crate::app::widgets::seen;
     use crate::maps::{LambdaScale, RangeAngleMap};
+    use crate::radar::Radar;
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
     use ndarray::Array2;
 
-    fn panel(bin: f64) -> Harness<'static> {
+    fn panel(cursor: Cursor) -> Harness<'static> {
+        let mut state = State::new(Vec::new());
+        state.pointer.hover(cursor);
+        state.pointer.turn(&Radar::default());
         let map = |value: f32| RangeAngleMap { lambda: Array2::from_elem((512, 1024), value) };
         let mut maps = [map(0.25), map(0.5), map(1.0)];
         maps[0].lambda[[100, 700]] = 0.75;
         let draw = move |ui: &mut Ui| {
-            let radar = Radar::default();
             let scale = Some(LambdaScale { peak: 5.0, floor: 0.0 });
             let cells =
                 |of: usize, minus: Option<usize>| Cells { map: &maps[of], minus: minus.map(|m| &maps[m]), scale };
@@ -138,9 +128,7 @@ mod tests {
                 row(MapKind::Second, Some("capon"), cells(1, None), true),
                 row(MapKind::SecondDifference, Some("capon"), cells(1, Some(2)), false),
             ];
-            let cursor = Cursor::at_cell(&radar, bin, 700.0);
-            let asked = show(ui, Input { radar: &radar, cursor, rows: &rows });
-            assert!(asked.is_empty());
+            assert!(show(ui, &state, &rows).is_empty());
         };
         let mut panel = Harness::builder().with_size([360.0, 220.0]).build_ui(draw);
         panel.run();
@@ -149,10 +137,9 @@ mod tests {
 
     #[test]
     fn every_map_tells_what_it_has_under_the_pointer() {
-        let shown = panel(100.0);
+        let cursor = Cursor::at_cell(&Radar::default(), 100.0, 700.0);
+        let shown = panel(cursor);
         let texts: Vec<String> = seen::texts(shown.output()).into_iter().map(|t| t.text).collect();
-        let radar = Radar::default();
-        let cursor = Cursor::at_cell(&radar, 100.0, 700.0);
         let place = format!("range {:.2} m · {}", cursor.range_metres, direction(cursor.cos_theta, 1));
         for expected in [&place, "range bin 100, column 700", "Input 0", "0.750", "−25.0", "Target", "1.000", "0.0"] {
             assert!(texts.iter().any(|t| t == expected), "{expected}: {texts:?}");
@@ -162,12 +149,5 @@ mod tests {
             assert!(texts.iter().any(|t| t == expected), "{expected}: {texts:?}");
         }
         seen::assert_readable(shown.output());
-    }
-
-    #[test]
-    fn nothing_is_told_beyond_the_maps() {
-        let beyond = panel(600.0);
-        assert!(beyond.query_by_label("The pointer is beyond the maps.").is_some());
-        assert!(beyond.query_by_label("Target").is_none());
     }
 }

@@ -31,34 +31,10 @@ pub struct PinnedCut {
     pub maps: Vec<CutMap>,
 }
 
-/// The pinned cuts, oldest first.
-#[derive(Debug, Default)]
-pub struct Pins(Vec<PinnedCut>);
-
-impl Pins {
-    /// Pins a cut.
-    pub fn push(&mut self, pin: PinnedCut) {
-        self.0.push(pin);
-        let excess = self.0.len().saturating_sub(PINS);
-        self.0.drain(..excess);
-    }
-
-    /// Removes the cut of this index, if there is one.
-    pub fn remove(&mut self, index: usize) {
-        if index < self.0.len() {
-            self.0.remove(index);
-        }
-    }
-
-    /// Removes all cuts.
-    pub fn clear(&mut self) {
-        self.0.clear();
-    }
-
-    /// All pinned cuts.
-    pub fn all(&self) -> &[PinnedCut] {
-        &self.0
-    }
+/// Adds a cut to the pinned ones, the oldest first.
+pub fn pin_cut(pins: &mut Vec<PinnedCut>, pin: PinnedCut) {
+    pins.push(pin);
+    pins.drain(..pins.len().saturating_sub(PINS));
 }
 
 #[cfg(test)]
@@ -68,14 +44,12 @@ mod tests {
     #[test]
     fn the_oldest_pin_makes_room() {
         let radar = Radar::default();
-        let mut pins = Pins::default();
+        let mut pins = Vec::new();
         for bin in 0..5 {
             let cursor = Cursor::at_cell(&radar, f64::from(bin), 700.0);
-            pins.push(PinnedCut { radar: radar.clone(), cursor, maps: Vec::new() });
+            pin_cut(&mut pins, PinnedCut { radar: radar.clone(), cursor, maps: Vec::new() });
         }
-        pins.remove(7);
-        pins.remove(0);
-        let bins: Vec<f64> = pins.all().iter().map(|p| p.cursor.bin.round()).collect();
-        assert_eq!(bins, [3.0, 4.0]);
+        let bins: Vec<f64> = pins.iter().map(|p| p.cursor.bin.round()).collect();
+        assert_eq!(bins, [2.0, 3.0, 4.0]);
     }
 }

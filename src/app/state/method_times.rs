@@ -38,23 +38,9 @@ impl MethodTimes {
         }
     }
 
-    /// The times of methods on samples of a radar.
-    pub fn on<'a>(&'a self, radar: &Radar) -> Times<'a> {
-        Times { of: Some(self), shape: shape_of(radar) }
-    }
-}
-
-/// Times of methods on samples of one radar.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Times<'a> {
-    of: Option<&'a MethodTimes>,
-    shape: Shape,
-}
-
-impl Times<'_> {
-    /// The median of a method's latest times, milliseconds; `None` where it has not run yet.
-    pub fn typical_ms(&self, method: &str) -> Option<f64> {
-        let (_, times) = self.of?.measured.get(method)?.iter().find(|(shape, _)| *shape == self.shape)?;
+    /// The median of a method's latest times on samples of a radar, milliseconds; `None` where it has not run yet.
+    pub fn typical_ms(&self, radar: &Radar, method: &str) -> Option<f64> {
+        let (_, times) = self.measured.get(method)?.iter().find(|(shape, _)| *shape == shape_of(radar))?;
         let mut sorted: Vec<f64> = times.iter().copied().filter(|ms| ms.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         sorted.get(sorted.len() / 2).copied()
@@ -68,23 +54,13 @@ mod tests {
     #[test]
     fn the_typical_time_is_the_median_of_the_latest() {
         let (mut times, radar) = (MethodTimes::default(), Radar::default());
-        assert_eq!(times.on(&radar).typical_ms("live"), None);
+        assert_eq!(times.typical_ms(&radar, "live"), None);
         for ms in [9000, 9000, 9000, 30, 10, 12, 11, 400] {
             times.record(&radar, "live", Duration::from_millis(ms));
         }
-        assert_eq!(
-            times.on(&radar).typical_ms("live"),
-            Some(12.0),
-            "the first are forgotten, one outlier counts little"
-        );
-    }
-
-    #[test]
-    fn times_of_a_small_radar_are_not_those_of_a_large_one() {
-        let (mut times, large) = (MethodTimes::default(), Radar::default());
+        let typical = times.typical_ms(&radar, "live");
+        assert_eq!(typical, Some(12.0), "the first are forgotten, one outlier counts little");
         let small = Radar { elements: 128, ..Radar::default() };
-        times.record(&small, "live", Duration::from_millis(3));
-        assert_eq!(times.on(&large).typical_ms("live"), None);
-        assert_eq!(times.on(&small).typical_ms("live"), Some(3.0));
+        assert_eq!(times.typical_ms(&small, "live"), None);
     }
 }

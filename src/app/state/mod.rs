@@ -27,6 +27,7 @@ mod room;
 mod save_question;
 mod settings;
 mod several;
+mod start;
 mod synonyms;
 mod task_layouts;
 mod timeline;
@@ -44,13 +45,13 @@ pub use command::{
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use compare::{Compare, Layout};
-pub use cuts::{CutMap, PinnedCut, Pins};
+pub use cuts::{CutMap, PinnedCut, pin_cut};
 pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};
 pub use guided::{Guided, Setup};
 pub use help::HelpPage;
 pub use lesson_run::{Before, LessonRun};
 pub use menus::menu_path;
-pub use method_times::{MethodTimes, Times};
+pub use method_times::MethodTimes;
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
@@ -66,7 +67,7 @@ pub use view::{Cursor, MapView, MapViews, Pointer, SceneView};
 use crate::interact::{Document, Editor};
 use crate::lesson::{Progress, Uses};
 use crate::platform::fs;
-use crate::radar::Radar;
+use crate::radar::{BuiltArray, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
 use std::collections::BTreeSet;
@@ -96,8 +97,8 @@ pub struct State {
     pub map_views: MapViews,
     /// The pointer's place.
     pub pointer: Pointer,
-    /// Pinned cuts.
-    pub pins: Pins,
+    /// Pinned cuts, the oldest first.
+    pub pins: Vec<PinnedCut>,
     /// Changes made by the guide.
     pub guided: Guided,
     /// The question before a scene is written to a file that can't hold all of it or was changed.
@@ -125,6 +126,11 @@ pub struct State {
 }
 
 impl State {
+    /// Whether a recording takes the place of the scene's echoes.
+    pub fn is_recorded(&self) -> bool {
+        self.editor.document().recording().is_some()
+    }
+
     /// Opens another document; undo brings the last one back with its file.
     pub fn set_document(&mut self, label: &str, document: Document) {
         self.editor.open(label, document);
@@ -233,6 +239,11 @@ impl State {
         self.editor.radar()
     }
 
+    /// The radar's elements as they are built.
+    pub fn elements(&self) -> &BuiltArray {
+        &self.editor.scene().disturbances.elements
+    }
+
     /// The document's scene at the timeline's time.
     pub fn scene(&self) -> &Arc<Scene> {
         self.timeline.scene(self.editor.scene())
@@ -259,6 +270,11 @@ impl State {
         // Undo does not leave a lesson's step.
         let is_left = self.lesson.as_ref().is_none_or(|run| self.editor.history().depth() > run.depth);
         is_left && (self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup()))
+    }
+
+    /// Whether an undone change can be done again.
+    pub fn can_redo(&self) -> bool {
+        self.editor.history().redo_label().is_some()
     }
 
     /// Undoes the last change of the scene, or all changes of a button of the guide.
@@ -329,8 +345,7 @@ impl State {
 
     /// Whether reflectors found by the method are drawn: over a recording always.
     pub fn draws_found(&self) -> bool {
-        let is_recorded = self.editor.document().recording().is_some();
-        !self.is_predicting() && (is_recorded || (self.settings.show_found && self.finds_reflectors()))
+        !self.is_predicting() && (self.is_recorded() || (self.settings.show_found && self.finds_reflectors()))
     }
 
     /// Whether a panel in sight marks results of the method's output, which must then be made.

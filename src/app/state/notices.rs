@@ -78,19 +78,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_same_message_stands_there_once() {
+    fn a_message_stands_there_once_until_others_need_its_room() {
         let mut notices = Notices::default();
         notices.add(NoticeKind::Error, "a".to_owned());
         notices.add(NoticeKind::Error, "a".to_owned());
         assert_eq!(notices.len(), 1);
-    }
-
-    #[test]
-    fn old_messages_make_room() {
-        let mut notices = Notices::default();
-        for i in 0..9 {
-            notices.add(NoticeKind::Info, i.to_string());
-        }
+        (0..9).for_each(|i| notices.add(NoticeKind::Info, i.to_string()));
         assert_eq!(notices.len(), MAX_NOTICES);
         assert_eq!(notices.list.last().unwrap().text, "8");
     }

@@ -1,7 +1,6 @@
 //! Axes of maps, charts and the scene, with ticks at round numbers and labels that neither collide nor leave the panel.
 
-use eframe::egui;
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
 /// Space for tick labels and an axis title, points.
 pub const LEFT: f32 = 46.0;
@@ -197,11 +196,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_round() {
+    fn ticks_are_round_with_the_same_digits() {
         assert_eq!(ticks(-1.0, 1.0, 4.0), [-1.0, -0.5, 0.0, 0.5, 1.0]);
         assert_eq!(ticks(1.0, -1.0, 4.0), ticks(-1.0, 1.0, 4.0));
         assert_eq!(ticks(0.0, 38.4, 4.0), [0.0, 10.0, 20.0, 30.0]);
         assert!(ticks(1.0, 1.0, 4.0).is_empty() && ticks(f64::NAN, 1.0, 4.0).is_empty());
+        let texts = |low, high| round_ticks(low, high, 4.0).into_iter().map(|t| t.text).collect::<Vec<_>>();
+        assert_eq!(texts(-1.0, 1.0), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(texts(0.0, 38.4), ["0", "10", "20", "30"]);
+        assert_eq!(texts(-0.1, 0.1), ["−0.10", "−0.05", "0.00", "0.05", "0.10"]);
+        assert_eq!(tick_text(-0.0, 0.5), "0.0");
     }
 
     #[test]
@@ -210,14 +214,5 @@ mod tests {
         let last = axis.upwards(200.0).pop().unwrap();
         assert_eq!((last.text.as_str(), axis.part(last.value)), ("1.0", 1.0));
         assert_eq!(Axis { slack: 0.0, ..axis }.upwards(200.0).pop().unwrap().text, "0.5");
-    }
-
-    #[test]
-    fn all_labels_of_an_axis_have_the_same_digits() {
-        let texts = |low, high| round_ticks(low, high, 4.0).into_iter().map(|t| t.text).collect::<Vec<_>>();
-        assert_eq!(texts(-1.0, 1.0), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
-        assert_eq!(texts(0.0, 38.4), ["0", "10", "20", "30"]);
-        assert_eq!(texts(-0.1, 0.1), ["−0.10", "−0.05", "0.00", "0.05", "0.10"]);
-        assert_eq!(tick_text(-0.0, 0.5), "0.0");
     }
 }

@@ -2,10 +2,13 @@
 
 use super::axes::{self, Axis, Tick};
 use super::nudge::{pan_keys, zoom_keys};
-use eframe::egui;
-use eframe::egui::{Color32, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, TextureId, Ui, UiBuilder, vec2};
-use egui_plot::{AxisHints, GridInput, GridMark, Line, LineStyle, Plot, PlotImage, PlotItem, PlotPoint, PlotPoints};
-use egui_plot::{PlotTransform, Points, VLine};
+use eframe::egui::{
+    self, Color32, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, TextureId, Ui, UiBuilder, vec2,
+};
+use egui_plot::{
+    AxisHints, GridInput, GridMark, Line, LineStyle, Plot, PlotImage, PlotItem, PlotPoint, PlotPoints, PlotTransform,
+    Points, VLine,
+};
 
 /// Margins above a chart, and at its right where no label needs more, points.
 const MARGINS_POINTS: [f32; 2] = [8.0, 12.0];

@@ -27,20 +27,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn straight_ahead_is_0_degrees() {
+    fn straight_ahead_is_0_degrees_and_the_right_positive() {
         assert_eq!((angle_degrees(0.0), angle_of_place_degrees(0.0, 3.0)), (0.0, 0.0));
         assert_eq!(direction(0.0, 1), "±0.0° · cos θ ±0.000");
-    }
-
-    #[test]
-    fn the_right_is_positive() {
         assert!((angle_degrees(0.5) - 30.0).abs() < 1e-12);
         assert!((angle_of_place_degrees(-1.0, 1.0) + 45.0).abs() < 1e-12);
         assert_eq!(direction(-0.5, 1), "−30.0° · cos θ −0.500");
-    }
-
-    #[test]
-    fn behind_the_array_is_beyond_90_degrees() {
-        assert!((angle_of_place_degrees(1.0, -1.0) - 135.0).abs() < 1e-12);
+        assert!((angle_of_place_degrees(1.0, -1.0) - 135.0).abs() < 1e-12, "behind the array");
     }
 }

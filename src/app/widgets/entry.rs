@@ -1,6 +1,6 @@
 //! Menu entries and buttons of commands, with name, tooltip and key from the list of commands.
 
-use crate::app::state::{Command, Entry};
+use crate::app::state::{Command, Entry, State};
 use eframe::egui::{Atom, Button, IdSalt, Response, Role, Stroke, Ui, WidgetInfo, WidgetText, vec2};
 
 /// A menu entry; a click sends the command and closes the menu.
@@ -49,6 +49,16 @@ pub fn ticked(ui: &mut Ui, name: &str, command: impl Into<Command>, on: bool, as
     }
 }
 
+/// A menu entry, with a tick where its switch is on.
+pub fn item(ui: &mut Ui, state: &State, command: impl Into<Command>, asked: &mut Vec<Command>) {
+    let command = command.into();
+    let name = command.entry().map_or("", |listed| listed.name.as_ref());
+    match state.is_on(&command) {
+        Some(on) => ticked(ui, name, command, on, asked),
+        None => entry(ui, command, true, asked),
+    }
+}
+
 /// A button with a label shorter than the command's name; its tooltip has the key.
 pub fn button(ui: &mut Ui, label: &str, command: impl Into<Command>, enabled: bool, asked: &mut Vec<Command>) {
     let command = command.into();
@@ -62,11 +72,11 @@ pub fn press<C: Into<Command>>(
     ui: &mut Ui,
     name: impl Into<WidgetText>,
     tooltip: &str,
-    command: impl FnOnce() -> C,
+    command: C,
     asked: &mut Vec<Command>,
 ) {
     if tipped(ui.button(name.into()), tooltip).clicked() {
-        asked.push(command().into());
+        asked.push(command.into());
     }
 }
 
@@ -81,6 +91,21 @@ pub fn tick<C: Into<Command>>(
 ) {
     if tipped(ui.checkbox(&mut on, name), tooltip).changed() {
         asked.push(command(on).into());
+    }
+}
+
+/// Draws a row of labels, one for each choice. `of` yields the choice, its name and its tooltip. A click on another choice sends its `command`.
+pub fn choices<'a, T: PartialEq + Copy, C: Into<Command>>(
+    ui: &mut Ui,
+    chosen: T,
+    of: impl IntoIterator<Item = (T, &'a str, &'a str)>,
+    command: impl Fn(T) -> C,
+    asked: &mut Vec<Command>,
+) {
+    for (choice, name, tooltip) in of {
+        if tipped(ui.selectable_label(choice == chosen, name), tooltip).clicked() && choice != chosen {
+            asked.push(command(choice).into());
+        }
     }
 }
 
@@ -100,6 +125,7 @@ pub fn tooltip(ui: &Ui, command: &Command) -> String {
 mod tests {
     use super::*;
     use crate::app::state::ViewCommand;
+    use crate::app::widgets::seen::User;
     use eframe::egui::Shape;
     use egui_kittest::Harness;
     use egui_kittest::kittest::{NodeT, Queryable};
@@ -119,8 +145,7 @@ mod tests {
             let node = menu.get_by_role_and_label(Role::CheckBox, "Mark true reflectors");
             let toggled = eframe::egui::accesskit::Toggled::from(on);
             assert_eq!(node.accesskit_node().toggled(), Some(toggled), "screen readers hear it");
-            let key = crate::app::widgets::seen::texts(menu.output()).into_iter().find(|t| t.text == "R");
-            assert!(key.is_some(), "its key stands beside it");
+            assert!(menu.reads("R"), "its key stands beside it");
             node.click();
             menu.step();
             assert_eq!(menu.state(), &[ViewCommand::ToggleReflectors.into()]);

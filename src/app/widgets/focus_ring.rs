@@ -22,6 +22,7 @@ pub fn draw(ctx: &Context) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
     use eframe::egui::{self, Key, Shape};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -47,8 +48,7 @@ mod tests {
         assert!(rings(&panel).is_empty(), "nothing has the focus");
         let mut seen = Vec::new();
         for _ in 0..3 {
-            panel.key_press(Key::Tab);
-            panel.run();
+            panel.presses(&[Key::Tab]);
             let rings = rings(&panel);
             assert_eq!(rings.len(), 1);
             seen.push(rings[0]);

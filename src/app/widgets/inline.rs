@@ -60,22 +60,13 @@ mod tests {
         assert_eq!(seen::texts(text.output())[0].text, "The method live draws it, nomp searches.");
     }
 
-    const PARAGRAPHS: &str = "\nThe panel *Range-Doppler*\n(Y) shows 2 * 3 cells.\n\nChoose *OS*.\n";
-
     #[test]
-    fn words_between_asterisks_stand_out() {
-        let _drawn = Harness::builder().build_ui(|ui| {
-            let job = inline(ui, PARAGRAPHS, 1.15);
+    fn words_between_asterisks_stand_out_in_paragraphs_of_one_line() {
+        let text = Harness::builder().build_ui(|ui| {
+            let job = inline(ui, "\nThe panel *Range-Doppler*\n(Y) shows 2 * 3 cells.\n\nChoose *OS*.\n", 1.15);
             let strong = job.sections.iter().filter(|s| s.format.color == ui.visuals().strong_text_color());
             let strong: Vec<&str> = strong.map(|s| &job.text[s.byte_range.start.0..s.byte_range.end.0]).collect();
             assert_eq!(strong, ["Range-Doppler", "OS"]);
-        });
-    }
-
-    #[test]
-    fn a_paragraph_has_no_line_breaks() {
-        let text = Harness::builder().build_ui(|ui| {
-            let job = inline(ui, PARAGRAPHS, 1.15);
             ui.label(job);
         });
         let expected = "The panel Range-Doppler (Y) shows 2 * 3 cells.\n\nChoose OS.";

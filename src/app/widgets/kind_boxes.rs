@@ -62,6 +62,7 @@ pub fn kind_names(chosen: &BTreeSet<Kind>, beside: Option<&str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -71,11 +72,9 @@ mod tests {
             ticking_menu(ui, "Scenes", |ui| kind_boxes(ui, Kind::all(), chosen));
         };
         let mut menu = Harness::builder().with_size([800.0, 900.0]).build_ui_state(draw, BTreeSet::new());
-        menu.get_by_label("Scenes").click();
-        menu.run();
+        menu.clicks(&["Scenes"]);
         for kind in ["walls", "clusters"] {
-            menu.get_by_label(kind).click();
-            menu.run();
+            menu.clicks(&[kind]);
         }
         assert_eq!(menu.state().len(), 2, "two boxes were ticked in one opening");
         for kind in Kind::all() {

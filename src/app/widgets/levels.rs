@@ -43,19 +43,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_level_below_200_decibels_is_told() {
+    fn no_level_below_200_decibels_or_the_floor_is_told() {
         assert_eq!([-281.5, -200.0, -199.9].map(|db| level(db, 330.0)), ["≤ −200", "≤ −200", "−199.9"]);
         assert_eq!([-281.5, 281.5, -3.0].map(difference), ["≤ −200", "≥ +200", "−3.0"]);
-    }
-
-    #[test]
-    fn the_floor_of_the_scale_is_at_most_that_low() {
         assert_eq!([-100.0, -99.9, -0.01].map(|db| level(db, 100.0)), ["≤ −100", "−99.9", "0.0"]);
-    }
-
-    #[test]
-    fn silence_is_no_echo() {
-        assert_eq!(with_unit(&level(0.0, 0.0)), "no echo");
-        assert_eq!(with_unit(&level(-3.0, 60.0)), "−3.0 dB");
+        assert_eq!([with_unit(&level(0.0, 0.0)), with_unit(&level(-3.0, 60.0))], ["no echo", "−3.0 dB"]);
     }
 }

@@ -2,8 +2,7 @@
 
 use super::kind_boxes::{member_box, ticking_menu};
 use super::numbers::significant;
-use crate::app::state::{Command, Times};
-use crate::radar::{LayoutKind, Radar};
+use crate::app::state::{Command, State};
 use crate::reconstruct::{Family, Reconstructor};
 use eframe::egui::{Align, Grid, Label, Layout, Response, RichText, Sense, Ui};
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,46 +20,25 @@ const TIME_WIDTH: f32 = 56.0;
 /// Most methods that the menu's title names; more are counted.
 const MOST_NAMED: usize = 2;
 
-/// The methods to choose from, with their times.
-#[derive(Clone, Copy)]
-pub struct Offered<'a> {
-    /// Every method.
-    pub all: &'a [Arc<dyn Reconstructor>],
-    /// The radar of the scene on screen, where there is one.
-    #[cfg_attr(not(feature = "live"), allow(dead_code, reason = "the networks for it are listed"))]
-    pub radar: Option<&'a Radar>,
-    /// The layout that methods are to use; the two ends where `None`.
-    pub layout: Option<&'a LayoutKind>,
-    /// Times of the methods on this machine.
-    pub times: Times<'a>,
-}
-
-impl<'a> Offered<'a> {
-    /// Refusals of methods that can't use the layout, by the method's name.
-    fn refusals(&self) -> BTreeMap<&'static str, String> {
-        let Some((radar, layout)) = self.radar.zip(self.layout) else { return BTreeMap::new() };
-        let Ok(layout) = layout.numbers(radar) else { return BTreeMap::new() };
-        let refusal = |method: &Arc<dyn Reconstructor>| {
-            Some((method.name(), method.check_elements(radar, &layout).err()?.to_string()))
-        };
-        self.all.iter().filter_map(refusal).collect()
-    }
-
-    /// Methods without known times.
-    #[cfg(test)]
-    pub fn untimed(all: &'a [Arc<dyn Reconstructor>]) -> Self {
-        Offered { all, radar: None, layout: None, times: Times::default() }
-    }
+/// Refusals of methods that can't use the layout in use, by the method's name.
+fn refusals(state: &State) -> BTreeMap<&'static str, String> {
+    let Some(Ok(layout)) = state.settings.layout.as_ref().map(|layout| layout.numbers(state.radar())) else {
+        return BTreeMap::new();
+    };
+    let refusal = |method: &Arc<dyn Reconstructor>| {
+        Some((method.name(), method.check_elements(state.radar(), &layout).err()?.to_string()))
+    };
+    state.methods.all.iter().filter_map(refusal).collect()
 }
 
 /// Draws a menu of methods with a box for each; its title names those of `chosen`.
-pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'static str>, tip: &str) {
+pub fn method_menu(ui: &mut Ui, state: &State, chosen: &mut BTreeSet<&'static str>, tip: &str) {
     let title = match chosen.len() {
         count if count > MOST_NAMED => format!("{count} methods"),
         _ => chosen.iter().copied().collect::<Vec<_>>().join(", "),
     };
     let menu = ticking_menu(ui, &format!("Methods: {title}"), |ui| {
-        _ = method_lines(ui, offered, |ui, method| member_box(ui, method.name(), method.name(), chosen));
+        _ = method_lines(ui, state, |ui, method| member_box(ui, method.name(), method.name(), chosen));
     });
     menu.on_hover_text(tip);
 }
@@ -68,14 +46,14 @@ pub fn method_menu(ui: &mut Ui, offered: Offered<'_>, chosen: &mut BTreeSet<&'st
 /// The content of a popup for choosing one method, scrolled to the chosen one. Another choice adds the command of `choose` to `asked`.
 pub fn method_list(
     ui: &mut Ui,
-    offered: Offered<'_>,
+    state: &State,
     chosen: &str,
     choose: impl Fn(&'static str) -> Command,
     asked: &mut Vec<Command>,
 ) {
     let has_opened = has_opened(ui);
     let mut clicked = None;
-    let described = method_lines(ui, offered, |ui, method| {
+    let described = method_lines(ui, state, |ui, method| {
         let is_chosen = method.name() == chosen;
         let response = ui.selectable_label(is_chosen, method.name());
         if response.clicked() {
@@ -87,9 +65,7 @@ pub fn method_list(
         response
     });
     #[cfg(feature = "live")]
-    if let Some(radar) = offered.radar {
-        super::networks::networks(ui, offered.all, radar, asked);
-    }
+    super::networks::networks(ui, &state.methods.all, state.radar(), asked);
     ui.separator();
     ui.weak("Times are medians of the latest runs on this machine, with this radar.");
     if let Some(name) = clicked.or(described) {
@@ -112,14 +88,14 @@ fn has_opened(ui: &Ui) -> bool {
 /// A row for each method by family: the widget drawn by `name`, description and time. Returns the method whose description was clicked.
 pub fn method_lines(
     ui: &mut Ui,
-    offered: Offered<'_>,
+    state: &State,
     mut name: impl FnMut(&mut Ui, &dyn Reconstructor) -> Response,
 ) -> Option<&'static str> {
-    let (mut clicked, refusals) = (None, offered.refusals());
+    let (mut clicked, refusals) = (None, refusals(state));
     let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 180.0 - TIME_WIDTH).max(120.0));
     Grid::new("methods").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
         for family in Family::ALL {
-            let mut of_family = offered.all.iter().filter(|method| method.family() == family).peekable();
+            let mut of_family = state.methods.all.iter().filter(|method| method.family() == family).peekable();
             if of_family.peek().is_none() {
                 continue;
             }
@@ -141,7 +117,7 @@ pub fn method_lines(
                         clicked = Some(method.name());
                     }
                 });
-                time(ui, offered.times.typical_ms(method.name()));
+                time(ui, state.method_times.typical_ms(state.radar(), method.name()));
                 ui.end_row();
             }
         }
@@ -166,48 +142,36 @@ fn time_text(ms: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::{MethodTimes, ViewCommand};
-    use crate::app::widgets::seen;
+    use crate::app::state::{Methods, ViewCommand};
+    use crate::app::widgets::seen::{self, User};
+    use crate::radar::{LayoutKind, Radar};
+    use crate::scene::Scene;
     use egui_kittest::Harness;
     use egui_kittest::kittest::{NodeT, Queryable};
     use std::time::Duration;
 
-    struct Popup {
-        times: MethodTimes,
-        asked: Vec<Command>,
-    }
-
-    /// A popup of all methods of 300 points.
-    fn popup(chosen: &'static str) -> Harness<'static, Popup> {
-        popup_of(chosen, None)
-    }
-
-    /// The same popup, with a layout in use.
-    fn popup_of(chosen: &'static str, layout: Option<LayoutKind>) -> Harness<'static, Popup> {
-        let mut times = MethodTimes::default();
-        times.record(&Radar::default(), chosen, Duration::from_millis(1240));
-        let all = crate::methods::all();
+    /// A popup of all methods of 300 points, with a layout in use or not.
+    fn popup(chosen: &'static str, layout: Option<LayoutKind>) -> Harness<'static, Vec<Command>> {
         let radar = Radar { elements: 86, end_elements: 8, ..Radar::default() };
-        let draw = move |ui: &mut Ui, popup: &mut Popup| {
-            let layout = layout.as_ref();
-            let (radar, times) = (layout.map(|_| &radar), popup.times.on(&Radar::default()));
-            let offered = Offered { all: &all, radar, layout, times };
+        let mut state = State { methods: Methods::new(crate::methods::all()), ..State::of(radar, Scene::default()) };
+        state.method_times.record(&state.editor.radar().clone(), chosen, Duration::from_millis(1240));
+        state.settings.layout = layout;
+        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
             eframe::egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
-                method_list(ui, offered, chosen, |v| ViewCommand::Method(v).into(), &mut popup.asked);
+                method_list(ui, &state, chosen, |v| ViewCommand::Method(v).into(), asked);
             });
         };
-        let size = [700.0, 320.0];
-        Harness::builder().with_size(size).build_ui_state(draw, Popup { times, asked: Vec::new() })
+        Harness::builder().with_size([700.0, 320.0]).build_ui_state(draw, Vec::new())
     }
 
-    fn in_sight(popup: &Harness<'_, Popup>, text: &str) -> bool {
+    fn in_sight(popup: &Harness<'_, Vec<Command>>, text: &str) -> bool {
         seen::texts(popup.output()).iter().any(|t| t.text == text && t.clip.contains_rect(t.rect))
     }
 
     #[test]
     fn it_opens_at_the_chosen_method() {
         for chosen in ["baseline", "sbl", "esprit", "nomp"] {
-            let mut popup = popup(chosen);
+            let mut popup = popup(chosen, None);
             popup.run_steps(4);
             assert!(in_sight(&popup, chosen), "{chosen}: {:?}", seen::texts(popup.output()));
         }
@@ -215,7 +179,7 @@ mod tests {
 
     #[test]
     fn methods_that_cannot_hear_the_layout_are_grey_and_say_why() {
-        let mut popup = popup_of("iaa", Some(LayoutKind::Nested { neighbours: 8, apart: 8 }));
+        let mut popup = popup("iaa", Some(LayoutKind::Nested { neighbours: 8, apart: 8 }));
         popup.run_steps(4);
         let is_grey = |label: &str| popup.get_by_label(label).accesskit_node().is_disabled();
         let grey = ["capon", "baseline", "iaa", "matched-filter"].map(is_grey);
@@ -224,37 +188,21 @@ mod tests {
         popup.run_steps(60);
         let told = "it hears the two ends of an array";
         assert!(seen::texts(popup.output()).iter().any(|text| text.text.contains(told)));
-        popup.get_by_label("capon").click();
-        popup.run_steps(2);
-        assert_eq!(popup.state().asked, []);
+        popup.clicks(&["capon"]);
+        assert_eq!(popup.state()[..], []);
     }
 
     #[test]
-    fn every_method_stands_under_its_family() {
-        let mut popup = popup("nomp");
+    fn a_method_stands_under_its_family_with_its_measured_time() {
+        let mut popup = popup("nomp", None);
         popup.run_steps(4);
         let at = |label: &str| popup.get_by_label(label).rect().top();
         let order = ["Search", "nomp", "Sparse", "sbl", "Classical", "baseline", "capon"];
         assert!(order.windows(2).all(|pair| at(pair[0]) < at(pair[1])), "{order:?}");
-    }
-
-    #[test]
-    fn a_method_tells_the_time_that_was_measured() {
-        let mut popup = popup("nomp");
-        popup.run_steps(4);
         assert!(in_sight(&popup, "1.24 s"));
-        let of_others = seen::texts(popup.output()).iter().filter(|t| t.text == "–").count();
-        assert!(of_others > 0, "no time is told that was not measured");
-    }
-
-    #[test]
-    fn a_click_on_the_description_chooses_too() {
-        let mut popup = popup("nomp");
-        popup.run_steps(4);
-        let text = crate::methods::by_name("hybrid").unwrap().description();
-        popup.get_by_label(text).click();
-        popup.run_steps(2);
-        assert_eq!(popup.state().asked, [Command::View(ViewCommand::Method("hybrid"))]);
+        assert!(popup.reads("–"), "no time is told that was not measured");
+        popup.clicks(&[crate::methods::by_name("hybrid").unwrap().description()]);
+        assert_eq!(popup.state()[..], [Command::View(ViewCommand::Method("hybrid"))], "the description chooses, too");
     }
 
     #[test]

@@ -1,29 +1,50 @@
 //! Widgets of panels: axes, charts, directions and levels as text, colours, buttons of commands, drawn buttons, boxes of scene kinds, number fields, progress
-//! bars, the focus ring, textures.
+//! bars, the focus ring, textures. Panels import them from here.
 
 pub mod axes;
-pub mod chart;
-pub mod colour_bar;
-pub mod direction;
-pub mod entry;
+mod chart;
+mod colour_bar;
+mod direction;
+mod entry;
 pub mod focus_ring;
 pub mod icons;
-pub mod inline;
-pub mod kind_boxes;
-pub mod labelled;
+mod inline;
+mod kind_boxes;
+mod labelled;
 pub mod legend;
 pub mod levels;
-pub mod list_rows;
-pub mod method_menu;
+mod list_rows;
+mod method_menu;
 #[cfg(feature = "live")]
 mod networks;
-pub mod nudge;
-pub mod number_field;
-pub mod numbers;
-pub mod padded;
-pub mod progress;
+mod nudge;
+mod number_field;
+mod numbers;
+mod padded;
+mod progress;
 #[cfg(test)]
 pub mod seen;
-pub mod setting_row;
-pub mod textures;
+mod setting_row;
+mod textures;
 pub mod theme;
+
+pub use axes::{Axis, Tick};
+pub use chart::{Chart, Drawn, Span};
+pub use colour_bar::Bar;
+pub use direction::{CONVENTION, angle_degrees, angle_of_place_degrees, direction};
+pub use entry::{button, choices, entry, entry_called, item, press, tick, ticked, tooltip};
+pub use icons::{Icon, icon};
+pub use inline::inline;
+pub use kind_boxes::{kind_boxes, kind_names, member_box, ticking_menu};
+pub use labelled::{Quantity, choice, choice_told, labelled};
+pub use levels::{difference, level, lowest_db, with_unit};
+pub use list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
+pub use method_menu::{LIST_HEIGHT, method_lines, method_list, method_menu};
+pub use nudge::{focused_steps, nudge, pan_keys, zoom_keys};
+pub use number_field::{NumberField, Wanted};
+pub use numbers::{percent, plain, signed, significant};
+pub use padded::{computed, padded, scrolled, scrolled_both, warning};
+pub use progress::{bar, progress, start_or_cancel};
+pub use setting_row::{group, rarely, row, row_of};
+pub use textures::{Texture, colour_table, picture};
+pub use theme::{CAPTION, CAPTION_INK, Inks, MARK, MARK_EDGE, MARK_SELECTED};

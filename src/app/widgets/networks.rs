@@ -62,9 +62,8 @@ fn training(ui: &mut Ui, radar: &Radar) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     fn menu(radar: Radar) -> Harness<'static, Vec<Command>> {
         let all = crate::methods::all();
@@ -84,23 +83,19 @@ mod tests {
     fn networks_that_take_the_radar_are_named() {
         let mut menu = menu(Radar::default());
         assert!(says(&menu, "live") && !says(&menu, "train_live.py"), "{:?}", seen::texts(menu.output()));
-        menu.get_by_label("Open weights…").click();
-        menu.run();
+        menu.clicks(&["Open weights…"]);
         assert_eq!(menu.state(), &[Command::AskFile(Purpose::Open)]);
     }
 
     #[test]
-    fn a_radar_without_a_network_is_told_how_to_train_one() {
-        let menu = menu(Radar { elements: 86, end_elements: 8, samples: 256, ..Radar::default() });
+    fn a_radar_without_a_network_is_told_how_to_get_one_or_why_not() {
+        let of = |samples| menu(Radar { elements: 86, end_elements: 8, samples, ..Radar::default() });
+        let some = of(256);
         for text in ["none", "50000 maps in about", "--radar radar.toml --out own --minutes "] {
-            assert!(says(&menu, text), "{text}: {:?}", seen::texts(menu.output()));
+            assert!(says(&some, text), "{text}: {:?}", seen::texts(some.output()));
         }
-    }
-
-    #[test]
-    fn a_radar_that_no_network_can_have_is_told_why() {
-        let menu = menu(Radar { elements: 86, end_elements: 8, samples: 100, ..Radar::default() });
-        assert!(says(&menu, "None can be trained: its network has rows of 100; expected a multiple of 8"));
-        assert!(!says(&menu, "train_live.py"));
+        let none = of(100);
+        assert!(says(&none, "None can be trained: its network has rows of 100; expected a multiple of 8"));
+        assert!(!says(&none, "train_live.py"));
     }
 }

@@ -122,12 +122,10 @@ struct Reading {
 /// A field for a number; a builder like [`DragValue`], which it draws.
 #[must_use = "ui.add(field)"]
 pub struct NumberField<'a> {
-    get_set: Box<dyn 'a + FnMut(Option<f64>) -> f64>,
+    drag: DragValue<'a>,
+    /// The number before this frame.
+    value: f64,
     wanted: Wanted,
-    clamps: bool,
-    speed: f64,
-    min_decimals: usize,
-    max_decimals: Option<usize>,
     /// Text shown in place of the number.
     standing_for: Option<&'a str>,
 }
@@ -148,39 +146,40 @@ impl<'a> NumberField<'a> {
     }
 
     /// A field for a value that a function reads and writes.
-    pub fn from_get_set(get_set: impl 'a + FnMut(Option<f64>) -> f64) -> Self {
-        let (clamps, speed, min_decimals, max_decimals, standing_for) = (true, 1.0, 0, None, None);
-        let wanted = Wanted::any();
-        NumberField { get_set: Box::new(get_set), wanted, clamps, speed, min_decimals, max_decimals, standing_for }
+    pub fn from_get_set(mut get_set: impl 'a + FnMut(Option<f64>) -> f64) -> Self {
+        let value = get_set(None);
+        let drag = DragValue::from_get_set(get_set).update_while_editing(false);
+        NumberField { drag, value, wanted: Wanted::any(), standing_for: None }
     }
 
     /// Sets the accepted numbers; a drag stops at the ends.
     pub fn range<Num: emath::Numeric>(mut self, range: RangeInclusive<Num>) -> Self {
         self.wanted.range = range.start().to_f64()..=range.end().to_f64();
+        self.drag = self.drag.range(range);
         self
     }
 
     /// Sets whether an existing value out of range is moved into it.
     pub fn clamp_existing_to_range(mut self, clamps: bool) -> Self {
-        self.clamps = clamps;
+        self.drag = self.drag.clamp_existing_to_range(clamps);
         self
     }
 
     /// Sets the change of the number for each point of a drag.
     pub fn speed(mut self, speed: f64) -> Self {
-        self.speed = speed;
+        self.drag = self.drag.speed(speed);
         self
     }
 
     /// Sets the least number of decimals shown.
     pub fn min_decimals(mut self, decimals: usize) -> Self {
-        self.min_decimals = decimals;
+        self.drag = self.drag.min_decimals(decimals);
         self
     }
 
     /// Sets the most decimals shown; with 0 only whole numbers are accepted.
     pub fn max_decimals(mut self, decimals: usize) -> Self {
-        (self.max_decimals, self.wanted.is_whole) = (Some(decimals), decimals == 0);
+        (self.drag, self.wanted.is_whole) = (self.drag.max_decimals(decimals), decimals == 0);
         self
     }
 
@@ -203,25 +202,16 @@ impl<'a> NumberField<'a> {
 }
 
 impl Widget for NumberField<'_> {
-    fn ui(mut self, ui: &mut Ui) -> Response {
+    fn ui(self, ui: &mut Ui) -> Response {
         let id = ui.next_auto_id();
-        let value = (self.get_set)(None);
+        let value = self.value;
         let before = wrong_of(ui, id, value);
         let reading = Rc::new(RefCell::new(Reading::default()));
         let unit = if self.standing_for.is_some() || before.is_some() { "" } else { self.wanted.unit.as_str() };
-        let mut drag = DragValue::from_get_set(&mut self.get_set)
-            .range(self.wanted.range.clone())
-            .clamp_existing_to_range(self.clamps)
-            .update_while_editing(false)
-            .speed(self.speed)
-            .min_decimals(self.min_decimals)
-            .suffix(unit.to_owned());
-        if let Some(decimals) = self.max_decimals {
-            drag = drag.max_decimals(decimals);
-        }
+        let drag = self.drag.suffix(unit.to_owned());
         let (shows, text, formatter) =
             (reading.clone(), before.as_ref().map(|b| b.text.clone()), ui.style().number_formatter.clone());
-        drag = drag.custom_formatter(move |value, decimals| {
+        let drag = drag.custom_formatter(move |value, decimals| {
             let shown = text.clone().or(self.standing_for.map(str::to_owned));
             let shown = shown.unwrap_or_else(|| formatter.format(value, decimals));
             shows.borrow_mut().shown.clone_from(&shown);
@@ -229,7 +219,7 @@ impl Widget for NumberField<'_> {
         });
         let (reads, wanted, is_wrong) = (reading.clone(), self.wanted.clone(), before.is_some());
         let gave_up = was_given_up(ui, id);
-        drag = drag.custom_parser(move |text| {
+        let drag = drag.custom_parser(move |text| {
             let mut reading = reads.borrow_mut();
             if gave_up {
                 return None;

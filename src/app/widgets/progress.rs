@@ -50,7 +50,7 @@ pub fn progress(ui: &mut Ui, part: f32, width: f32, cancel_tooltip: &str) -> boo
 mod tests {
     use super::*;
     use crate::app::state::RowsCommand;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -66,11 +66,9 @@ mod tests {
         };
         let mut row = Harness::builder().with_size([400.0, 60.0]).build_ui_state(draw, false);
         let before = (row.get_by_label("Try").rect(), row.get_by_label("Save…").rect());
-        row.get_by_label("Try").click();
-        row.run();
+        row.clicks(&["Try"]);
         assert_eq!((row.get_by_label("Cancel").rect(), row.get_by_label("Save…").rect()), before);
-        row.get_by_label("Cancel").click();
-        row.run();
+        row.clicks(&["Cancel"]);
         assert!(!row.state());
     }
 

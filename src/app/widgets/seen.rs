@@ -1,7 +1,9 @@
-//! Texts of a drawn frame, for tests: their places, and whether they are readable.
+//! Texts of a drawn frame and actions of a user, for tests.
 
 use eframe::egui::epaint::{ClippedShape, Shape};
-use eframe::egui::{FullOutput, Rect};
+use eframe::egui::{Event, FullOutput, Key, Modifiers, Pos2, Rect};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 
 /// A text on screen.
 #[derive(Debug, Clone)]
@@ -46,5 +48,65 @@ pub fn assert_readable(output: &FullOutput) {
         for b in &texts[i + 1..] {
             assert!(!a.rect.shrink(1.0).intersects(b.rect.shrink(1.0)), "one over the other: {a:?}, {b:?}");
         }
+    }
+}
+
+/// A user before a harness. Each action ends when the window rests, after four frames at most.
+pub trait User {
+    /// Clicks the widgets with these labels, one after the other.
+    fn clicks(&mut self, labels: &[&str]);
+    /// Presses keys one after the other.
+    fn presses(&mut self, keys: &[Key]);
+    /// Types a text in place of the text of a field, and enters it.
+    fn enters(&mut self, label: &str, text: &str);
+    /// Drags the pointer through these places.
+    fn drags(&mut self, places: &[Pos2]);
+    /// Whether one text on screen is `text`.
+    fn reads(&self, text: &str) -> bool;
+}
+
+impl<S> User for Harness<'_, S> {
+    fn clicks(&mut self, labels: &[&str]) {
+        for label in labels {
+            self.get_by_label(label).click();
+            self.run_ok();
+        }
+    }
+
+    fn presses(&mut self, keys: &[Key]) {
+        for key in keys {
+            self.key_press(*key);
+            self.run_ok();
+        }
+    }
+
+    fn enters(&mut self, label: &str, text: &str) {
+        let role = |node: &egui_kittest::Node<'_>| {
+            use eframe::egui::accesskit::Role::{SpinButton, TextInput};
+            [SpinButton, TextInput].contains(&egui_kittest::kittest::NodeT::accesskit_node(node).role())
+        };
+        self.query_all_by_label(label).find(role).expect(label).focus();
+        self.run_ok();
+        self.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        self.event(Event::Text(text.to_owned()));
+        self.run_ok();
+        self.presses(&[Key::Enter]);
+    }
+
+    fn drags(&mut self, places: &[Pos2]) {
+        self.hover_at(places[0]);
+        self.step();
+        self.drag_at(places[0]);
+        self.step();
+        for place in &places[1..] {
+            self.hover_at(*place);
+            self.step();
+        }
+        self.drop_at(places[places.len() - 1]);
+        self.run_ok();
+    }
+
+    fn reads(&self, text: &str) -> bool {
+        texts(self.output()).iter().any(|t| t.text == text)
     }
 }

@@ -52,7 +52,7 @@ fn fold(ui: &mut Ui, text: RichText, salt: &str, open: bool, content: impl FnOnc
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -80,8 +80,7 @@ mod tests {
         let draw = |ui: &mut Ui| rarely(ui, "Noise seed and carrier", |ui| _ = ui.label("Two-way"));
         let mut folded = Harness::builder().with_size([260.0, 200.0]).build_ui(draw);
         assert!(folded.query_by_label("Two-way").is_none());
-        folded.get_by_label("Noise seed and carrier").click();
-        folded.run();
+        folded.clicks(&["Noise seed and carrier"]);
         let _open = folded.get_by_label("Two-way");
     }
 }

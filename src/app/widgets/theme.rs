@@ -1,9 +1,8 @@
 //! Colours and spacing of the interface.
 
 use crate::app::state::Brightness;
-use eframe::egui;
 use eframe::egui::style::{ScrollFadeStyle, ScrollStyle};
-use eframe::egui::{Color32, Context, CornerRadius, Visuals};
+use eframe::egui::{self, Color32, Context, CornerRadius, Visuals};
 
 /// Colours of the scene and of marks over maps.
 #[derive(Debug, Clone, Copy)]
@@ -160,11 +159,6 @@ mod tests {
     }
 
     #[test]
-    fn captions_are_readable() {
-        assert!(contrast(CAPTION_INK, CAPTION) >= 7.0, "{}", contrast(CAPTION_INK, CAPTION));
-    }
-
-    #[test]
     fn every_text_is_readable_in_dark_and_light() {
         let ctx = Context::default();
         apply(&ctx, Brightness::Dark);
@@ -176,17 +170,15 @@ mod tests {
                 let verdicts = [true, false].map(|is_right| verdict(&visuals, is_right));
                 let others = [visuals.text_color(), weak, error, visuals.warn_fg_color, visuals.hyperlink_color];
                 for ink in others.into_iter().chain(verdicts) {
-                    assert!(
-                        contrast(ink, ground) >= 4.5,
-                        "{theme:?}: {ink:?} on {ground:?}: {}",
-                        contrast(ink, ground)
-                    );
+                    let seen = contrast(ink, ground);
+                    assert!(seen >= 4.5, "{theme:?}: {ink:?} on {ground:?}: {seen}");
                 }
             }
             for ground in [inks.ground, inks.beyond] {
                 assert!(contrast(inks.grid_text, ground) >= 4.5, "{theme:?}: the scene's grid");
             }
             assert!(error.r() < 255 || error.g() > 100, "{theme:?}: pure red flickers");
+            assert!(contrast(CAPTION_INK, CAPTION) >= 7.0, "captions");
         }
     }
 }

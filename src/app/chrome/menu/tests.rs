@@ -1,59 +1,48 @@
 use super::*;
+use crate::app::state::Methods;
+use crate::app::widgets::seen::User;
+use crate::radar::Radar;
+use crate::recording::Recording;
+use crate::scene::{Object, Point};
+use crate::signal::BeatSignal;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
+/// The bar for a method that finds reflectors in a recording, or for a scene without methods.
 fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'static, (MenuMemory, Vec<Command>)> {
+    let mut state = match finds_reflectors {
+        true => {
+            let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
+            let recording = Recording::of_signal(radar.clone(), BeatSignal::silence(&radar));
+            let mut state = State { methods: Methods::new(crate::methods::all()), ..State::recorded(recording) };
+            state.settings.method = "nomp".to_owned();
+            state
+        }
+        false => State::new(Vec::new()),
+    };
+    state.settings.developer = developer;
+    state.editor.add(Object::Point(Point::new(0.0, 9.0)));
     let draw = move |ui: &mut Ui, asked: &mut (MenuMemory, Vec<Command>)| {
-        let input = Input {
-            presents: false,
-            can_undo: true,
-            can_redo: false,
-            selected: true,
-            projection: Projection::RangeAngle,
-            random: (0, 0),
-            recent: &[],
-            finds_reflectors,
-            has_recording: finds_reflectors,
-            left: &[],
-            task: Task::Explore,
-            is_open: &|panel| panel == Panel::Scene,
-            is_on: &|command| match command {
-                Command::View(ViewCommand::ToggleTheory) => Some(true),
-                Command::View(ViewCommand::ToggleDeveloper) => Some(developer),
-                _ => None,
-            },
-        };
-        let commands = show(ui, input, &mut asked.0);
+        let commands = show(ui, &state, &mut asked.0);
         asked.1.extend(commands);
     };
     Harness::builder().with_size([width, 800.0]).build_ui_state(draw, (MenuMemory::default(), vec![]))
 }
 
-fn bar_of(width: f32, finds_reflectors: bool) -> Harness<'static, (MenuMemory, Vec<Command>)> {
-    bar_for(width, finds_reflectors, true)
-}
-
 fn bar(width: f32) -> Harness<'static, (MenuMemory, Vec<Command>)> {
-    bar_of(width, true)
-}
-
-fn open(menu: &mut Harness<'_, (MenuMemory, Vec<Command>)>, labels: &[&str]) {
-    for label in labels {
-        menu.get_by_label(label).click();
-        menu.run();
-    }
+    bar_for(width, true, true)
 }
 
 #[test]
 fn panels_for_developers_are_listed_where_their_switch_is_on() {
     let mut menu = bar_for(900.0, true, false);
-    open(&mut menu, &["Tools"]);
+    menu.clicks(&["Tools"]);
     let _tool = menu.get_by_label("Bounds");
     for panel in Panel::all().into_iter().filter(|panel| panel.is_developer()) {
         assert!(menu.query_by_label(panel.title()).is_none(), "{panel:?}");
     }
     let mut menu = bar(900.0);
-    open(&mut menu, &["Tools", "Training"]);
+    menu.clicks(&["Tools", "Training"]);
     assert_eq!(menu.state().1, [Command::Window(WindowCommand::OpenPanel(Panel::Training))]);
 }
 
@@ -62,7 +51,7 @@ fn every_tile_stands_in_one_menu() {
     let mut found: Vec<Panel> = Vec::new();
     for menus in [&["View", "Panels"][..], &["Tools"], &["Help"]] {
         let mut menu = bar(900.0);
-        open(&mut menu, menus);
+        menu.clicks(menus);
         let listed = |panel: &Panel| {
             menu.query_all_by_role_and_label(egui::accesskit::Role::CheckBox, panel.tile_title()).next().is_some()
         };
@@ -83,7 +72,7 @@ fn the_palette_names_the_menus_in_which_a_command_stands() {
     assert!(paths.len() > 10, "{paths:?}");
     for path in paths {
         let mut menu = bar(900.0);
-        open(&mut menu, path);
+        menu.clicks(path);
         for entry in listed().iter().filter(|e| menu_path(&e.command) == path) {
             // Names in the palette begin with the menu's title. Presets are named as their scenes.
             let name = entry.name.split_once(": ").map_or(entry.name.as_ref(), |(_, rest)| rest);
@@ -97,51 +86,41 @@ fn the_palette_names_the_menus_in_which_a_command_stands() {
 #[test]
 fn the_help_menu_lists_its_pages() {
     let mut menu = bar(900.0);
-    open(&mut menu, &["Help"]);
+    menu.clicks(&["Help"]);
     for name in ["Guide", "Captions on the maps", "Keys and pointer", "Where figures come from", "About apertura"] {
         assert!(menu.query_by_label(name).is_some(), "{name}");
     }
-    open(&mut menu, &["Keys and pointer"]);
+    menu.clicks(&["Keys and pointer"]);
     assert_eq!(menu.state().1, [Command::Window(WindowCommand::Help(HelpPage::Keys))]);
 }
 
 #[test]
-fn random_scenes_have_a_menu_of_their_own() {
+fn random_scenes_have_a_menu_of_their_own_with_their_seed() {
     let mut menu = bar(900.0);
-    open(&mut menu, &["Scene"]);
+    menu.clicks(&["Scene"]);
     let name = Kind::Walls.description();
     assert!(menu.query_by_label_contains(name).is_none());
-    open(&mut menu, &["Random scene"]);
+    menu.clicks(&["Random scene"]);
     let is_listed = |kind: Kind| menu.query_all_by_label_contains(kind.description()).next().is_some();
     assert!(Kind::all().all(is_listed));
     menu.get_by_label_contains(name).click();
     menu.run();
     assert_eq!(menu.state().1, [Command::Document(DocumentCommand::RandomScene(Kind::Walls))]);
     assert!(menu.query_by_label("Fit scene").is_none(), "the menu has closed");
-}
-
-#[test]
-fn the_seed_of_random_scenes_is_typed_in_the_menu() {
-    use egui::accesskit::Role;
-    let mut menu = bar(900.0);
-    open(&mut menu, &["Scene", "Random scene"]);
-    menu.get_by_role_and_label(Role::SpinButton, "Next: seed").click();
-    menu.run();
-    menu.event(egui::Event::Text("7".to_owned()));
-    menu.run();
-    menu.key_press(egui::Key::Enter);
-    menu.run();
-    assert_eq!(menu.state().1, [Command::Document(DocumentCommand::SetNextRandom { seed: 7, number: 0 })]);
+    menu.clicks(&["Scene", "Random scene"]);
+    menu.enters("Next: seed", "7");
+    let next = DocumentCommand::SetNextRandom { seed: 7, number: 0 };
+    assert_eq!(menu.state().1.last(), Some(&Command::Document(next)));
 }
 
 #[test]
 fn panels_with_nothing_to_show_are_not_listed() {
     for finds in [true, false] {
-        let mut menu = bar_of(900.0, finds);
-        open(&mut menu, &["Tools"]);
+        let mut menu = bar_for(900.0, finds, true);
+        menu.clicks(&["Tools"]);
         assert_eq!(menu.query_by_label("Found").is_some(), finds);
-        let mut menu = bar_of(900.0, finds);
-        open(&mut menu, &["View", "Panels"]);
+        let mut menu = bar_for(900.0, finds, true);
+        menu.clicks(&["View", "Panels"]);
         assert_eq!(menu.query_by_label("Unexplained").is_some(), finds);
     }
 }
@@ -149,16 +128,7 @@ fn panels_with_nothing_to_show_are_not_listed() {
 #[test]
 fn menus_ask_for_what_they_list() {
     let mut menu = bar(900.0);
-    menu.get_by_label("+ Line").click();
-    menu.step();
-    menu.get_by_label("Cartesian").click();
-    menu.step();
-    menu.get_by_label("Scene").click();
-    menu.run();
-    menu.get_by_label("Presets").click();
-    menu.run();
-    menu.get_by_label("Four reflectors").click();
-    menu.run();
+    menu.clicks(&["+ Line", "Cartesian", "Scene", "Presets", "Four reflectors"]);
     let preset = presets::ALL.iter().position(|p| p.id == "four-reflectors").unwrap();
     let projection = Command::View(ViewCommand::SetProjection(Projection::Cartesian));
     assert_eq!(
@@ -191,14 +161,13 @@ fn every_kind_of_body_has_a_button_where_there_is_room() {
     let labels = ["+ Wall", "+ Box", "+ Post", "+ Polygon"];
     let mut wide = bar(1440.0);
     for label in labels {
-        wide.get_by_label(label).click();
-        wide.step();
+        wide.clicks(&[label]);
     }
     let kinds = [NewObject::Wall, NewObject::Box, NewObject::Post, NewObject::Polygon];
     let wanted: Vec<Command> = kinds.map(|kind| Command::Edit(EditCommand::Add(kind, None))).to_vec();
     assert_eq!(wide.state().1, wanted);
     let mut medium = bar(1000.0);
     assert!(labels.iter().all(|label| medium.query_by_label(label).is_none()));
-    open(&mut medium, &["+ Body", "Add post"]);
+    medium.clicks(&["+ Body", "Add post"]);
     assert_eq!(medium.state().1, wanted[2..3]);
 }

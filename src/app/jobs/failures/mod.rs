@@ -13,6 +13,7 @@ pub use table::RowTable;
 pub use table::some_row;
 pub use thumbnails::{Album, HEIGHT as THUMBNAIL_HEIGHT, Thumbnail, WIDTH as THUMBNAIL_WIDTH};
 
+use super::background::Background;
 use super::rows::{Plan, RowJob, Stopped, Teller};
 use crate::app::state::{Conditions, State};
 use crate::evaluate::campaign::{Campaign, Unfit};
@@ -27,7 +28,7 @@ use search::Search;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
-use store::{Done, Store};
+use store::{Done, begin};
 use thumbnails::Thumbnails;
 
 /// Time between two writes to disk while rows come.
@@ -52,7 +53,7 @@ impl FailuresPlan {
 }
 
 /// A plan, the table that its rows belong to, and the album of their thumbnails.
-struct Run {
+pub struct Run {
     plan: FailuresPlan,
     generation: u64,
     album: Album,
@@ -85,12 +86,16 @@ impl Plan for Run {
 
 /// The rows, and the threads that make more.
 pub struct Failures {
-    run: RowJob<Run>,
-    table: RowTable,
+    /// The run of methods on scenes, whose rows go into the table.
+    pub run: RowJob<Run>,
+    /// The rows.
+    pub table: RowTable,
     /// The rows last replaced by others.
     before: Option<(Arc<Vec<Row>>, Conditions)>,
-    thumbnails: Thumbnails,
-    store: Store,
+    /// Small maps of rows.
+    pub thumbnails: Thumbnails,
+    /// Files of rows being read and written.
+    files: Background<Done>,
     /// The search near the scene on screen.
     pub search: Search,
     /// The app's own file of rows, if it keeps one.
@@ -106,14 +111,14 @@ impl Failures {
         let wake = platform::waker(ctx);
         let thumbnails = Thumbnails::start(wake.clone());
         let run = RowJob::start(wake.clone());
-        let store = Store::new(ctx.clone());
+        let files = Background::new(ctx.clone());
         let file = folder.map(|folder| folder.join(FILE));
-        if let Some(file) = file.as_ref().filter(|file| fs::exists(file)) {
-            store.read(file.clone(), true);
+        if let Some(file) = file.clone().filter(|file| fs::exists(file)) {
+            begin(&files, move || Done::read(file, true));
         }
         let search = Search::start(wake);
         let table = RowTable::default();
-        Failures { run, table, before: None, thumbnails, store, search, file, kept: 0, written: None }
+        Failures { run, table, before: None, thumbnails, files, search, file, kept: 0, written: None }
     }
 
     /// Starts a run of `plan`. Rows of the same conditions, format and layout stay. Others are replaced, as their figures don't compare.
@@ -128,11 +133,6 @@ impl Failures {
         self.thumbnails.stop();
         let album = self.thumbnails.album.clone();
         self.run.begin(Run { plan, generation: self.table.generation(), album });
-    }
-
-    /// Stops after the map under way; finished rows stay.
-    pub fn cancel(&mut self) {
-        self.run.cancel();
     }
 
     /// Removes every row.
@@ -166,37 +166,12 @@ impl Failures {
     /// Reads the rows of a file, which replace all others once read.
     pub fn open(&mut self, path: PathBuf) {
         self.run.cancel();
-        self.store.read(path, false);
-    }
-
-    /// The rows.
-    pub fn table(&self) -> &RowTable {
-        &self.table
-    }
-
-    /// Finished part of a run, 0 to 1, while methods are tried.
-    pub fn progress(&self) -> Option<f32> {
-        self.run.progress()
-    }
-
-    /// Methods that failed on scenes of the last run, which have no rows of these methods.
-    pub fn unfit(&self) -> &[Unfit] {
-        self.run.end().map_or(&[], Vec::as_slice)
-    }
-
-    /// The reason why the last run ended early, if it did.
-    pub fn note(&self) -> Option<&str> {
-        self.run.note()
-    }
-
-    /// Thumbnails of rows.
-    pub fn album(&self) -> &Album {
-        &self.thumbnails.album
+        begin(&self.files, move || Done::read(path, false));
     }
 
     /// Whether files or thumbnails are under way.
     pub fn is_busy(&self) -> bool {
-        self.store.is_busy() || self.thumbnails.is_busy()
+        self.files.is_busy() || self.thumbnails.is_busy()
     }
 
     /// Whether the app's own file holds every row.
@@ -220,7 +195,7 @@ impl Failures {
         let mut errors = Vec::from_iter(self.run.poll());
         self.take_in_rows();
         errors.extend(self.thumbnails.poll());
-        for done in self.store.poll() {
+        for done in self.files.finished() {
             match done {
                 Done::Read { own, kept: Ok((rows, conditions)), .. } => {
                     errors.extend(said_of_older(&rows));
@@ -262,20 +237,22 @@ impl Failures {
 
     /// Asks for thumbnails of the rows in sight, and writes changed rows to disk. Returns the time until the next write, if one waits.
     pub fn ask(&mut self, state: &State, shown: bool) -> Option<Duration> {
-        let runs = self.progress().is_some();
+        let runs = self.run.progress().is_some();
         if shown && !runs {
             let rows = state.failures.in_sight.iter().filter_map(|index| self.table.rows().get(*index));
             let method = |name: &str| state.methods.all.iter().find(|m| m.name() == name).cloned();
             self.thumbnails.ask(self.table.generation(), self.table.conditions(), rows, method);
         }
         let file = self.file.as_ref()?;
-        if self.is_kept() || self.store.is_busy() {
+        if self.is_kept() || self.files.is_busy() {
             return None;
         }
         let wait = self.written.filter(|_| runs).and_then(|when| SAVE_INTERVAL.checked_sub(when.elapsed()));
         if wait.is_none() {
-            let (rows, conditions) = (self.table.rows().clone(), self.table.conditions().clone());
-            self.store.write(file.clone(), rows, conditions, self.table.version());
+            let (rows, conditions, version) =
+                (self.table.rows().clone(), self.table.conditions().clone(), self.table.version());
+            let file = file.clone();
+            begin(&self.files, move || Done::write(&file, &rows, &conditions, version));
             self.written = Some(Instant::now());
         }
         wait
@@ -287,7 +264,7 @@ impl Failures {
     /// The reason why they could not be written.
     pub fn keep_now(&mut self) -> Result<(), String> {
         // A write under way would otherwise overwrite this one.
-        while self.store.is_busy() {
+        while self.files.is_busy() {
             std::thread::sleep(Duration::from_millis(1));
         }
         self.poll();

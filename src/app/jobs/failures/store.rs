@@ -7,10 +7,8 @@ use crate::files::{read_bounded, write_atomically, write_bytes};
 use crate::platform::fs::{self, File};
 use crate::radar::Radar;
 use crate::scene::generate::{Purpose, Reading};
-use eframe::egui::Context;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// Largest size of a file of conditions, bytes.
 const MAX_CONDITIONS_BYTES: u64 = 64 << 10;
@@ -134,46 +132,24 @@ pub enum Done {
     Unwritten(String),
 }
 
-/// Reads and writes of rows, on threads of their own.
-pub struct Store(Background<Done>);
-
-impl Store {
-    /// No work yet; `wake` draws another frame when a file is read or written.
-    pub fn new(wake: Context) -> Store {
-        Store(Background::new(wake))
+/// Begins a read or write of rows on a thread of its own.
+pub fn begin(files: &Background<Done>, work: impl FnOnce() -> Done + Send + 'static) {
+    let failed = |why| Done::Unwritten(format!("failed: {why}"));
+    if let Err(error) = files.begin("rows", work, failed) {
+        tracing::error!("rows can't be read or written: {error}");
     }
+}
 
+impl Done {
     /// Reads a file of rows; `own` for the app's own file.
-    pub fn read(&self, path: PathBuf, own: bool) {
-        self.begin(move || {
-            let kept = read(&path);
-            Done::Read { path, own, kept }
-        });
+    pub fn read(path: PathBuf, own: bool) -> Done {
+        let kept = read(&path);
+        Done::Read { path, own, kept }
     }
 
     /// Writes the app's own file.
-    pub fn write(&self, path: PathBuf, rows: Arc<Vec<Row>>, conditions: Conditions, version: u64) {
-        self.begin(move || match write(&path, &rows, &conditions) {
-            Ok(()) => Done::Wrote(version),
-            Err(error) => Done::Unwritten(error),
-        });
-    }
-
-    fn begin(&self, work: impl FnOnce() -> Done + Send + 'static) {
-        let failed = |why| Done::Unwritten(format!("failed: {why}"));
-        if let Err(error) = self.0.begin("rows", work, failed) {
-            tracing::error!("rows can't be read or written: {error}");
-        }
-    }
-
-    /// Whether a read or write is under way.
-    pub fn is_busy(&self) -> bool {
-        self.0.is_busy()
-    }
-
-    /// Reads and writes finished since the last call.
-    pub fn poll(&self) -> Vec<Done> {
-        self.0.finished()
+    pub fn write(path: &Path, rows: &[Row], conditions: &Conditions, version: u64) -> Done {
+        write(path, rows, conditions).map_or_else(Done::Unwritten, |()| Done::Wrote(version))
     }
 }
 
@@ -213,14 +189,8 @@ mod tests {
         std::fs::write(beside(&path), "[radar]\nelements = 0\n").unwrap();
         let wrong = read(&path).unwrap_err();
         assert!(wrong.contains("conditions.toml") && wrong.contains("elements"), "{wrong}");
-    }
-
-    #[test]
-    fn rows_of_two_formats_are_not_one_table() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("rows.csv");
-        write(&path, &[some_row(0, "live"), Row { version: None, ..some_row(1, "live") }], &Conditions::default())
-            .unwrap();
+        let two_formats = [some_row(0, "live"), Row { version: None, ..some_row(1, "live") }];
+        write(&path, &two_formats, &Conditions::default()).unwrap();
         let refused = read(&path).unwrap_err();
         assert!(refused.contains("several formats; the floor \"thesis\" is 1.8 dB quieter"), "{refused}");
     }

@@ -1,8 +1,7 @@
 //! Fields of the chirp panel: the drawn element, and the duration of the chirp.
 
 use crate::app::state::{ChirpSettings, Command, RadarCommand, ViewCommand};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::{NumberField, labelled};
 use crate::radar::Radar;
 use eframe::egui::Ui;
 

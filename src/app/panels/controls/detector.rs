@@ -1,8 +1,7 @@
 //! Thresholds for the whole map or a detector with a constant false-alarm rate, and the detector's cells.
 
 use crate::app::state::{Command, Settings, ViewCommand};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::setting_row::{row, row_of};
+use crate::app::widgets::{NumberField, choices, row, row_of};
 use crate::maps::cfar::{Cfar, MOST_CELLS, Statistic};
 use eframe::egui::{Response, Ui};
 
@@ -25,12 +24,7 @@ pub fn choice(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
             ),
         ];
         let chosen = settings.cfar.map(|cfar| cfar.statistic);
-        for (statistic, name, tooltip) in of {
-            let clicked = ui.selectable_label(chosen == statistic, name).on_hover_text(tooltip).clicked();
-            if clicked && chosen != statistic {
-                asked.push(ViewCommand::Detect(statistic).into());
-            }
-        }
+        choices(ui, chosen, of, ViewCommand::Detect, asked);
     });
 }
 

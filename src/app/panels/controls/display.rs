@@ -1,9 +1,7 @@
 //! Display settings: units of axes and scales, colours, and snapping of dragged objects.
 
-use super::choices::choices;
 use crate::app::state::{Command, Directions, EditCommand, Settings, Units, ViewCommand};
-use crate::app::widgets::entry::tick;
-use crate::app::widgets::setting_row::row_of;
+use crate::app::widgets::{choices, row_of, tick};
 use crate::interact::Snap;
 use crate::picture::ColourMap;
 use eframe::egui::Ui;

@@ -1,11 +1,9 @@
 //! Choice of the output's threshold by its rate of false alarms.
 
 use crate::app::state::{Command, ThresholdChoice, WorkCommand};
-use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::progress::{bar, start_or_cancel};
-use crate::app::widgets::setting_row::{rarely, row, row_of};
+use crate::app::widgets::{
+    NumberField, bar, kind_boxes, kind_names, labelled, rarely, row, row_of, start_or_cancel, ticking_menu,
+};
 use crate::evaluate::threshold::ThresholdSearch;
 use crate::radar::counted;
 use crate::scene::generate::Kind;
@@ -122,7 +120,7 @@ fn start(ui: &mut Ui, method: &str, search: &Search<'_>, memory: &FalseAlarmsMem
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use eframe::egui::Vec2;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -140,8 +138,7 @@ mod tests {
         };
         let drawn = Drawn { search: Search::default(), memory, asked: Vec::new() };
         let mut fields = Harness::builder().with_size(Vec2::new(300.0, 400.0)).build_ui_state(draw, drawn);
-        fields.get_by_label("η by false alarms").click();
-        fields.run();
+        fields.clicks(&["η by false alarms"]);
         fields
     }
 
@@ -149,21 +146,10 @@ mod tests {
     fn the_search_is_one_command() {
         let mut fields = fields(FalseAlarmsMemory { percent: 0.5, count: 80, ..FalseAlarmsMemory::default() });
         seen::assert_readable(fields.output());
-        fields.get_by_label("Find η").click();
-        fields.run();
+        fields.clicks(&["Find η"]);
         let kinds = vec![Kind::Set1, Kind::Set2, Kind::Set3];
         let choice = ThresholdChoice { false_alarm_percent: 0.5, kinds, count: 80 };
         assert_eq!(fields.state().asked, [WorkCommand::FindThreshold(choice).into()]);
-    }
-
-    #[test]
-    fn a_search_that_runs_can_be_cancelled() {
-        let mut fields = fields(FalseAlarmsMemory::default());
-        fields.state_mut().search.progress = Some(0.4);
-        fields.step();
-        fields.get_by_label("Cancel").click();
-        fields.step();
-        assert_eq!(fields.state().asked, [WorkCommand::CancelThreshold.into()]);
     }
 
     #[test]
@@ -184,27 +170,20 @@ mod tests {
     }
 
     #[test]
-    fn too_few_scenes_begin_no_search() {
-        let mut fields = fields(FalseAlarmsMemory { count: 20, ..FalseAlarmsMemory::default() });
-        let _told = fields.get_by_label("60 scenes can't keep a rate of 1 %; take 99 scenes or more");
-        fields.get_by_label("Find η").click();
-        fields.run();
-        assert!(fields.state().asked.is_empty());
-    }
-
-    #[test]
-    fn a_search_without_a_threshold_is_told() {
-        let mut fields = fields(FalseAlarmsMemory { count: 33, ..FalseAlarmsMemory::default() });
-        fields.state_mut().search.note = Some("no threshold keeps 1 % on these scenes");
-        fields.run();
-        let _told = fields.get_by_label("no threshold keeps 1 % on these scenes");
-    }
-
-    #[test]
-    fn scenes_are_asked_for_where_none_is_chosen() {
-        let mut fields = fields(FalseAlarmsMemory::default());
-        fields.state_mut().memory.kinds.clear();
-        fields.run();
-        let _told = fields.get_by_label("Choose scenes first.");
+    fn a_search_tells_why_it_does_not_begin_or_succeed() {
+        type Case = (u32, fn(&mut Drawn), &'static str);
+        let cases: [Case; 3] = [
+            (20, |_| (), "60 scenes can't keep a rate of 1 %; take 99 scenes or more"),
+            (33, |drawn| drawn.search.note = Some("no threshold keeps 1 %"), "no threshold keeps 1 %"),
+            (33, |drawn| drawn.memory.kinds.clear(), "Choose scenes first."),
+        ];
+        for (count, change, told) in cases {
+            let mut fields = fields(FalseAlarmsMemory { count, ..FalseAlarmsMemory::default() });
+            change(fields.state_mut());
+            fields.run();
+            let _told = fields.get_by_label(told);
+            fields.clicks(&["Find η"]);
+            assert_eq!(fields.state().asked.is_empty(), fields.state().search.note.is_none(), "{told}");
+        }
     }
 }

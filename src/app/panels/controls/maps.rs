@@ -1,35 +1,26 @@
 //! Settings of the maps: normalisation, floor, window and the seed of the noise.
 
-use super::choices::choices;
-use crate::app::state::{Command, EditCommand, RadarCommand, Settings, ViewCommand};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::setting_row::{rarely, row, row_of};
+use crate::app::state::{Command, EditCommand, RadarCommand, Settings, State, ViewCommand};
+use crate::app::widgets::{NumberField, choices, rarely, row, row_of};
 use crate::maps::Normalisation;
-use crate::radar::{DecibelMilliwatts, Decibels, Radar, WindowFunction};
+use crate::radar::{DecibelMilliwatts, Decibels, WindowFunction};
 use crate::signal::{self, Floor};
 use eframe::egui::Ui;
 
 /// Largest seed that a scene file holds: TOML knows no larger whole number.
 const MAX_NOISE_SEED: u64 = i64::MAX as u64;
 
-/// Draws the group's rows; `is_recorded` where a recording takes the place of the scene.
-pub(super) fn show(
-    ui: &mut Ui,
-    is_recorded: bool,
-    settings: &Settings,
-    radar: &Radar,
-    seed: u64,
-    asked: &mut Vec<Command>,
-) {
+/// Draws the group's rows.
+pub(super) fn show(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
+    let (settings, is_recorded) = (&state.settings, state.is_recorded());
     normalisation(ui, settings, asked);
     match is_recorded {
         true => row(ui, "Floor", "Noise beneath the echoes", |ui| ui.weak("as it was recorded")),
         false => floor(ui, settings, asked),
     }
-    window(ui, radar.window, asked);
-    let has_noise = !is_recorded && settings.floor != Floor::Exact;
-    if has_noise {
-        rarely(ui, "Seed of the noise", |ui| noise_seed(ui, seed, asked));
+    window(ui, state.radar().window, asked);
+    if !is_recorded && settings.floor != Floor::Exact {
+        rarely(ui, "Seed of the noise", |ui| noise_seed(ui, state.editor.scene().noise_seed, asked));
     }
 }
 

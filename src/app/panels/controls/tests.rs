@@ -1,6 +1,6 @@
 use super::*;
-use crate::app::state::{EditCommand, RadarCommand, View};
-use crate::app::widgets::seen;
+use crate::app::state::{EditCommand, RadarCommand, Settings, View};
+use crate::app::widgets::seen::{self, User};
 use crate::evaluate::Metrics;
 use crate::interact::Snap;
 use crate::maps::Normalisation;
@@ -26,32 +26,25 @@ fn panel_of(
     settings: Settings,
     change: impl for<'a> Fn(Input<'a>) -> Input<'a> + 'static,
 ) -> Harness<'static, Vec<Command>> {
-    let radar = Radar::default();
-    let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
+    let mut state = State { settings, ..State::new(vec![Arc::new(Baseline), Arc::new(CAPON)]) };
+    state.settings.method = Baseline.name().to_owned();
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let input = Input {
-            is_recorded: false,
-            settings: &settings,
-            radar: &radar,
-            noise_seed: 0,
-            methods: Offered::untimed(&methods),
-            method: Some(&Baseline),
-            eta: Baseline.eta(),
-            range_db: None,
-            run: Run::default(),
-            uses: Uses::ALL,
-        };
+        let input = Input { state: &state, eta: Baseline.eta(), range_db: None, run: Run::default(), uses: Uses::ALL };
         asked.extend(show(ui, change(input), &mut FalseAlarmsMemory::default()));
     };
     Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
 }
 
+/// A reconstruction with its figures.
+fn scored() -> Run<'static> {
+    let metrics = Metrics { squared_error: 321.4, detection: Some(1.0), false_alarm: 0.0163 };
+    let scores = Some(Scores { metrics, target_blobs: 1, output_blobs: 2 });
+    Run { output: Some(("capon", Duration::from_millis(20))), scores, ..Run::default() }
+}
+
 #[test]
 fn a_figure_is_nearer_to_its_name_than_to_the_figure_before() {
-    let metrics = Metrics { squared_error: 321.4, detection: Some(1.0), false_alarm: 0.0163 };
-    let scores = Scores { metrics, target_blobs: 1, output_blobs: 2 };
-    let output = Some(("capon", Duration::from_millis(20)));
-    let shown = panel(move || Run { output, scores: Some(scores), ..Run::default() });
+    let shown = panel(scored);
     let texts = seen::texts(shown.output());
     let rect = |text: &str| texts.iter().find(|t| t.text == text).map(|t| t.rect).unwrap();
     let apart = rect("P_FA").left() - rect("100.00 %").right();
@@ -70,8 +63,7 @@ fn every_method_of_the_list_says_in_a_line_what_it_is() {
         let line = controls.get_by_label(method.description()).rect();
         assert!(line.left() > name.left() && (line.center().y - name.center().y).abs() < 14.0, "{name:?} {line:?}");
     }
-    controls.get_by_label(CAPON.description()).click();
-    controls.run();
+    controls.clicks(&[CAPON.description()]);
     assert_eq!(controls.state(), &[Command::View(ViewCommand::Method("capon"))]);
 }
 
@@ -89,13 +81,11 @@ fn every_click_is_one_command() {
     controls.run();
     assert!(controls.state().is_empty(), "nobody but the user moves anything: {:?}", controls.state());
     unfold(&mut controls);
-    for label in ["hamming", "Exact", "0.5 m", "Min–max", "60 dB", "dB"] {
-        controls.get_by_label(label).click();
-        controls.run();
-    }
+    controls.clicks(&["hamming", "Exact", "dBm", "0.5 m", "Min–max", "60 dB", "dB"]);
     let asked = [
         Command::Radar(RadarCommand::SetWindow(WindowFunction::Hamming)),
         Command::View(ViewCommand::SetFloor(Floor::Exact)),
+        Command::View(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(-20.0)))),
         Command::Edit(EditCommand::SetSnap(Snap::Metres(0.5))),
         Command::View(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0)))),
         Command::View(ViewCommand::SetUnits(Units::Decibels)),
@@ -108,10 +98,7 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
     assert_eq!((moved(0.851, 0.851), moved(0.851, 0.85)), (None, Some(0.85)));
     let settings = Settings { view: View { target_eta: 0.851_234_5, ..View::default() }, ..Settings::default() };
     let mut controls = panel_of([420.0, 640.0], settings, |input| Input { eta: 0.763_194_2, ..input });
-    for _ in 0..30 {
-        controls.key_press(eframe::egui::Key::Tab);
-        controls.run();
-    }
+    controls.presses(&[egui::Key::Tab; 30]);
     assert!(controls.state().is_empty(), "{:?}", controls.state());
     let shown = seen::texts(controls.output());
     assert!(shown.iter().any(|t| t.text == "0.7631942"), "every digit, so that P_FA can be had again: {shown:?}");
@@ -119,47 +106,22 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
 
 /// Opens the folded groups.
 fn unfold<State>(controls: &mut Harness<'_, State>) {
-    for title in ["η by false alarms", "Seed of the noise"] {
-        controls.get_by_label(title).click();
-        controls.run();
-    }
-}
-
-#[test]
-fn every_choice_is_called_what_it_says() {
-    let mut controls = panel(Run::default);
-    unfold(&mut controls);
-    for label in ["Min–max", "Thesis", "hann", "cos θ", "Λ", "grey", "Off"] {
-        let _one = controls.get_by_label(label);
-    }
+    controls.clicks(&["η by false alarms", "Seed of the noise"]);
 }
 
 #[test]
 fn figures_stand_still_when_the_bar_comes() {
-    let metrics = Metrics { squared_error: 321.4, detection: Some(0.5), false_alarm: 0.01 };
-    let scores = Scores { metrics, target_blobs: 1, output_blobs: 2 };
-    let output = Some(("capon", Duration::from_millis(20)));
-    let height = |progress| {
-        let run = move || Run { progress, output, scores: Some(scores), ..Run::default() };
-        panel(run).get_by_label("P_D").rect().top()
-    };
+    let height = |progress| panel(move || Run { progress, ..scored() }).get_by_label("P_D").rect().top();
     assert_eq!(height(None), height(Some(0.25)));
 }
 
 #[test]
-fn the_level_of_the_noise_can_be_chosen() {
-    let mut controls = panel(Run::default);
-    controls.get_by_label("dBm").click();
-    controls.run();
-    assert_eq!(controls.state(), &[Command::View(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(-20.0))))]);
-}
-
-#[test]
-fn no_choice_leaves_a_narrow_panel() {
+fn every_choice_is_called_what_it_says_in_a_narrow_panel() {
     let mut controls = panel_of([260.0, 1100.0], Settings::default(), |input| input);
     seen::assert_readable(controls.output());
     unfold(&mut controls);
-    for label in ["100 dB", "SNR", "dBm", "rectangular", "inferno", "degrees", "Cells"] {
+    const LABELS: &str = "Min–max|Thesis|hann|cos θ|Λ|grey|Off|100 dB|SNR|dBm|rectangular|inferno|degrees|Cells";
+    for label in LABELS.split('|') {
         assert!(controls.get_by_label(label).rect().right() <= 260.0, "{label}");
     }
     seen::assert_readable(controls.output());
@@ -167,13 +129,9 @@ fn no_choice_leaves_a_narrow_panel() {
 
 #[test]
 fn figures_stand_beside_the_bar_that_cancels() {
-    let metrics = Metrics { squared_error: 321.4, detection: Some(0.5), false_alarm: 0.01 };
-    let scores = Scores { metrics, target_blobs: 1, output_blobs: 2 };
-    let run = move || Run { progress: Some(0.25), scores: Some(scores), outdated: true, ..Run::default() };
-    let mut controls = panel(run);
+    let mut controls = panel(|| Run { progress: Some(0.25), outdated: true, ..scored() });
     let _told = (controls.get_by_label("321"), controls.get_by_label("1 blob in the target, 2 in the output"));
-    controls.get_by_label("Cancel").click();
-    controls.step();
+    controls.clicks(&["Cancel"]);
     assert_eq!(controls.state(), &[Command::Work(WorkCommand::CancelMethod)]);
 }
 
@@ -206,8 +164,7 @@ fn detecting(cfar: Option<Cfar>, error: Option<&'static str>) -> Harness<'static
 fn a_detector_stands_in_the_place_of_the_thresholds() {
     let mut global = detecting(None, None);
     assert!(global.query_by_label("η in numbers").is_some() && global.query_by_label("Guard cells in range").is_none());
-    global.get_by_label("OS").click();
-    global.step();
+    global.clicks(&["OS"]);
     assert_eq!(global.state(), &[ViewCommand::Detect(Some(Statistic::OrderedStatistics)).into()]);
     let detecting = detecting(Some(Cfar::default()), Some("There are no training cells."));
     assert!(detecting.query_by_label("η in numbers").is_none() && detecting.query_by_label("η' in numbers").is_none());

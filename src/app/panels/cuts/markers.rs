@@ -3,11 +3,7 @@
 use super::measure::{Width, value_at, width_at};
 use super::trace::{Cut, Trace};
 use crate::app::state::Units;
-use crate::app::widgets::axes;
-use crate::app::widgets::chart::{Chart, Drawn, Span};
-use crate::app::widgets::direction::{angle_degrees, direction};
-use crate::app::widgets::levels;
-use crate::app::widgets::numbers::{signed, significant};
+use crate::app::widgets::{Chart, Drawn, Span, angle_degrees, axes, direction, levels, signed, significant};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Color32, CursorIcon, Stroke, Ui, pos2, vec2};
 use egui_plot::LineStyle;

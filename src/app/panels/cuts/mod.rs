@@ -6,34 +6,20 @@ mod trace;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
-use crate::app::state::{Command, Cursor, CutMap, MapKind, PinnedCut, Units, ViewCommand};
-use crate::app::widgets::axes::{self, Axis};
-use crate::app::widgets::chart::{Chart, Span};
-use crate::app::widgets::direction::direction;
-use crate::app::widgets::entry::{button, press};
-use crate::app::widgets::labelled::{choice, labelled};
-use crate::app::widgets::levels::lowest_db;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::theme::Inks;
-use crate::radar::Radar;
-use eframe::egui;
-use eframe::egui::{Color32, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
+use crate::app::state::{Command, CutMap, MapKind, State, Units, ViewCommand};
+use crate::app::widgets::{
+    Axis, Chart, Inks, NumberField, Span, axes, button, choice, choices, direction, labelled, lowest_db, press,
+};
+use eframe::egui::{self, Color32, Label, Rect, RichText, Sense, Stroke, Ui, vec2};
 use egui_plot::LineStyle;
 use markers::{Markers, NAMES};
 use std::collections::{BTreeMap, BTreeSet};
 use trace::{Cut, Trace};
 
-/// The maps to cut, and the place of the cuts.
+/// The maps that can be cut, and the place of the cuts in the state.
 pub struct Input<'a> {
-    pub radar: &'a Radar,
-    /// Place where both cuts cross.
-    pub cursor: Cursor,
-    /// The maps that can be cut.
+    pub state: &'a State,
     pub maps: &'a [CutMap],
-    /// The pinned cuts.
-    pub pins: &'a [PinnedCut],
-    /// Unit of the vertical axis.
-    pub units: Units,
 }
 
 /// Hidden maps, the measured line, and zoom and markers of each cut.
@@ -77,16 +63,8 @@ impl Content for CutsPanel {
     const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let state = &*cx.state;
         let maps = cx.jobs.pipeline.cut_maps();
-        let input = Input {
-            radar: state.radar(),
-            cursor: state.cut_cursor(),
-            maps: &maps,
-            pins: state.pins.all(),
-            units: state.settings.units,
-        };
-        show(ui, input, cx.memory)
+        show(ui, Input { state: cx.state, maps: &maps }, cx.memory)
     }
 }
 
@@ -118,11 +96,8 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CutsMemory) -> Vec<Comma
 /// The drawn lines: first those of the cut at the cursor, then those of the pinned cuts.
 fn lines(input: &Input<'_>, hidden: &BTreeSet<MapKind>) -> Vec<Line> {
     let live = input.maps.iter().map(|map| Line { kind: map.kind, pin: None });
-    let pinned = input
-        .pins
-        .iter()
-        .enumerate()
-        .flat_map(|(i, p)| p.maps.iter().map(move |m| Line { kind: m.kind, pin: Some(i) }));
+    let pins = input.state.pins.iter().enumerate();
+    let pinned = pins.flat_map(|(i, p)| p.maps.iter().map(move |m| Line { kind: m.kind, pin: Some(i) }));
     live.chain(pinned).filter(|line| !hidden.contains(&line.kind)).collect()
 }
 
@@ -141,19 +116,16 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory, asked: &mut Vec
             }
         }
         ui.add_space(6.0);
-        for (units, name) in [(Units::Lambda, "Λ"), (Units::Decibels, "dB")] {
-            let tip = "Λ, or decibels relative to each map's peak (D)";
-            if ui.selectable_label(input.units == units, name).on_hover_text(tip).clicked() && input.units != units {
-                asked.push(ViewCommand::SetUnits(units).into());
-            }
-        }
+        let tip = "Λ, or decibels relative to each map's peak (D)";
+        let of = [(Units::Lambda, "Λ", tip), (Units::Decibels, "dB", tip)];
+        choices(ui, input.state.settings.units, of, ViewCommand::SetUnits, asked);
         ui.add_space(6.0);
         button(ui, "Pin", ViewCommand::PinCuts, !input.maps.is_empty(), asked);
-        for (index, pin) in input.pins.iter().enumerate() {
+        for (index, pin) in input.state.pins.iter().enumerate() {
             let way = direction(pin.cursor.cos_theta, 1);
             let place = format!("{}: {:.2} m · {way}", index + 1, pin.cursor.range_metres);
             let tip = "A cut that stays, drawn thin; click to let it go";
-            press(ui, format!("Unpin {place}"), tip, || ViewCommand::Unpin(index), asked);
+            press(ui, format!("Unpin {place}"), tip, ViewCommand::Unpin(index), asked);
         }
         ui.add_space(6.0);
         marks(ui, input, memory);
@@ -166,7 +138,7 @@ fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory) {
         let tip = "Two places to measure between; a click in a cut places one, too, and they can be dragged";
         if ui.button("Markers").on_hover_text(tip).clicked() {
             for cut in Cut::ALL {
-                let at = cut.position(input.radar, &input.cursor);
+                let at = cut.position(input.state.radar(), &input.state.cut_cursor());
                 memory.views.entry(cut).or_default().markers.place(at);
             }
         }
@@ -212,33 +184,37 @@ fn style(kind: MapKind) -> LineStyle {
 /// Draws one cut: its chart, with the markers' readings beneath.
 fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut: Cut) {
     let traces = traces(input, &memory.hidden, cut);
-    let whole = cut.whole(input.radar);
+    let whole = cut.whole(input.state.radar());
     let mut view = memory.views.get(&cut).copied().unwrap_or_default();
     let read = memory.read.and_then(|line| traces.iter().find(|t| (t.kind, t.pin) == (line.kind, line.pin)));
-    let said =
-        read.map_or_else(Vec::new, |trace| markers::readings(cut, input.radar, trace, input.units, &view.markers));
+    let said = read.map_or_else(Vec::new, |trace| {
+        markers::readings(cut, input.state.radar(), trace, input.state.settings.units, &view.markers)
+    });
     let area = if view.markers.is_empty() { area } else { readings(ui, area, cut, whole, &mut view.markers, &said) };
     let span = view.span.unwrap_or(whole);
     let range_db = traces.iter().filter_map(Trace::range_db).fold(1.0, f64::max);
-    let y = match input.units {
+    let y = match input.state.settings.units {
         Units::Lambda => Axis::new(0.0, 1.05, "brightness Λ"),
         // Lower levels are no echo.
         Units::Decibels => Axis::new(lowest_db(range_db), -0.05 * lowest_db(range_db), "relative to the peak, dB"),
     };
-    let title = cut.title(input.radar, &input.cursor);
+    let title = cut.title(input.state.radar(), &input.state.cut_cursor());
     let title = axes::fitting(ui.painter(), area.width() - 20.0, &[&title, cut.unit()]);
     let mut chart = Chart::new(cut.name(), Axis::new(span.low, span.high, title), y);
     for trace in &traces {
-        let Some(points) = trace.points(input.units) else { continue };
+        let Some(points) = trace.points(input.state.settings.units) else { continue };
         let (width, fade) = if trace.pin.is_some() { (1.0, 0.6) } else { (1.6, 1.0) };
         let stroke = Stroke::new(width, colour(ui, trace.kind).gamma_multiply(fade));
         chart.line(in_sight(&points, span), stroke, style(trace.kind));
     }
-    chart.upright(cut.position(input.radar, &input.cursor), Stroke::new(1.0, ui.visuals().weak_text_color()));
+    chart.upright(
+        cut.position(input.state.radar(), &input.state.cut_cursor()),
+        Stroke::new(1.0, ui.visuals().weak_text_color()),
+    );
     let ink = Inks::of(ui.visuals()).selected;
     if let Some(trace) = read {
         let range = trace.range_db().unwrap_or(1.0);
-        let y_of = |db: f64| if input.units == Units::Decibels { db } else { 1.0 + db / range };
+        let y_of = |db: f64| if input.state.settings.units == Units::Decibels { db } else { 1.0 + db / range };
         markers::draw_widths(&mut chart, trace, &view.markers, ink, y_of);
     }
     let drawn = chart.show(ui, area, Sense::click_and_drag());
@@ -252,11 +228,15 @@ fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut
 /// The lines of one cut, those of pinned cuts first, so that they lie beneath the others.
 fn traces(input: &Input<'_>, hidden: &BTreeSet<MapKind>, cut: Cut) -> Vec<Trace> {
     let shown = |map: &&CutMap| !hidden.contains(&map.kind);
-    let pinned = input.pins.iter().enumerate().flat_map(|(i, pin)| {
+    let pinned = input.state.pins.iter().enumerate().flat_map(|(i, pin)| {
         let maps = pin.maps.iter().filter(shown);
         maps.filter_map(move |map| Trace::of(&pin.radar, &pin.cursor, map, cut, Some(i)))
     });
-    let live = input.maps.iter().filter(shown).filter_map(|map| Trace::of(input.radar, &input.cursor, map, cut, None));
+    let live = input
+        .maps
+        .iter()
+        .filter(shown)
+        .filter_map(|map| Trace::of(input.state.radar(), &input.state.cut_cursor(), map, cut, None));
     pinned.chain(live).collect()
 }
 

@@ -1,7 +1,8 @@
 use super::*;
-use crate::app::widgets::seen;
+use crate::app::state::{Cursor, PinnedCut};
+use crate::app::widgets::seen::{self, User};
 use crate::maps::{LambdaScale, RangeAngleMap};
-use crate::radar::Convention;
+use crate::radar::{Convention, Radar};
 use eframe::egui::{Pos2, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -11,9 +12,14 @@ use std::sync::Arc;
 struct Held {
     memory: CutsMemory,
     asked: Vec<Command>,
-    pins: Vec<PinnedCut>,
-    units: Units,
-    bin: f64,
+    state: State,
+}
+
+/// Moves the cursor to a cell of this range bin.
+fn point(state: &mut State, bin: f64) {
+    let radar = Radar::default();
+    state.pointer.hover(Cursor::at_cell(&radar, bin, 700.0));
+    state.pointer.turn(&radar);
 }
 
 /// A map with one lobe at bin 300 and column 700, on a scale of 100 dB.
@@ -34,19 +40,18 @@ fn maps(radar: &Radar) -> [CutMap; 3] {
 }
 
 fn panel(size: [f32; 2]) -> Harness<'static, Held> {
-    let radar = Radar::default();
-    let maps = maps(&radar);
-    let draw = move |ui: &mut Ui, held: &mut Held| {
-        let cursor = Cursor::at_cell(&radar, held.bin, 700.0);
-        let input = Input { radar: &radar, cursor, maps: &maps, pins: &held.pins, units: held.units };
-        let commands = show(ui, input, &mut held.memory);
+    let maps = maps(&Radar::default());
+    let draw = move |ui: &mut Ui, Held { memory, asked, state }: &mut Held| {
+        let commands = show(ui, Input { state, maps: &maps }, memory);
         if commands.contains(&Command::View(ViewCommand::PinCuts)) {
-            held.pins.push(PinnedCut { radar: radar.clone(), cursor, maps: maps.to_vec() });
+            let (radar, cursor) = (state.radar().clone(), state.cut_cursor());
+            state.pins.push(PinnedCut { radar, cursor, maps: maps.to_vec() });
         }
-        held.asked.extend(commands);
+        asked.extend(commands);
     };
-    let held =
-        Held { memory: CutsMemory::default(), asked: Vec::new(), pins: Vec::new(), units: Units::Lambda, bin: 300.0 };
+    let mut state = State::new(Vec::new());
+    point(&mut state, 300.0);
+    let held = Held { memory: CutsMemory::default(), asked: Vec::new(), state };
     let mut panel = Harness::builder().with_size(size).with_step_dt(0.02).build_ui_state(draw, held);
     panel.run_steps(2);
     panel
@@ -57,32 +62,19 @@ fn places(panel: &Harness<'_, Held>) -> [Option<f64>; 2] {
 }
 
 fn click(panel: &mut Harness<'_, Held>, at: Pos2) {
-    panel.hover_at(at);
-    panel.step();
-    panel.drag_at(at);
-    panel.step();
-    panel.drop_at(at);
+    panel.drags(&[at]);
     // Two clicks in quick succession would be a double click.
     panel.run_steps(40);
 }
 
 #[test]
 fn maps_of_another_radar_are_left_out() {
-    let radar = Radar::default();
-    let maps = maps(&radar);
-    let cursor = Cursor::at_cell(&radar, 300.0, 700.0);
-    let input = Input { radar: &radar, cursor, maps: &maps, pins: &[], units: Units::Lambda };
+    let (state, maps) = (State::new(Vec::new()), maps(&Radar::default()));
+    let input = Input { state: &state, maps: &maps };
     for cut in Cut::ALL {
         let drawn: Vec<MapKind> = traces(&input, &BTreeSet::new(), cut).iter().map(|t| t.kind).collect();
         assert_eq!(drawn, [MapKind::Input0, MapKind::Target]);
     }
-}
-
-#[test]
-fn the_target_is_read_without_a_choice() {
-    let cuts = panel([640.0, 300.0]);
-    assert!(cuts.state().asked.is_empty());
-    assert_eq!(cuts.state().memory.read.map(|line| line.kind), Some(MapKind::Target));
 }
 
 /// Place at a part of the width of a chart.
@@ -91,8 +83,10 @@ fn at(part: f32, rect: Rect) -> Pos2 {
 }
 
 #[test]
-fn clicks_place_markers() {
+fn clicks_place_markers_on_the_target() {
     let mut cuts = panel([700.0, 600.0]);
+    assert!(cuts.state().asked.is_empty());
+    assert_eq!(cuts.state().memory.read.map(|line| line.kind), Some(MapKind::Target), "without a choice");
     let chart = cuts.get_by_label("Range profile").rect();
     click(&mut cuts, at(0.25, chart));
     let chart = cuts.get_by_label("Range profile").rect();
@@ -112,25 +106,12 @@ fn marked(part: f64) -> Harness<'static, Held> {
 }
 
 #[test]
-fn the_difference_of_markers_is_told() {
-    let cuts = marked(0.5);
-    let _difference = cuts.get_by_label_contains("B − A: +9.");
-}
-
-#[test]
-fn a_drag_moves_a_marker() {
+fn a_drag_moves_a_marker_and_their_difference_is_told() {
     let mut cuts = marked(0.5);
+    let _difference = cuts.get_by_label_contains("B − A: +9.");
     let before = places(&cuts);
     let chart = cuts.get_by_label("Range profile").rect();
-    let from = at(0.5, chart);
-    cuts.hover_at(from);
-    cuts.step();
-    cuts.drag_at(from);
-    cuts.step();
-    cuts.hover_at(at(0.75, chart));
-    cuts.step();
-    cuts.drop_at(at(0.75, chart));
-    cuts.step();
+    cuts.drags(&[0.5, 0.75].map(|part| at(part, chart)));
     let [now, Some(moved)] = places(&cuts) else { panic!("{:?}", places(&cuts)) };
     assert_eq!(now, before[0]);
     assert!((moved / Radar::default().max_range_metres() - 0.75).abs() < 5e-3, "{moved}");
@@ -138,14 +119,9 @@ fn a_drag_moves_a_marker() {
 }
 
 #[test]
-fn the_width_of_the_peak_at_a_marker_is_told() {
+fn the_width_of_the_peak_at_a_marker_is_told_and_drawn() {
     let cuts = marked(0.75);
     let _width = cuts.get_by_label_contains("3 dB width at B: ");
-}
-
-#[test]
-fn the_width_of_the_peak_at_a_marker_has_both_its_ends_drawn() {
-    let cuts = marked(0.75);
     let is_end = |shape: &egui::Shape| matches!(shape, egui::Shape::Circle(circle) if circle.radius == 3.0);
     let ends = cuts.output().shapes.iter().filter(|clipped| is_end(&clipped.shape)).count();
     assert!(ends >= 2 && ends % 2 == 0, "{ends}");
@@ -154,21 +130,13 @@ fn the_width_of_the_peak_at_a_marker_has_both_its_ends_drawn() {
 #[test]
 fn a_pinned_cut_stays_while_the_cursor_moves_on() {
     let mut cuts = panel([900.0, 500.0]);
-    cuts.get_by_label("Pin").click();
-    cuts.run_steps(2);
+    cuts.clicks(&["Pin"]);
     assert_eq!(cuts.state().asked, [Command::View(ViewCommand::PinCuts)]);
-    cuts.state_mut().bin = 400.0;
+    point(&mut cuts.state_mut().state, 400.0);
+    cuts.state_mut().state.settings.units = Units::Decibels;
     cuts.run_steps(2);
     let held = cuts.state();
-    let radar = Radar::default();
-    let maps = held.pins[0].maps.clone();
-    let input = Input {
-        radar: &radar,
-        cursor: Cursor::at_cell(&radar, 400.0, 700.0),
-        maps: &maps,
-        pins: &held.pins,
-        units: Units::Decibels,
-    };
+    let input = Input { state: &held.state, maps: &held.state.pins[0].maps };
     let drawn = traces(&input, &BTreeSet::from([MapKind::Input0]), Cut::Angle);
     let highest = |t: &Trace| t.lambda.iter().map(|p| p[1]).fold(0.0, f64::max);
     assert_eq!(
@@ -182,17 +150,11 @@ fn a_pinned_cut_stays_while_the_cursor_moves_on() {
 }
 
 #[test]
-fn decibels_are_chosen_by_a_click() {
-    let mut cuts = panel([900.0, 400.0]);
-    cuts.get_by_label("dB").click();
-    cuts.step();
-    assert_eq!(cuts.state().asked, [Command::View(ViewCommand::SetUnits(Units::Decibels))]);
-}
-
-#[test]
 fn decibels_have_an_axis_of_their_own() {
     let mut cuts = panel([900.0, 400.0]);
-    cuts.state_mut().units = Units::Decibels;
+    cuts.clicks(&["dB"]);
+    assert_eq!(cuts.state().asked, [Command::View(ViewCommand::SetUnits(Units::Decibels))]);
+    cuts.state_mut().state.settings.units = Units::Decibels;
     cuts.run_steps(2);
     let texts = seen::texts(cuts.output());
     assert!(texts.iter().filter(|t| t.text == "relative to the peak, dB").count() == 2, "{texts:?}");
@@ -211,13 +173,10 @@ fn a_cut_has_several_labels_none_cut_off_at_any_size() {
     }
 }
 
-/// Inputs and target differ by more than their hues.
 #[test]
-fn lines_differ_by_dash() {
+fn lines_differ_by_dash_and_not_by_their_hue_alone() {
     let styles = [MapKind::Input0, MapKind::Input1, MapKind::Target].map(style);
-    for (i, style) in styles.iter().enumerate() {
-        assert!(!styles[i + 1..].contains(style), "{styles:?}");
-    }
+    assert!(styles[0] != styles[1] && !styles[..2].contains(&styles[2]), "{styles:?}");
 }
 
 #[test]

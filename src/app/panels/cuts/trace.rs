@@ -1,8 +1,7 @@
 //! One row or one column of a map, as a line.
 
 use crate::app::state::{Cursor, CutMap, MapKind, Units};
-use crate::app::widgets::chart::Span;
-use crate::app::widgets::direction::direction;
+use crate::app::widgets::{Span, direction};
 use crate::maps::LambdaScale;
 use crate::picture::finer;
 use crate::radar::Radar;

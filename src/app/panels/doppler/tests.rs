@@ -1,7 +1,8 @@
 use super::*;
-use crate::app::widgets::seen;
+use crate::app::panels::recording::some_recording;
+use crate::app::widgets::seen::{self, User};
 use crate::maps::LogMap;
-use crate::scene::{Object, Point};
+use crate::scene::{Object, Point, Scene};
 use eframe::egui::{Color32, ColorImage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -18,41 +19,27 @@ fn result(radar: &Radar) -> DopplerResult {
     DopplerResult { radar: radar.clone(), knows_interval: true, decades: LogMap::new(decades), image: Arc::new(image) }
 }
 
-/// Input of a scene at rest.
-fn input<'a>(radar: &'a Radar, scene: &'a Scene) -> Input<'a> {
-    Input {
-        radar,
-        scene,
-        seconds: 0.0,
-        is_playing: false,
-        marks: true,
-        colours: ColourMap::default(),
-        normalisation: Normalisation::DynamicRange(crate::radar::Decibels(60.0)),
-        is_recorded: false,
-        frames: None,
-        static_clutter_out: false,
-        result: None,
-    }
+/// The panel of this state with this map.
+fn drawn(size: [f32; 2], mut state: State, result: Option<DopplerResult>) -> Harness<'static, Vec<Command>> {
+    state.settings.normalisation = Normalisation::DynamicRange(crate::radar::Decibels(60.0));
+    let mut memory = DopplerMemory::default();
+    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+        asked.extend(show(ui, Input { state: &state, result: result.as_ref().map(Ok) }, &mut memory));
+    };
+    Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
 }
 
-/// The panel of a recording of 20 frames, with the fourth on screen.
+/// The panel of a recording of 20 frames.
 fn recorded(result: Option<DopplerResult>) -> Harness<'static, Vec<Command>> {
-    let (radar, scene, mut memory) = (radar(1), Scene::default(), DopplerMemory::default());
-    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let result = result.as_ref().map(Ok);
-        let input = Input { is_recorded: true, frames: Some([3, 20]), result, ..input(&radar, &scene) };
-        asked.extend(show(ui, input, &mut memory));
-    };
-    Harness::builder().with_size([700.0, 420.0]).build_ui_state(draw, Vec::new())
+    drawn([700.0, 420.0], State::recorded(some_recording()), result)
 }
 
 #[test]
 fn frames_of_a_recording_play_without_their_clutter() {
     let mut panel = recorded(Some(result(&radar(64))));
-    assert!(seen::texts(panel.output()).iter().any(|t| t.text == "Frame of 20"));
+    assert!(panel.reads("Frame of 20"));
     for label in ["Play", "Static clutter out"] {
-        panel.get_by_label(label).click();
-        panel.run();
+        panel.clicks(&[label]);
     }
     let commands = [ViewCommand::TogglePlay, ViewCommand::TakeOutStaticClutter(true)].map(Command::View);
     assert_eq!(panel.state(), &commands);
@@ -71,15 +58,13 @@ fn a_recording_shows_the_loops_of_its_frame() {
 }
 
 fn panel(size: [f32; 2], chirps: usize, velocity: f64, seconds: f64) -> Harness<'static, Vec<Command>> {
-    let radar = radar(chirps);
     let point = Point { velocity_y_metres_per_second: velocity, ..Point::new(0.0, 1.0) };
     let scene = Scene { objects: vec![Object::Point(point)], ..Scene::default() };
-    let (result, mut memory) = (result(&radar), DopplerMemory::default());
-    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        let input = Input { seconds, result: Some(Ok(&result)), ..input(&radar, &scene) };
-        asked.extend(show(ui, input, &mut memory));
-    };
-    Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
+    let mut state = State::of(radar(chirps), scene);
+    state.settings.show_reflectors = true;
+    let State { timeline, editor, .. } = &mut state;
+    timeline.set(editor.scene(), seconds);
+    drawn(size, state, Some(result(&radar(chirps))))
 }
 
 #[test]
@@ -94,19 +79,6 @@ fn the_map_has_its_axes_in_a_wide_panel_or_a_narrow_one() {
         }
         seen::assert_readable(panel.output());
     }
-}
-
-#[test]
-fn one_chirp_offers_several() {
-    let mut panel = panel([700.0, 420.0], 1, 5.0, 0.0);
-    assert!(panel.query_by_label("Range-Doppler map").is_none());
-    panel.get_by_label("Send 128 chirps").click();
-    panel.run();
-    let asked = panel.state().iter().find_map(|c| match c {
-        Command::Radar(RadarCommand::Set(radar)) => Some(radar.chirps),
-        _ => None,
-    });
-    assert_eq!(asked, Some(128));
 }
 
 #[test]
@@ -129,11 +101,15 @@ fn a_cell_tells_its_velocity_with_its_range() {
 }
 
 #[test]
-fn every_button_of_time_is_a_command() {
+fn every_button_of_chirps_and_time_is_a_command() {
     for (label, command) in [("Play", ViewCommand::TogglePlay), ("Back to 0 s", ViewCommand::SetTime(0.0))] {
         let mut panel = panel([700.0, 420.0], 64, 5.0, 1.0);
-        panel.get_by_label(label).click();
-        panel.run();
+        panel.clicks(&[label]);
         assert!(panel.state().contains(&Command::View(command)), "{label}: {:?}", panel.state());
     }
+    let mut panel = panel([700.0, 420.0], 1, 5.0, 0.0);
+    assert!(panel.query_by_label("Range-Doppler map").is_none());
+    panel.clicks(&["Send 128 chirps"]);
+    let sends = |c: &Command| matches!(c, Command::Radar(RadarCommand::Set(radar)) if radar.chirps == 128);
+    assert!(panel.state().iter().any(sends), "{:?}", panel.state());
 }

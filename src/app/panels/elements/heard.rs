@@ -1,8 +1,7 @@
 //! Choice of the layout of elements that methods use: from a list, or by its typed name or numbers.
 
-use super::input::Input;
-use crate::app::state::{Command, ViewCommand};
-use crate::app::widgets::labelled::choice_told;
+use crate::app::state::{Command, State, ViewCommand};
+use crate::app::widgets::choice_told;
 use crate::radar::{LayoutKind, Radar};
 use eframe::egui::{TextEdit, Ui};
 
@@ -24,16 +23,17 @@ const MAX_LETTERS: usize = 4000;
 
 const TIP: &str = "The elements that methods hear. The target stays the map of the whole array. Not every method hears other elements than those of the two ends";
 
-pub(super) fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut HeardMemory, asked: &mut Vec<Command>) {
-    if input.has_ends_alone {
+pub(super) fn show(ui: &mut Ui, state: &State, memory: &mut HeardMemory, asked: &mut Vec<Command>) {
+    // No other layout can be used on the samples of the two ends alone.
+    if state.editor.document().recording().is_some_and(|recording| recording.signal().is_none()) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        let mut chosen = input.layout.cloned();
-        let offered = std::iter::once(None).chain(suggested(input.radar).map(Some));
+        let mut chosen = state.settings.layout.clone();
+        let offered = std::iter::once(None).chain(suggested(state.radar()).map(Some));
         choice_told(ui, "heard", TIP, &mut chosen, offered, |layout| (name(layout.as_ref()), tip(layout.as_ref())));
-        let typed = field(ui, input, memory);
-        let new = typed.or_else(|| (chosen.as_ref() != input.layout).then_some(chosen));
+        let typed = field(ui, state, memory);
+        let new = typed.or_else(|| (chosen.as_ref() != state.settings.layout.as_ref()).then_some(chosen));
         asked.extend(new.map(|layout| Command::View(ViewCommand::Hear(layout))));
     });
     if let Some(problem) = memory.typed.as_ref().and_then(|typed| typed.problem.as_ref()) {
@@ -74,9 +74,10 @@ fn suggested(radar: &Radar) -> impl Iterator<Item = LayoutKind> {
 }
 
 /// Draws the field of the layout's name. Returns another layout once one was typed; the inner `None` is the two ends.
-fn field(ui: &mut Ui, input: &Input<'_>, memory: &mut HeardMemory) -> Option<Option<LayoutKind>> {
-    let shown = || input.layout.map_or_else(|| LayoutKind::TwoEnds.to_string(), LayoutKind::to_string);
-    let typed = memory.typed.take().filter(|typed| typed.over.as_ref() == input.layout);
+fn field(ui: &mut Ui, state: &State, memory: &mut HeardMemory) -> Option<Option<LayoutKind>> {
+    let shown =
+        || state.settings.layout.as_ref().map_or_else(|| LayoutKind::TwoEnds.to_string(), LayoutKind::to_string);
+    let typed = memory.typed.take().filter(|typed| typed.over.as_ref() == state.settings.layout.as_ref());
     let (mut text, mut problem) = typed.map_or_else(|| (shown(), None), |typed| (typed.text, typed.problem));
     let label = ui.label("as text").on_hover_text(LayoutKind::NAMES);
     let edit = TextEdit::singleline(&mut text).char_limit(MAX_LETTERS).desired_width(180.0);
@@ -87,13 +88,13 @@ fn field(ui: &mut Ui, input: &Input<'_>, memory: &mut HeardMemory) -> Option<Opt
     let is_new = text != shown();
     let mut taken = None;
     if response.lost_focus() && is_new {
-        match layout_of(&text, input.radar) {
+        match layout_of(&text, state.radar()) {
             Ok(layout) => taken = Some(layout),
             Err(why) => problem = Some(why),
         }
     }
     if is_new && taken.is_none() {
-        memory.typed = Some(Typed { over: input.layout.cloned(), text, problem });
+        memory.typed = Some(Typed { over: state.settings.layout.clone(), text, problem });
     }
     taken
 }

@@ -1,9 +1,7 @@
 //! Elements from a pasted list, and elements on a bent line.
 
 use crate::app::state::{Command, RadarCommand};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::{NumberField, labelled, press};
 use crate::radar::{BuiltArray, Radar};
 use eframe::egui::{CollapsingHeader, TextEdit, Ui};
 use std::sync::Arc;
@@ -15,13 +13,6 @@ pub(super) struct ElementListMemory {
     text: String,
     /// Distance of the line's ends behind its middle, millimetres.
     back_millimetres: f64,
-}
-
-#[cfg(test)]
-impl ElementListMemory {
-    pub(super) fn back_by(back_millimetres: f64) -> Self {
-        ElementListMemory { back_millimetres, ..ElementListMemory::default() }
-    }
 }
 
 /// Hint in the field of the list: its columns and their units.
@@ -43,13 +34,9 @@ pub(super) fn show(
         match BuiltArray::from_list(&memory.text, radar.elements) {
             _ if memory.text.trim().is_empty() => {}
             Ok(elements) => {
-                press(
-                    ui,
-                    "Use the list",
-                    "Replace all elements; undo brings them back",
-                    || RadarCommand::SetElements(Arc::new(elements)),
-                    asked,
-                );
+                let (tip, command) =
+                    ("Replace all elements; undo brings them back", RadarCommand::SetElements(Arc::new(elements)));
+                press(ui, "Use the list", tip, command, asked);
             }
             Err(error) => _ = ui.colored_label(ui.visuals().error_fg_color, error.to_string()),
         }

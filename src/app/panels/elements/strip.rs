@@ -1,12 +1,11 @@
 //! The strip of elements side by side, for clicks and drags.
 
-use super::input::Input;
-use crate::app::widgets::theme::Inks;
+use crate::app::state::State;
+use crate::app::widgets::Inks;
 use crate::radar::{BuiltArray, ElementError, End, Radar};
-use eframe::egui;
 use eframe::egui::{
-    Color32, EventFilter, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2,
-    vec2,
+    self, Color32, EventFilter, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2,
+    pos2, vec2,
 };
 
 /// Least phase that is drawn as a dot; rounding leaves less after a calibration.
@@ -31,9 +30,9 @@ struct Strip<'a> {
 }
 
 /// Draws the strip. `chosen` is the element whose numbers are drawn. Returns a changed element and its errors.
-pub(super) fn show(ui: &mut Ui, input: &Input<'_>, chosen: &mut usize) -> Option<(usize, ElementError)> {
-    let Input { radar, elements, layout, .. } = *input;
-    let heard = layout.and_then(|layout| layout.numbers(radar).ok());
+pub(super) fn show(ui: &mut Ui, state: &State, chosen: &mut usize) -> Option<(usize, ElementError)> {
+    let (radar, elements) = (state.radar(), state.elements());
+    let heard = state.settings.layout.as_ref().and_then(|layout| layout.numbers(radar).ok());
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 58.0), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Elements"));
     let strip = Strip { radar, elements, heard, rect };

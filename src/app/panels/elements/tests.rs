@@ -3,20 +3,25 @@
 use super::*;
 use crate::app::jobs::Calibrated;
 use crate::app::state::ViewCommand;
+use crate::app::widgets::seen::User;
 use crate::radar::{BuiltArray, LayoutKind, Radar};
 use crate::scene::Reflector;
 use crate::signal::{Floor, calibrate, simulate_built};
-use eframe::egui;
-use eframe::egui::{Key, pos2, vec2};
+use eframe::egui::{self, Key, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 struct Panel {
-    elements: Arc<BuiltArray>,
+    state: State,
     memory: ElementsMemory,
     asked: usize,
-    layout: Option<LayoutKind>,
     calibrated: Option<Calibrated>,
+}
+
+impl Panel {
+    fn set(&mut self, elements: BuiltArray) {
+        self.state.editor.edit("elements", None, |scene, _| scene.disturbances.elements = elements);
+    }
 }
 
 fn radar() -> Radar {
@@ -24,23 +29,19 @@ fn radar() -> Radar {
 }
 
 fn panel(elements: BuiltArray, calibrated: Option<Calibrated>) -> Harness<'static, Panel> {
-    let draw = |ui: &mut Ui, state: &mut Panel| {
-        let elements = state.elements.clone();
-        let calibration = state.calibrated.as_ref().map(Ok);
-        let layout = state.layout.clone();
-        let layout = layout.as_ref();
-        let input = Input { radar: &radar(), elements: &elements, layout, has_ends_alone: false, calibration };
-        for command in show(ui, input, &mut state.memory) {
+    let draw = |ui: &mut Ui, panel: &mut Panel| {
+        for command in show(ui, &panel.state, panel.calibrated.as_ref().map(Ok), &mut panel.memory) {
             match command {
-                Command::Radar(RadarCommand::SetElements(elements)) => state.elements = elements,
-                Command::View(ViewCommand::Hear(layout)) => state.layout = layout,
+                Command::Radar(RadarCommand::SetElements(elements)) => panel.set(BuiltArray::clone(&elements)),
+                Command::View(ViewCommand::Hear(layout)) => panel.state.settings.layout = layout,
                 other => panic!("{other:?}"),
             }
-            state.asked += 1;
+            panel.asked += 1;
         }
     };
-    let elements = Arc::new(elements);
-    let state = Panel { elements, memory: ElementsMemory::default(), asked: 0, layout: None, calibrated };
+    let state = State::of(radar(), crate::scene::Scene::default());
+    let mut state = Panel { state, memory: ElementsMemory::default(), asked: 0, calibrated };
+    state.set(elements);
     let mut panel = Harness::builder().with_size([640.0, 420.0]).build_ui_state(draw, state);
     panel.run();
     panel
@@ -52,37 +53,23 @@ fn a_click_switches_an_element_off_or_on() {
     let strip = panel.get_by_label("Elements").rect();
     let on_fifth = pos2(strip.left() + 5.5 / 32.0 * strip.width(), strip.center().y);
     for dead in [true, false] {
-        panel.hover_at(on_fifth);
-        panel.drag_at(on_fifth);
-        panel.step();
-        panel.drop_at(on_fifth);
-        panel.run();
-        assert_eq!(panel.state().elements.elements[5].dead, dead);
+        panel.drags(&[on_fifth]);
+        assert_eq!(panel.state().state.elements().elements[5].dead, dead);
     }
     assert_eq!(panel.state().asked, 2);
-    assert!(panel.state().elements.is_ideal());
+    assert!(panel.state().state.elements().is_ideal());
 }
 
 #[test]
 fn a_layout_is_chosen_or_typed() {
     let mut panel = panel(BuiltArray::default(), None);
-    panel.get_by_label("heard").click();
-    panel.run();
-    panel.get_by_label("nested=4x6").click();
-    panel.run();
-    assert_eq!(panel.state().layout, Some(LayoutKind::Nested { neighbours: 4, apart: 6 }));
+    panel.clicks(&["heard", "nested=4x6"]);
+    assert_eq!(panel.state().state.settings.layout, Some(LayoutKind::Nested { neighbours: 4, apart: 6 }));
     for (text, told) in [("0-3 40", Some("the radar has elements 0 to 31")), ("0-3 30", None)] {
-        let field = panel.get_by_label("as text");
-        field.focus();
-        panel.run();
-        panel.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
-        panel.event(egui::Event::Text(text.to_owned()));
-        panel.run();
-        panel.key_press(Key::Enter);
-        panel.run();
+        panel.enters("as text", text);
         match told {
             Some(told) => assert!(panel.query_by_label_contains(told).is_some(), "{text}"),
-            None => assert_eq!(panel.state().layout, Some(LayoutKind::Listed(vec![0, 1, 2, 3, 30]))),
+            None => assert_eq!(panel.state().state.settings.layout, Some(LayoutKind::Listed(vec![0, 1, 2, 3, 30]))),
         }
     }
 }
@@ -92,16 +79,8 @@ fn an_element_is_moved_by_the_mouse() {
     let mut panel = panel(BuiltArray::default(), None);
     let strip = panel.get_by_label("Elements").rect();
     let from = pos2(strip.left() + 5.5 / 32.0 * strip.width(), strip.center().y);
-    panel.hover_at(from);
-    panel.drag_at(from);
-    panel.step();
-    for to in [vec2(10.0, -8.0), vec2(40.0, -20.0)] {
-        panel.hover_at(from + to);
-        panel.step();
-    }
-    panel.drop_at(from + vec2(40.0, -20.0));
-    panel.run();
-    let elements = panel.state().elements.clone();
+    panel.drags(&[vec2(0.0, 0.0), vec2(10.0, -8.0), vec2(40.0, -20.0)].map(|by| from + by));
+    let elements = panel.state().state.elements().clone();
     let moved = elements.element(5);
     assert!((moved.position_millimetres - 2.0).abs() < 0.1, "{moved:?}");
     assert!((moved.forward_millimetres - 1.0).abs() < 0.1 && !moved.dead, "{moved:?}");
@@ -111,19 +90,16 @@ fn an_element_is_moved_by_the_mouse() {
 #[test]
 fn a_bent_line_can_be_drawn() {
     let mut panel = panel(BuiltArray::default(), None);
-    panel.state_mut().memory.list = list::ElementListMemory::back_by(5.0);
-    panel.run();
-    panel.get_by_label("Bend").click();
-    panel.run();
-    assert_eq!(*panel.state().elements, BuiltArray::default().bent(&radar(), 5.0));
+    panel.enters("ends back by", "5");
+    panel.clicks(&["Bend"]);
+    assert_eq!(*panel.state().state.elements(), BuiltArray::default().bent(&radar(), 5.0));
     assert!(panel.query_by_label_contains("up to 5.00 mm off the line").is_some());
 }
 
 #[test]
 fn a_pasted_list_replaces_the_elements() {
     let mut panel = panel(BuiltArray::default(), None);
-    panel.get_by_label("From a list").click();
-    panel.run();
+    panel.clicks(&["From a list"]);
     panel.get_by_label("place mm, forward mm, gain dB, phase °").focus();
     panel.run();
     panel.event(egui::Event::Paste("0.1\t-2\n".repeat(31)));
@@ -134,7 +110,7 @@ fn a_pasted_list_replaces_the_elements() {
     panel.run();
     panel.get_by_label("Use the list").click_accesskit();
     panel.run();
-    let elements = &panel.state().elements.elements;
+    let elements = &panel.state().state.elements().elements;
     assert!(elements.len() == 32 && elements.iter().all(|e| e.forward_millimetres == -2.0), "{elements:?}");
 }
 
@@ -143,33 +119,22 @@ fn arrow_keys_and_the_space_bar_silence_an_element() {
     let mut panel = panel(BuiltArray::default(), None);
     panel.get_by_label("Elements").focus();
     panel.run();
-    for key in [Key::ArrowRight, Key::ArrowRight, Key::Space] {
-        panel.key_press(key);
-        panel.run();
-    }
-    assert!(panel.state().elements.elements[2].dead && panel.state().elements.dead() == 1);
+    panel.presses(&[Key::ArrowRight, Key::ArrowRight, Key::Space]);
+    assert!(panel.state().state.elements().elements[2].dead && panel.state().state.elements().dead() == 1);
 }
 
 #[test]
-fn errors_are_drawn_from_a_seed() {
+fn errors_are_drawn_from_a_seed_and_taken_back() {
     let mut panel = panel(BuiltArray::default(), None);
-    panel.get_by_label("Draw").click();
-    panel.run();
+    panel.clicks(&["Draw"]);
     let tolerances = ElementsMemory::default().tolerances;
-    assert_eq!(*panel.state().elements, tolerances.build(&radar(), 0));
+    assert_eq!(*panel.state().state.elements(), tolerances.build(&radar(), 0));
+    panel.clicks(&["Ideal array"]);
+    assert!(panel.state().state.elements().is_ideal() && panel.query_by_label("Ideal array").is_none());
 }
 
 #[test]
-fn errors_are_taken_back() {
-    let mut panel = panel(ElementsMemory::default().tolerances.build(&radar(), 0), None);
-    assert!(!panel.state().elements.is_ideal());
-    panel.get_by_label("Ideal array").click();
-    panel.run();
-    assert!(panel.state().elements.is_ideal() && panel.query_by_label("Ideal array").is_none());
-}
-
-/// The panel of an array that was calibrated on a point.
-fn calibrated() -> Harness<'static, Panel> {
+fn a_calibration_takes_the_errors_away() {
     let radar = radar();
     let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.0 };
     let array = tolerances.build(&radar, 1);
@@ -179,21 +144,10 @@ fn calibrated() -> Harness<'static, Panel> {
     let calibration = calibrate(&radar, &signal, &reflector).unwrap();
     let left = array.corrected(&calibration.array);
     let calibrated = Calibrated { name: "point 1".to_owned(), calibration, left };
-    panel(array, Some(calibrated))
-}
-
-#[test]
-fn power_from_elsewhere_is_told() {
-    let panel = calibrated();
+    let mut panel = panel(array, Some(calibrated));
     let _told =
         (panel.get_by_label("Calibration on point 1"), panel.get_by_label("0.0 % of the power comes from elsewhere"));
-}
-
-#[test]
-fn a_calibration_takes_the_errors_away() {
-    let mut panel = calibrated();
-    panel.get_by_label("Calibrate on this reflector").click();
-    panel.run();
-    let left = panel.state().elements.spread();
+    panel.clicks(&["Calibrate on this reflector"]);
+    let left = panel.state().state.elements().spread();
     assert!(left.gain.0 < 1e-6 && left.phase_degrees < 1e-4, "{left:?}");
 }

@@ -2,17 +2,13 @@
 
 use super::input::Input;
 use crate::app::state::{Command, FailureChoice, Purpose, RowsCommand};
-use crate::app::widgets::kind_boxes::{kind_boxes, kind_names, ticking_menu};
-use crate::app::widgets::labelled::labelled;
-use crate::app::widgets::method_menu::method_menu;
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::padded::warning;
-use crate::app::widgets::progress::{bar, start_or_cancel};
+use crate::app::widgets::{
+    NumberField, bar, kind_boxes, kind_names, labelled, method_menu, press, start_or_cancel, ticking_menu, warning,
+};
 use crate::evaluate::campaign::Unfit;
 use crate::radar::counted;
 use crate::scene::generate::Kind;
-use eframe::egui;
-use eframe::egui::Ui;
+use eframe::egui::{self, Ui};
 use std::collections::BTreeSet;
 
 /// The chosen methods and scenes.
@@ -32,21 +28,21 @@ impl Default for ChoicesMemory {
 
 /// Draws the choices, and the buttons of run and files.
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mut Vec<Command>) {
-    memory.methods.retain(|name| input.methods.all.iter().any(|m| m.name() == *name));
+    memory.methods.retain(|name| input.state.methods.all.iter().any(|m| m.name() == *name));
     if memory.methods.is_empty() {
-        memory.methods.extend(input.method);
+        memory.methods.extend(input.state.method().map(|method| method.name()));
     }
     ui.horizontal_wrapped(|ui| {
-        ui.add_enabled_ui(input.progress.is_none(), |ui| choose(ui, input, memory, asked));
+        ui.add_enabled_ui(input.job.run.progress().is_none(), |ui| choose(ui, input, memory, asked));
         start(ui, input, memory, asked);
         ui.separator();
         files(ui, input, asked);
-        if let Some(part) = input.progress {
+        if let Some(part) = input.job.run.progress() {
             bar(ui, part, 140.0);
         }
     });
-    warning(ui, input.note);
-    unfit(ui, input.unfit);
+    warning(ui, input.job.run.note());
+    unfit(ui, input.job.run.end().map_or(&[], Vec::as_slice));
 }
 
 /// Draws a line for each method that the last run left out, with the reason.
@@ -59,7 +55,7 @@ fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
 }
 
 fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mut Vec<Command>) {
-    method_menu(ui, input.methods, &mut memory.methods, "Methods to try");
+    method_menu(ui, input.state, &mut memory.methods, "Methods to try");
     let menu = ticking_menu(ui, &format!("Kinds: {}", sets(memory)), |ui| {
         kind_boxes(ui, Kind::all(), &mut memory.kinds);
         ui.separator();
@@ -81,7 +77,7 @@ fn start(ui: &mut Ui, input: &Input<'_>, memory: &ChoicesMemory, asked: &mut Vec
     let tip = "Try the methods on the scenes, in the background, with the floor, normalisation and radar in use. Rows made with \
                the same stay; those made with others make room";
     let tips = [if ready { tip } else { "Choose a method and scenes first" }, "Stop after this map; the rows stay"];
-    if start_or_cancel(ui, ("Try", RowsCommand::CancelTrying), input.progress.is_some(), ready, tips, asked) {
+    if start_or_cancel(ui, ("Try", RowsCommand::CancelTrying), input.job.run.progress().is_some(), ready, tips, asked) {
         let choice = FailureChoice {
             methods: memory.methods.iter().copied().collect(),
             kinds: memory.kinds.iter().copied().collect(),
@@ -98,21 +94,15 @@ fn sets(memory: &ChoicesMemory) -> String {
 }
 
 fn files(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let has_rows = !input.table.rows().is_empty();
+    let has_rows = !input.job.table.rows().is_empty();
     let mut button = |name: &str, tip: &str, enabled: bool, command: Command| {
-        if ui.add_enabled(enabled, egui::Button::new(name)).on_hover_text(tip).clicked() {
-            asked.push(command);
-        }
+        ui.add_enabled_ui(enabled, |ui| press(ui, name, tip, command, asked));
     };
-    button(
-        "Open…",
-        "Show rows that were saved, or written by apertura evaluate --rows",
-        true,
-        Command::AskFile(Purpose::OpenRows),
-    );
+    let tip = "Show rows that were saved, or written by apertura evaluate --rows";
+    button("Open…", tip, true, Command::AskFile(Purpose::OpenRows));
     button("Save…", "Save the rows as CSV", has_rows, Command::AskFile(Purpose::SaveRows));
     button("Clear", "Forget every row", has_rows, Command::Rows(RowsCommand::Clear));
-    if let Some(count) = input.before {
+    if let Some(count) = input.job.before() {
         let name = format!("Bring back {}", counted(count, "row", "rows"));
         button(&name, "The rows that others took the place of", true, Command::Rows(RowsCommand::BringBack));
     }

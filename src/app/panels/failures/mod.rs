@@ -11,16 +11,15 @@ mod points;
 mod shared;
 mod table;
 
-use crate::app::content::{Content, Cx, Nothing, offered};
+use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, fates_of};
 use crate::evaluate::worsen::summary;
-pub use input::{Input, Live, Now, Searched};
+pub use input::{Input, Now};
 
 use crate::app::state::{Command, MethodSlot, RowsCommand, State};
 use crate::radar::counted;
 use charts::View;
-use eframe::egui;
-use eframe::egui::{Frame, Margin, Ui, Vec2};
+use eframe::egui::{self, Frame, Margin, Ui, Vec2};
 use order::{Boxed, Order, Sort, Wanted};
 use std::collections::BTreeSet;
 
@@ -54,48 +53,24 @@ impl Content for FailuresPanel {
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, jobs) = (&*cx.state, cx.jobs);
-        let (job, own) = (&jobs.failures, jobs.own_scenes(state));
-        let (table, search) = (job.table(), &job.search);
-        let opened = state.failures.opened.as_ref().filter(|opened| opened.generation == table.generation());
-        let input = Input {
-            methods: offered(state),
-            method: state.method().map(|m| m.name()),
-            table,
-            album: job.album(),
-            before: job.before(),
-            progress: job.progress(),
-            note: job.note(),
-            unfit: job.unfit(),
-            own: own.as_deref(),
-            colours: state.settings.colours,
-            opened: opened.map(|opened| opened.index),
-            on_screen: live(state, jobs),
-            search: Searched {
-                progress: search.progress(),
-                summary: search.summary(),
-                note: search.note(),
-                has_found: search.path().len() > 1,
-            },
-        };
+        let own = jobs.own_scenes(state);
+        let input = Input { state, job: &jobs.failures, own: own.as_deref(), now: now(state, jobs) };
         let asked = show(ui, &input, cx.memory);
         cx.state.failures.in_sight = cx.memory.in_sight().to_vec();
         asked
     }
 }
 
-/// The opened row, while its scene is on screen, with the current figures of its method.
-fn live<'a>(state: &'a State, jobs: &Jobs) -> Option<Live<'a>> {
-    let opened = state.row_on_screen()?;
+/// Figures of the method in use for the row on screen.
+fn now(state: &State, jobs: &Jobs) -> Option<Now> {
     let pipeline = &jobs.pipeline;
-    let is_new = !pipeline.output_is_outdated() && !state.is_predicting();
+    if state.row_on_screen().is_none() || pipeline.output_is_outdated() || state.is_predicting() {
+        return None;
+    }
     let fates = fates_of(&jobs.kinds, MethodSlot::First, pipeline).filter(|(_, current)| *current);
-    let now =
-        pipeline.output().zip(pipeline.scores_in(MethodSlot::First)).filter(|_| is_new).map(|(output, scores)| Now {
-            method: output.method,
-            metrics: scores.metrics,
-            fates: fates.map(|(fates, _)| summary(&fates.failures)),
-        });
-    Some(Live { row: &opened.row, now })
+    let (output, scores) = (pipeline.output()?, pipeline.scores_in(MethodSlot::First)?);
+    let fates = fates.map(|(fates, _)| summary(&fates.failures));
+    Some(Now { method: output.method, metrics: scores.metrics, fates })
 }
 
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<Command> {
@@ -106,7 +81,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
             ui,
             |ui| opened::show(ui, input, &mut memory.opened, &mut asked),
         );
-        if input.table.rows().is_empty() {
+        if input.job.table.rows().is_empty() {
             memory.in_sight.clear();
             let text = "Try methods on scenes, or open rows that apertura evaluate --rows wrote: every scene is a row to \
                         sort, filter and open.";
@@ -114,7 +89,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
             return;
         }
         let known: BTreeSet<&str> =
-            input.table.methods().iter().map(String::as_str).chain(input.methods.all.iter().map(|m| m.name())).collect();
+            input.job.table.methods().iter().map(String::as_str).chain(input.state.methods.all.iter().map(|m| m.name())).collect();
         filter::show(ui, &known, &mut memory.filter);
         update(ui, input, memory);
         head(ui, input, memory);
@@ -141,9 +116,13 @@ fn beside_or_below(room: Vec2) -> egui::Panel {
 
 /// Filters and sorts the rows, if something changed.
 fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
-    memory.boxed.take_if(|boxed| boxed.generation != input.table.generation());
-    let wanted =
-        Wanted { table: input.table, filter: memory.filter.filter(), sort: memory.sort, boxed: memory.boxed.as_ref() };
+    memory.boxed.take_if(|boxed| boxed.generation != input.job.table.generation());
+    let wanted = Wanted {
+        table: &input.job.table,
+        filter: memory.filter.filter(),
+        sort: memory.sort,
+        boxed: memory.boxed.as_ref(),
+    };
     if let Some(later) = memory.order.update(&wanted) {
         ui.ctx().request_repaint_after(later);
     }
@@ -152,7 +131,7 @@ fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
 /// Draws the number of shown rows, the button of the box, and the choice of chart.
 fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     ui.horizontal_wrapped(|ui| {
-        let (shown, all) = (memory.order.shown().len(), input.table.rows().len());
+        let (shown, all) = (memory.order.shown().len(), input.job.table.rows().len());
         let rows = counted(all, "row", "rows");
         ui.weak(if shown == all { rows } else { format!("{shown} of {rows}") });
         if let Some(boxed) = &memory.boxed {
@@ -162,7 +141,7 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
             }
         }
         ui.separator();
-        charts::choices(ui, input.table, &mut memory.charts);
+        charts::choices(ui, &input.job.table, &mut memory.charts);
         // In a row that is always there, so that nothing moves while an expression is typed.
         filter::problem(ui, &memory.filter);
     });
@@ -170,13 +149,13 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
 
 fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mut Vec<Command>) {
     if memory.charts.view == View::Shared {
-        if let Some(rule) = shared::show(ui, input.table, &mut memory.shared) {
+        if let Some(rule) = shared::show(ui, &input.job.table, &mut memory.shared) {
             memory.filter.set(rule);
             ui.request_repaint();
         }
         return;
     }
-    let of = charts::Input { table: input.table, order: &memory.order, opened: input.opened };
+    let of = charts::Input { table: &input.job.table, order: &memory.order, opened: input.opened() };
     let answer = charts::show(ui, &of, memory.boxed.as_ref(), &mut memory.charts);
     asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));
     if let Some(boxed) = answer.boxed {
@@ -188,12 +167,12 @@ fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mu
 
 fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mut Vec<Command>) {
     let of = table::Input {
-        table: input.table,
-        album: input.album,
+        table: &input.job.table,
+        album: &input.job.thumbnails.album,
         shown: memory.order.shown(),
         sort: memory.sort,
-        opened: input.opened,
-        colours: input.colours,
+        opened: input.opened(),
+        colours: input.state.settings.colours,
     };
     let answer = table::show(ui, &of, &mut memory.table);
     asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));

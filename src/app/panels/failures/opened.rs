@@ -1,13 +1,8 @@
 //! The opened row: its figures beside the current ones, the search for a worse or a repaired scene, and the button that keeps the scene.
 
-use super::input::{Input, Live, Now, Searched};
+use super::input::{Input, Now};
 use crate::app::state::{Command, Purpose, RowsCommand, SearchChoice};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::labelled::{choice, labelled};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::numbers::percent;
-use crate::app::widgets::padded::warning;
-use crate::app::widgets::progress::progress;
+use crate::app::widgets::{NumberField, choice, labelled, percent, press, progress, warning};
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};
@@ -29,11 +24,11 @@ impl Default for OpenedMemory {
 }
 
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
-    if let Some(live) = &input.on_screen {
-        figures(ui, live);
+    if let Some(row) = input.row_on_screen() {
+        figures(ui, row, input.now.as_ref());
     }
     ui.horizontal_wrapped(|ui| {
-        search(ui, &input.search, memory, asked);
+        search(ui, input, memory, asked);
         ui.separator();
         let note = TextEdit::singleline(&mut memory.note).hint_text("why it is kept").desired_width(160.0);
         labelled(ui, "Note", "", note);
@@ -43,20 +38,20 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &m
         if keep.on_hover_text(tip).clicked() {
             asked.push(RowsCommand::KeepScene(std::mem::take(&mut memory.note)).into());
         }
-        if input.own.is_none() && ui.button("Folder…").clicked() {
-            asked.push(Purpose::OwnScenes.into());
+        if input.own.is_none() {
+            press(ui, "Folder…", "", Purpose::OwnScenes, asked);
         }
     });
 }
 
-fn figures(ui: &mut Ui, live: &Live<'_>) {
+fn figures(ui: &mut Ui, row: &Row, now: Option<&Now>) {
     Grid::new("row and now").num_columns(5).spacing([14.0, 2.0]).show(ui, |ui| {
-        ui.label(format!("row: {}", super::cells::name(live.row)));
-        let Row { squared_error, detection, false_alarm, .. } = *live.row;
+        ui.label(format!("row: {}", super::cells::name(row)));
+        let Row { squared_error, detection, false_alarm, .. } = *row;
         rates(ui, &Metrics { squared_error, detection, false_alarm });
-        ui.label(fates(live.row));
+        ui.label(fates(row));
         ui.end_row();
-        match &live.now {
+        match now {
             Some(Now { method, metrics, fates }) => {
                 ui.label(format!("now: {method}"));
                 rates(ui, metrics);
@@ -90,8 +85,9 @@ fn fates(row: &Row) -> String {
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
-    if let Some(part) = searched.progress {
+fn search(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
+    let searched = &input.job.search;
+    if let Some(part) = searched.progress() {
         if progress(ui, part, 140.0, "Stop looking; what was found stays") {
             asked.push(RowsCommand::CancelSearch.into());
         }
@@ -104,25 +100,18 @@ fn search(ui: &mut Ui, searched: &Searched<'_>, memory: &mut OpenedMemory, asked
         let worse = "Look near the scene on screen for one that the method in use does worse on; the way there is drawn on the scene";
         let repair = "Look for the smallest move of its objects after which the method in use is right";
         for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
-            if ui.button(title).on_hover_text(tip).clicked() {
-                let OpenedMemory { measure, within_metres, tries, .. } = *memory;
-                asked.push(RowsCommand::Search(SearchChoice { aim, measure, within_metres, tries }).into());
-            }
+            let OpenedMemory { measure, within_metres, tries, .. } = *memory;
+            press(ui, title, tip, RowsCommand::Search(SearchChoice { aim, measure, within_metres, tries }), asked);
         }
     }
-    if let Some(summary) = &searched.summary {
+    if let Some(summary) = searched.summary() {
         ui.label(summary);
     }
-    warning(ui, searched.note);
-    if searched.progress.is_none() && searched.has_found {
-        press(
-            ui,
-            "Show",
-            "Put what was found on screen; undo brings this scene back",
-            || RowsCommand::TakeFinding,
-            asked,
-        );
-        press(ui, "Forget", "Forget the search; its path is no longer drawn", || RowsCommand::ForgetSearch, asked);
+    warning(ui, searched.note());
+    if searched.progress().is_none() && searched.path().len() > 1 {
+        let tip = "Put what was found on screen; undo brings this scene back";
+        press(ui, "Show", tip, RowsCommand::TakeFinding, asked);
+        press(ui, "Forget", "Forget the search; its path is no longer drawn", RowsCommand::ForgetSearch, asked);
     }
 }
 

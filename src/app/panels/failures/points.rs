@@ -154,26 +154,19 @@ mod tests {
     }
 
     #[test]
-    fn two_methods_meet_on_their_common_scenes() {
+    fn rows_are_grouped_by_method_or_meet_on_their_common_scenes() {
         let table = table();
         let all: Vec<usize> = (0..table.rows().len()).collect();
+        let by_columns = Subject::Columns(Column::Index, Column::SquaredError);
+        let points = Points::of(&table, &all, &by_columns, Grouping::Method);
+        assert_eq!(points.groups, ["live", "nomp"]);
+        assert_eq!([0, 1].map(|group| points.dots.iter().filter(|dot| dot.group == group).count()), [6, 5]);
         let subject = Subject::Methods(Column::SquaredError, "live".into(), "nomp".into());
         let points = Points::of(&table, &all, &subject, Grouping::Method);
         assert_eq!(points.dots.len(), 5, "the first scene was tried by one only");
         assert!(points.dots.iter().all(|dot| dot.at[0] == dot.at[1] && dot.rows[1] == dot.rows[0] + 5));
         let [low, high] = points.spans[0];
         assert!(points.dots.iter().all(|dot| low < dot.at[0] && dot.at[0] < high));
-    }
-
-    #[test]
-    fn rows_are_grouped_by_their_method() {
-        let table = table();
-        let all: Vec<usize> = (0..table.rows().len()).collect();
-        let subject = Subject::Columns(Column::Index, Column::SquaredError);
-        let points = Points::of(&table, &all, &subject, Grouping::Method);
-        assert_eq!(points.groups, ["live", "nomp"]);
-        let of = |group| points.dots.iter().filter(|dot| dot.group == group).count();
-        assert_eq!([of(0), of(1)], [6, 5]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Rules that separate the bad rows from the others, each a filter that a click applies.
 
 use crate::app::jobs::RowTable;
-use crate::app::widgets::labelled::labelled;
+use crate::app::widgets::labelled;
 use crate::evaluate::rows::Row;
 use crate::evaluate::statistics::{Rule, SharedTrait, USUALLY_BAD, rules};
 use crate::platform::Instant;

@@ -3,13 +3,11 @@
 use super::cells;
 use super::order::Sort;
 use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail};
-use crate::app::widgets::list_rows::focus_after_click;
-use crate::app::widgets::textures::{Texture, colour_table};
+use crate::app::widgets::{Texture, colour_table, focus_after_click};
 use crate::evaluate::rows::{Column, Row};
 use crate::picture::ColourMap;
-use eframe::egui;
 use eframe::egui::{
-    Align, Color32, ColorImage, EventFilter, FontId, Id, Key, Label, Layout, Modifiers, Rect, Response, RichText,
+    self, Align, Color32, ColorImage, EventFilter, FontId, Id, Key, Label, Layout, Modifiers, Rect, Response, RichText,
     ScrollArea, Sense, Stroke, TextureOptions, Ui, Vec2, pos2, vec2,
 };
 use egui_extras::{Column as TableColumn, TableBuilder, TableRow};

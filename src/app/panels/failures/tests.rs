@@ -1,15 +1,13 @@
 use super::*;
-use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, some_row};
-use crate::app::state::{Conditions, FailureChoice, Purpose, SearchChoice};
-use crate::app::widgets::method_menu::Offered;
-use crate::app::widgets::seen;
+use crate::app::jobs::{Failures, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, some_row};
+use crate::app::state::{Conditions, FailureChoice, OpenedRow, Purpose, SearchChoice};
+use crate::app::widgets::seen::{self, User};
 use crate::evaluate::rows::{Column, Row};
 use crate::evaluate::worsen::{Aim, WorseningMeasure};
-use crate::picture::ColourMap;
 use crate::platform::Instant;
 use crate::reconstruct::{Baseline, CAPON, Reconstructor};
 use crate::scene::generate::Kind;
-use eframe::egui::{Key, Modifiers, Vec2, vec2};
+use eframe::egui::{Context, Key, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
@@ -17,44 +15,29 @@ use std::sync::Arc;
 use std::time::Duration;
 
 struct Drawn {
-    table: RowTable,
-    album: Album,
+    state: State,
+    job: Failures,
     memory: FailuresMemory,
     asked: Vec<Command>,
-    opened: Option<usize>,
 }
 
 fn panel_of(rows: Vec<Row>, size: Vec2) -> Harness<'static, Drawn> {
-    let draw = |ui: &mut Ui, drawn: &mut Drawn| {
-        let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline), Arc::new(CAPON)];
-        let row = drawn.opened.map(|index| drawn.table.rows()[index].clone());
-        let input = Input {
-            methods: Offered::untimed(&methods),
-            method: Some("capon"),
-            table: &drawn.table,
-            album: &drawn.album,
-            before: None,
-            progress: None,
-            note: None,
-            unfit: &[],
-            own: Some(Path::new("/own")),
-            colours: ColourMap::Grey,
-            opened: drawn.opened,
-            on_screen: row.as_ref().map(|row| Live { row, now: None }),
-            search: Searched::default(),
-        };
-        let asked = show(ui, &input, &mut drawn.memory);
-        for command in &asked {
-            if let Command::Rows(RowsCommand::Show(index)) = command {
-                drawn.opened = Some(*index);
+    let draw = |ui: &mut Ui, Drawn { state, job, memory, asked }: &mut Drawn| {
+        let new = show(ui, &Input { state, job, own: Some(Path::new("/own")), now: None }, memory);
+        for command in &new {
+            if let Command::Rows(RowsCommand::Show(index)) = *command {
+                let (row, generation) = (job.table.rows()[index].clone(), job.table.generation());
+                let document = state.editor.document().id();
+                state.failures.opened = Some(OpenedRow { row, index, generation, document });
             }
         }
-        drawn.asked.extend(asked);
+        asked.extend(new);
     };
-    let mut table = RowTable::default();
-    table.replace(rows, Conditions::default());
-    let drawn =
-        Drawn { table, album: Album::default(), memory: FailuresMemory::default(), asked: Vec::new(), opened: None };
+    let mut state = State::new(vec![Arc::new(Baseline), Arc::new(CAPON)]);
+    state.settings.method = CAPON.name().to_owned();
+    let mut job = Failures::start(None, &Context::default());
+    job.table.replace(rows, Conditions::default());
+    let drawn = Drawn { state, job, memory: FailuresMemory::default(), asked: Vec::new() };
     let mut panel = Harness::builder().with_size(size).build_ui_state(draw, drawn);
     panel.run_steps(3);
     panel
@@ -64,17 +47,10 @@ fn panel(count: u32) -> Harness<'static, Drawn> {
     panel_of((0..count).map(|i| some_row(i, "capon")).collect(), vec2(900.0, 700.0))
 }
 
-fn click(panel: &mut Harness<'_, Drawn>, label: &str) {
-    panel.get_by_label(label).click();
-    panel.run_steps(3);
-}
-
 #[test]
 fn every_button_is_one_command() {
     let mut panel = panel(0);
-    for label in ["Try", "Worse", "Keep", "Open…"] {
-        click(&mut panel, label);
-    }
+    panel.clicks(&["Try", "Worse", "Keep", "Open…"]);
     let choice = FailureChoice { methods: vec!["capon"], kinds: vec![Kind::Set2], own: false, count: 20, seed: 0 };
     let search =
         SearchChoice { aim: Aim::Worsen, measure: WorseningMeasure::SquaredError, within_metres: 2.0, tries: 256 };
@@ -87,38 +63,17 @@ fn every_button_is_one_command() {
     assert_eq!(panel.state().asked, asked);
 }
 
-/// Fifty rows sorted by squared error, and the index of the largest.
-fn by_squared_error() -> (Harness<'static, Drawn>, usize) {
-    let mut panel = panel(50);
-    click(&mut panel, "Squared error");
-    let rows = panel.state().table.rows().clone();
-    let worst = (0..50).max_by(|a, b| rows[*a].squared_error.total_cmp(&rows[*b].squared_error)).unwrap();
-    (panel, worst)
-}
-
-#[test]
-fn a_title_sorts_the_rows() {
-    let (panel, worst) = by_squared_error();
-    assert_eq!(panel.state().memory.in_sight()[0], worst);
-}
-
 #[test]
 fn keys_walk_through_the_rows_in_their_order() {
-    let (mut panel, worst) = by_squared_error();
-    let rows = panel.state().table.rows().clone();
-    click(&mut panel, &format!("set 1, scene {worst}, capon"));
-    for _ in 0..2 {
-        panel.key_press(Key::ArrowDown);
-        panel.run_steps(2);
-    }
-    panel.key_press(Key::End);
-    panel.run_steps(3);
-    let opened: Vec<usize> = panel
-        .state()
-        .asked
-        .iter()
-        .map(|c| if let Command::Rows(RowsCommand::Show(row)) = c { *row } else { panic!("{c:?}") })
-        .collect();
+    let mut panel = panel(50);
+    panel.clicks(&["Squared error"]);
+    let rows = panel.state().job.table.rows().clone();
+    let worst = (0..50).max_by(|a, b| rows[*a].squared_error.total_cmp(&rows[*b].squared_error)).unwrap();
+    assert_eq!(panel.state().memory.in_sight()[0], worst, "the title sorts the rows");
+    panel.clicks(&[&format!("set 1, scene {worst}, capon")]);
+    panel.presses(&[Key::ArrowDown, Key::ArrowDown, Key::End]);
+    let shown = |c: &Command| if let Command::Rows(RowsCommand::Show(row)) = c { *row } else { panic!("{c:?}") };
+    let opened: Vec<usize> = panel.state().asked.iter().map(shown).collect();
     let figures: Vec<f64> = opened.iter().map(|row| rows[*row].squared_error).collect();
     assert_eq!((opened.len(), opened[0]), (4, worst));
     assert!(figures.is_sorted_by(|a, b| a >= b), "{figures:?}");
@@ -131,36 +86,28 @@ fn keys_walk_through_the_rows_in_their_order() {
 fn a_box_in_the_scatter_plot_selects_rows() {
     let apart = |i: u32| Row { nearest_pair_columns: Some(f64::from(i)), ..some_row(i, "capon") };
     let mut panel = panel_of((0..200).map(apart).collect(), vec2(900.0, 700.0));
-    click(&mut panel, "Scatter");
+    panel.clicks(&["Scatter"]);
     panel.state_mut().memory.sort = Some(Sort { column: Column::Index, descending: false });
     let chart = panel.get_by_label("Chart of rows").rect();
     let (from, to) = (chart.left_top() + vec2(2.0, 2.0), chart.center_bottom() - vec2(0.0, 2.0));
-    panel.hover_at(from);
-    panel.step();
-    panel.drag_at(from);
-    panel.step();
-    for part in [0.3, 0.6, 1.0] {
-        panel.hover_at(from + (to - from) * part);
-        panel.step();
-    }
-    panel.drop_at(to);
-    panel.run_steps(4);
+    panel.drags(&[0.0, 0.3, 0.6, 1.0].map(|part| from + (to - from) * part));
+    panel.run_steps(2);
     let shown = panel.state().memory.order.shown().to_vec();
     let last = *shown.last().unwrap();
     assert!((90..110).contains(&last) && shown == (0..=last).collect::<Vec<_>>(), "the left half: {shown:?}");
     let name = format!("× {} in the box", shown.len());
-    click(&mut panel, &name);
+    panel.clicks(&[&name]);
     assert_eq!(panel.state().memory.order.shown().len(), 200);
 }
 
 /// Rows with pictures, sorted by a title.
 fn with_pictures(count: u32) -> Harness<'static, Drawn> {
     let mut panel = panel(count);
-    let Drawn { table, album, .. } = panel.state();
+    let Failures { table, thumbnails, .. } = &panel.state().job;
     let bytes = || vec![99; THUMBNAIL_WIDTH * THUMBNAIL_HEIGHT].into_boxed_slice();
     let thumbnail = Arc::new(Thumbnail { target: bytes(), output: bytes() });
-    table.rows().iter().for_each(|row| album.insert(table.generation(), row, Ok(thumbnail.clone())));
-    click(&mut panel, "Missed");
+    table.rows().iter().for_each(|row| thumbnails.album.insert(table.generation(), row, Ok(thumbnail.clone())));
+    panel.clicks(&["Missed"]);
     panel
 }
 
@@ -178,25 +125,18 @@ fn ten_thousand_rows_are_put_in_order_once() {
 }
 
 #[test]
-fn rows_out_of_sight_are_not_drawn() {
-    let panel = with_pictures(1000);
+fn only_rows_in_sight_are_drawn_and_their_pictures_held() {
+    let mut panel = with_pictures(1000);
     let in_sight = panel.state().memory.in_sight().len();
     assert!((5..30).contains(&in_sight), "{in_sight} rows in sight");
     assert!(seen::texts(panel.output()).len() < 700);
-}
-
-#[test]
-fn pictures_are_held_only_of_rows_in_sight() {
-    let mut panel = with_pictures(1000);
     panel.get_by_label("Rows").focus();
     panel.step();
-    panel.key_press_modifiers(Modifiers::NONE, Key::End);
-    panel.run_steps(3);
+    panel.presses(&[Key::End]);
     let last = *panel.state().memory.order.shown().last().unwrap();
-    assert_eq!(panel.state().opened, Some(last));
+    assert_eq!(panel.state().state.failures.opened.as_ref().map(|opened| opened.index), Some(last));
     assert!(panel.state().memory.in_sight().contains(&last));
-    panel.key_press(Key::PageUp);
-    panel.run_steps(3);
+    panel.presses(&[Key::PageUp]);
     let held = panel.state().memory.table.pictures();
     assert!(held <= panel.state().memory.in_sight().len(), "{held} pictures are held");
 }
@@ -204,9 +144,9 @@ fn pictures_are_held_only_of_rows_in_sight() {
 #[test]
 fn an_opened_row_keeps_its_figures_beside_those_of_now() {
     let mut panel = panel(3);
-    click(&mut panel, "set 1, scene 2, capon");
+    panel.clicks(&["set 1, scene 2, capon"]);
     let texts = seen::texts(panel.output());
-    let error = format!("{:.1}", panel.state().table.rows()[2].squared_error);
+    let error = format!("{:.1}", panel.state().job.table.rows()[2].squared_error);
     for said in [error.clone(), format!("SE {error}")] {
         assert!(texts.iter().any(|t| t.text == said), "{said}: in the table, and beside the live ones");
     }
@@ -226,7 +166,7 @@ fn by_two_methods() -> Vec<Row> {
 #[test]
 fn two_methods_are_compared_in_a_sentence() {
     let mut panel = panel_of(by_two_methods(), vec2(900.0, 700.0));
-    click(&mut panel, "A against B");
+    panel.clicks(&["A against B"]);
     let texts = seen::texts(panel.output());
     let told = texts.iter().find(|t| t.text.starts_with("SE of live less that of nomp: +0.0")).unwrap();
     assert!(
@@ -239,44 +179,29 @@ fn two_methods_are_compared_in_a_sentence() {
 #[test]
 fn a_rule_of_the_bad_rows_is_applied_by_a_click() {
     let mut panel = panel_of(by_two_methods(), vec2(900.0, 700.0));
-    click(&mut panel, "Conditions that the bad rows share");
+    panel.clicks(&["Conditions that the bad rows share"]);
     let _said = panel.get_by_label_contains("24 of 160 rows are bad.");
-    click(&mut panel, "nearest_pair_columns < 3");
+    panel.clicks(&["nearest_pair_columns < 3"]);
     assert_eq!(panel.state().memory.order.shown().len(), 48);
 }
 
-/// Six scenes by a method without doubt and by one with it.
-fn with_doubt() -> Harness<'static, Drawn> {
+#[test]
+fn rows_are_sorted_and_filtered_and_drawn_by_doubt() {
+    // Six scenes by a method without doubt and by one with it.
     let rows = (0..6).flat_map(|i| ["capon", "live"].map(|method| some_row(i, method))).collect();
-    panel_of(rows, vec2(3000.0, 700.0))
-}
-
-#[test]
-fn rows_are_sorted_by_doubt() {
-    let mut panel = with_doubt();
-    click(&mut panel, "Doubt as SE");
+    let mut panel = panel_of(rows, vec2(3000.0, 700.0));
+    let rows = panel.state().job.table.rows().clone();
+    let all: Vec<usize> = (0..rows.len()).collect();
+    let axes = points::Subject::Columns(Column::Doubt, Column::SquaredError);
+    let dots = points::Points::of(&panel.state().job.table, &all, &axes, points::Grouping::Method).dots;
+    assert_eq!(dots.iter().map(|dot| dot.at[0]).collect::<Vec<_>>(), [90.0, 91.0, 92.0, 93.0, 94.0, 95.0]);
+    panel.clicks(&["Doubt as SE"]);
     let in_sight = panel.state().memory.in_sight().to_vec();
-    let methods = in_sight.iter().map(|row| panel.state().table.rows()[*row].method.clone()).collect::<Vec<_>>();
-    assert_eq!(methods[..6], ["live"; 6], "those that say none come last");
+    assert!(in_sight[..6].iter().all(|row| rows[*row].method == "live"), "those that say none come last");
     assert_eq!(in_sight[0], 11, "the largest comes first");
-    assert!(seen::texts(panel.output()).iter().any(|t| t.text == "95.0"), "and is shown");
-}
-
-#[test]
-fn rows_are_filtered_by_doubt() {
-    let mut panel = with_doubt();
+    assert!(panel.reads("95.0"), "and is shown");
     panel.state_mut().memory.filter.set("squared_error > doubt".to_owned());
     panel.run_steps(3);
-    let rows = panel.state().table.rows().clone();
-    let shown = panel.state().memory.order.shown().to_vec();
+    let shown = panel.state().memory.order.shown();
     assert!(!shown.is_empty() && shown.iter().all(|row| rows[*row].method == "live"));
-}
-
-#[test]
-fn doubt_is_an_axis_of_the_scatter_plot() {
-    let panel = with_doubt();
-    let all: Vec<usize> = (0..panel.state().table.rows().len()).collect();
-    let axes = points::Subject::Columns(Column::Doubt, Column::SquaredError);
-    let dots = points::Points::of(&panel.state().table, &all, &axes, points::Grouping::Method).dots;
-    assert_eq!(dots.iter().map(|dot| dot.at[0]).collect::<Vec<_>>(), [90.0, 91.0, 92.0, 93.0, 94.0, 95.0]);
 }

@@ -1,7 +1,7 @@
 //! Attempts of the search, one line each. A click selects the object at the place of an attempt.
 
 use crate::app::state::{Command, EditCommand};
-use crate::app::widgets::numbers::{plain, signed};
+use crate::app::widgets::{plain, signed};
 use crate::interact::SelectionMode;
 use crate::reconstruct::Attempt;
 use crate::reconstruct::search::{LADDER, MOST_ATTEMPTS};
@@ -74,10 +74,10 @@ fn nearest(objects: &[Object], [x, y]: [f64; 2]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
     use crate::radar::Radar;
     use crate::reconstruct::search::Nomp;
-    use crate::reconstruct::{Reconstructor, Request};
-    use crate::reconstruct::{Refusal, Tried, Verdict};
+    use crate::reconstruct::{Reconstructor, Refusal, Request, Tried, Verdict};
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
     use egui_kittest::Harness;
@@ -99,8 +99,7 @@ mod tests {
         let point = attempt(Tried::Point { at_metres: [3.0, 9.0] }, Verdict::Refused(Refusal::EndsDisagree));
         let mut panel = panel(vec![point], Scene::default());
         assert!(panel.query_by_label("tones").is_none());
-        panel.get_by_label(HEADING).click();
-        panel.run();
+        panel.clicks(&[HEADING]);
         let _told = ["tones", "point at x +3.00 m, y +9.00 m", "3.25", "refused: the ends disagree on its strength"]
             .map(|text| panel.get_by_label(text));
     }
@@ -112,10 +111,7 @@ mod tests {
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let found = Nomp::default().reconstruct(&radar, &ends, &Request::default()).unwrap();
         let mut panel = panel(found.trace, scene);
-        panel.get_by_label(HEADING).click();
-        panel.run();
-        panel.get_by_label("point at x +3.00 m, y +6.00 m").click();
-        panel.run();
+        panel.clicks(&[HEADING, "point at x +3.00 m, y +6.00 m"]);
         assert_eq!(panel.state()[..], [Command::from(EditCommand::Select(vec![1], SelectionMode::Replace))]);
     }
 

@@ -1,6 +1,6 @@
 //! Names, units and ranges of the fields of objects.
 
-use crate::app::widgets::labelled::Quantity;
+use crate::app::widgets::Quantity;
 use crate::interact::Field;
 
 /// Name, tooltip, unit and range of a field.

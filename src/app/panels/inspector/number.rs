@@ -2,8 +2,7 @@
 
 use super::look::look;
 use super::slider;
-use crate::app::widgets::labelled::Quantity;
-use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::{NumberField, Quantity};
 use crate::interact::{FieldChange, SharedField};
 use eframe::egui::Ui;
 

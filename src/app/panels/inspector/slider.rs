@@ -28,6 +28,7 @@ pub fn show(ui: &mut Ui, shared: &SharedField) -> Option<FieldChange> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::User;
     use eframe::egui::{Key, Role};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -45,22 +46,14 @@ mod tests {
             let mut slider = of(field, first);
             slider.get_by_role_and_label(Role::Slider, name).focus();
             slider.step();
-            slider.key_press(Key::ArrowRight);
-            slider.step();
+            slider.presses(&[Key::ArrowRight]);
             let Some(FieldChange::To(asked)) = *slider.state() else { panic!("{name}: {:?}", slider.state()) };
             assert!(asked > first && asked < 2.0 * first, "{name}: {asked}");
         }
         let slider = of(Field::Length, 4.0);
         assert!(slider.query_by_role(Role::Slider).is_none(), "a length has none");
-    }
-
-    #[test]
-    fn a_number_beyond_the_slider_stays() {
-        let draw = |ui: &mut Ui, asked: &mut Option<FieldChange>| {
-            *asked = show(ui, &SharedField { field: Field::Radius, first: 50.0, is_same: true });
-        };
-        let mut slider = Harness::new_ui_state(draw, None);
-        slider.run();
-        assert_eq!(*slider.state(), None);
+        let mut beyond = of(Field::Radius, 50.0);
+        beyond.run();
+        assert_eq!(*beyond.state(), None, "a number beyond the slider stays");
     }
 }

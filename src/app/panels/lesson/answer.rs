@@ -3,14 +3,10 @@
 use super::large::{LARGE_TEXT_RATIO, large};
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, LessonRun};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::inline::inline;
-use crate::app::widgets::number_field::{NumberField, Wanted};
-use crate::app::widgets::theme;
+use crate::app::widgets::{NumberField, Wanted, inline, press, theme};
 use crate::lesson::question::{Answer, number_text};
 use crate::lesson::{Guess, Judgement, Question, Truth};
-use eframe::egui;
-use eframe::egui::{Color32, Id, Sense, Slider, Stroke, TextEdit, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Color32, Id, Sense, Slider, Stroke, TextEdit, Ui, Vec2, pos2, vec2};
 
 /// Draws the field or the buttons of an open question, or the request for a click.
 pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
@@ -50,7 +46,7 @@ pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked
         }
         Answer::Choice { options, .. } => {
             for (index, option) in options.iter().enumerate() {
-                press(ui, option, "", || LessonCommand::Predict(Guess::Choice(index + 1)), asked);
+                press(ui, option, "", LessonCommand::Predict(Guess::Choice(index + 1)), asked);
             }
         }
         Answer::Threshold { .. } => {
@@ -59,7 +55,7 @@ pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked
                 let field = NumberField::new(&mut memory.eta).range(0.0..=1.0).speed(0.005).max_decimals(2);
                 let field = ui.add(field);
                 ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("threshold in numbers"));
-                press(ui, "Answer", "", || LessonCommand::Predict(Guess::Eta(memory.eta)), asked);
+                press(ui, "Answer", "", LessonCommand::Predict(Guess::Eta(memory.eta)), asked);
             });
         }
     }

@@ -3,11 +3,9 @@
 use super::answer::Symbol;
 use super::large::large;
 use crate::app::state::{Command, LessonCommand, LessonRun};
-use crate::app::widgets::entry::press;
-use crate::app::widgets::theme;
+use crate::app::widgets::{press, theme};
 use crate::lesson::{Challenge, Measured};
-use eframe::egui;
-use eframe::egui::{Sense, Stroke, TextureId, Ui, Vec2};
+use eframe::egui::{self, Sense, Stroke, TextureId, Ui, Vec2};
 
 /// Draws the challenge, its criteria and its buttons.
 pub fn requirements(
@@ -36,14 +34,14 @@ pub fn requirements(
             ui,
             "Start this step again",
             "Puts the step's scene and radar back",
-            || LessonCommand::Step(run.step),
+            LessonCommand::Step(run.step),
             asked,
         );
     } else if run.is_met() {
         ui.label(large(ui, "Solved. Keep experimenting or continue.").strong());
     } else {
         let tip = "Puts a scene and a radar on screen that meet it; the challenge then counts as unsolved";
-        press(ui, "Show a solution", tip, || LessonCommand::ShowSolution, asked);
+        press(ui, "Show a solution", tip, LessonCommand::ShowSolution, asked);
     }
 }
 

@@ -2,24 +2,16 @@
 
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, Purpose};
-use crate::lesson::shipped::Shipped;
-use crate::lesson::{Lesson, Progress};
+use crate::app::widgets::press;
+use crate::lesson::{Lesson, Progress, shipped};
 use crate::radar::counted;
-use eframe::egui;
-use eframe::egui::{Color32, ProgressBar, RichText, TextEdit, Ui};
-use std::sync::OnceLock;
+use eframe::egui::{self, Color32, ProgressBar, RichText, TextEdit, Ui};
 
 /// Width of a bar of progress, points.
 const BAR: f32 = 120.0;
 
 /// Room for "0 of 5 steps", points.
 const MIN_BAR: f32 = 84.0;
-
-/// The shipped lessons, read once.
-fn shipped() -> &'static [(&'static Shipped, Lesson)] {
-    static READ: OnceLock<Vec<(&'static Shipped, Lesson)>> = OnceLock::new();
-    READ.get_or_init(|| crate::lesson::shipped::ALL.iter().filter_map(|s| Some((s, s.load().ok()?))).collect())
-}
 
 /// Draws the list.
 pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
@@ -40,16 +32,14 @@ pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: 
         }
     });
     ui.add_space(6.0);
-    for (index, (file, lesson)) in shipped().iter().enumerate() {
-        if listed(ui, lesson, done(progress, file.id, lesson)) {
-            asked.push(LessonCommand::Begin(index).into());
+    for (index, lesson) in shipped::all_read() {
+        if listed(ui, lesson, done(progress, shipped::ALL[*index].id, lesson)) {
+            asked.push(LessonCommand::Begin(*index).into());
         }
     }
     ui.add_space(6.0);
-    if ui.button("Open a lesson file…").on_hover_text("A TOML file; docs/lessons.md says how to write one").clicked()
-    {
-        asked.push(Purpose::OpenLesson.into());
-    }
+    let tip = "A TOML file; docs/lessons.md says how to write one";
+    press(ui, "Open a lesson file…", tip, Purpose::OpenLesson, asked);
 }
 
 /// Draws the menu that deletes the learner's answers after a confirmation.

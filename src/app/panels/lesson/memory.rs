@@ -1,7 +1,7 @@
 //! State of the lesson panel, kept between frames.
 
 use crate::app::state::LessonRun;
-use crate::app::widgets::textures::Texture;
+use crate::app::widgets::Texture;
 
 /// Answers that were typed but not sent, and the state of the layout.
 #[derive(Default)]

@@ -1,8 +1,7 @@
 //! The guess and the truth of a lesson's question about a place, drawn together on the map.
 
 use super::frame::Frame;
-use crate::app::widgets::axes;
-use crate::app::widgets::theme::{MARK, MARK_EDGE};
+use crate::app::widgets::{MARK, MARK_EDGE, axes};
 use crate::lesson::Cell;
 use crate::theory;
 use eframe::egui::{Align2, Color32, Painter, Pos2, Stroke, vec2};

@@ -1,7 +1,7 @@
 //! Texts in the place of a map's picture, where there is none or where it is hidden.
 
 use crate::app::state::{Command, ViewCommand};
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::{Inks, press};
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{self, Align, Painter, Rect, Ui, vec2};
 
@@ -28,10 +28,9 @@ pub fn empty(ui: &mut Ui, painter: &Painter, rect: Rect, error: Option<&Problem<
     ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
         ui.vertical_centered(|ui| {
             ui.add(egui::Label::new(egui::RichText::new(text).size(12.0).weak()).wrap().selectable(false));
-            if let Some(instead) = error.and_then(|e| e.instead)
-                && ui.button(format!("Use {instead}")).on_hover_text("A method that works here").clicked()
-            {
-                asked.push(ViewCommand::Method(instead).into());
+            if let Some(instead) = error.and_then(|e| e.instead) {
+                let tip = "A method that works here";
+                press(ui, format!("Use {instead}"), tip, ViewCommand::Method(instead), asked);
             }
         });
     });

@@ -1,8 +1,7 @@
 //! Text in the title bar of a map's panel.
 
 use crate::app::state::{MapKind, Units};
-use crate::app::widgets::levels::{level, with_unit};
-use crate::app::widgets::numbers::percent;
+use crate::app::widgets::{level, percent, with_unit};
 use crate::evaluate::{Metrics, eta_text};
 use crate::maps::cfar::Cfar;
 
@@ -88,24 +87,27 @@ fn threshold(input: &Caption, eta: f32) -> String {
 mod tests {
     use super::*;
 
+    const NOTHING: Caption = Caption {
+        kind: MapKind::TargetAbove,
+        method: None,
+        updating: false,
+        running: None,
+        verdict: None,
+        metrics: None,
+        target_eta: 0.9,
+        cfar: None,
+        output_eta: 0.8,
+        explained: None,
+        units: Units::Lambda,
+        range_db: None,
+    };
+
     #[test]
     fn the_verdict_of_objects_comes_before_that_of_cells() {
         let of = |kind| {
-            let input = Caption {
-                kind,
-                method: Some("live"),
-                updating: false,
-                running: None,
-                verdict: Some("5 of 5 found, 0 false".to_owned()),
-                metrics: Some(Metrics { squared_error: 120.0, detection: Some(0.5), false_alarm: 0.01 }),
-                target_eta: 0.9,
-                cfar: None,
-                output_eta: 0.8,
-                explained: None,
-                units: Units::Lambda,
-                range_db: None,
-            };
-            caption(input).unwrap()
+            let metrics = Some(Metrics { squared_error: 120.0, detection: Some(0.5), false_alarm: 0.01 });
+            let verdict = Some("5 of 5 found, 0 false".to_owned());
+            caption(Caption { kind, method: Some("live"), verdict, metrics, ..NOTHING }).unwrap()
         };
         assert_eq!(of(MapKind::Output).trim(), "live: 5 of 5 found, 0 false");
         assert_eq!(of(MapKind::OutputAbove).trim(), "5 of 5 found, 0 false · P_D 50.00 % · P_FA 1.00 %");
@@ -113,23 +115,7 @@ mod tests {
 
     #[test]
     fn thresholds_are_told_in_the_chosen_units() {
-        let of = |units, range_db| {
-            let input = Caption {
-                kind: MapKind::TargetAbove,
-                method: None,
-                updating: false,
-                running: None,
-                verdict: None,
-                metrics: None,
-                target_eta: 0.9,
-                cfar: None,
-                output_eta: 0.8,
-                explained: None,
-                units,
-                range_db,
-            };
-            caption(input).unwrap()
-        };
+        let of = |units, range_db| caption(Caption { units, range_db, ..NOTHING }).unwrap();
         assert_eq!(of(Units::Lambda, Some(320.0)).trim(), "η' = 0.90");
         assert_eq!(of(Units::Decibels, Some(320.0)).trim(), "η' = −32.0 dB");
         assert_eq!(of(Units::Decibels, None).trim(), "η' = 0.90", "no map is there yet");

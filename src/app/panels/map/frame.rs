@@ -1,8 +1,7 @@
 //! A map on screen: the places of its cells, and their values.
 
 use crate::app::state::{Cursor, MapView, Projection};
-use crate::app::widgets::levels;
-use crate::app::widgets::numbers::signed;
+use crate::app::widgets::{levels, signed};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{Polar, Radar};
 use crate::scene::Reflector;

@@ -6,24 +6,13 @@ use super::frame::{Cells, Marks};
 use super::hatch::ToldApart;
 use super::kinds::Kinds;
 use super::theory::Theory;
-use crate::app::state::{Cursor, MapKind, MapView, Projection, View};
-use crate::interact::Selection;
-use crate::radar::Radar;
-use crate::scene::Scene;
+use crate::app::state::{MapKind, Projection, State};
 use eframe::egui::TextureId;
 
 /// Picture, values, marks and texts of a map.
 pub struct Input<'a> {
     pub kind: MapKind,
-    pub radar: &'a Radar,
-    /// The scene, whose reflectors are dragged by their blobs.
-    pub scene: &'a Scene,
-    /// The selected objects of the scene.
-    pub selection: &'a Selection,
-    /// View settings of all maps.
-    pub look: &'a View,
-    /// Visible part of the maps in the other projection.
-    pub other_view: MapView,
+    pub state: &'a State,
     /// Texture of the picture, if there is one.
     pub texture: Option<TextureId>,
     /// Projection of the picture; for a moment after a change it is still the former one.
@@ -46,8 +35,6 @@ pub struct Input<'a> {
     pub told_apart: Option<ToldApart<'a>>,
     /// Prediction of the formulas for a reflector, where it is drawn.
     pub theory: Option<Theory<'a>>,
-    /// Place of the pointer, in any panel.
-    pub cursor: Option<Cursor>,
     /// Note on noise that the map's method was not trained on.
     pub note: Option<String>,
     /// Caption at a first start, one line.
@@ -56,8 +43,6 @@ pub struct Input<'a> {
     pub error: Option<Problem<'a>>,
     /// Cover of the picture, while a lesson asks for a prediction.
     pub veil: Option<Veil>,
-    /// Whether the axes are drawn: not while they would answer a lesson's question.
-    pub axes: bool,
     /// The guessed place of a lesson's question, and the true one.
     pub places: Option<Places>,
 }

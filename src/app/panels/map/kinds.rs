@@ -2,8 +2,7 @@
 
 use super::frame::Frame;
 use crate::app::jobs::{Fates, Verdict};
-use crate::app::widgets::axes;
-use crate::app::widgets::theme::MARK_EDGE;
+use crate::app::widgets::{MARK_EDGE, axes};
 use crate::evaluate::eta_text;
 use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;
@@ -262,11 +261,7 @@ pub mod tests {
         assert!(told.contains("3 columns to the right"), "lower columns are drawn farther right: {told}");
         assert_eq!(said[4], "point 5: hidden\nthe target itself does not show it");
         assert_eq!(said[5], "ghost: 12 cells above η = 0.80\nwhere the scene has nothing");
-    }
-
-    #[test]
-    fn every_kind_is_counted() {
-        assert_eq!(Kinds { fates: &fates(), current: true }.counts().len(), Sign::ALL.len());
+        assert_eq!(kinds.counts().len(), Sign::ALL.len(), "every kind is counted");
     }
 
     #[test]

@@ -1,8 +1,7 @@
 //! Legend of a map: fills in the place of the bar of colours, and marks in rows above, where there is room.
 
 use super::kinds::{Kinds, Sign};
-use crate::app::widgets::axes;
-use crate::app::widgets::theme;
+use crate::app::widgets::{axes, theme};
 use crate::picture::CellVerdict;
 use eframe::egui::{self, Align2, Color32, Painter, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 

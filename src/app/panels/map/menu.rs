@@ -1,38 +1,20 @@
 //! Context menu of a map: overlays, views, pictures.
 
 use super::input::Input;
-use crate::app::state::{Command, ExportCommand, Panel, Projection, Units, ViewCommand, WindowCommand};
-use crate::app::widgets::entry::{entry, ticked};
+use crate::app::state::{Command, ExportCommand, Panel, ViewCommand, WindowCommand};
+use crate::app::widgets::{entry, item};
 use eframe::egui::Ui;
 
 /// Draws the menu.
 pub fn menu(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let Input { kind, look, .. } = *input;
-    let mut tick = |ui: &mut Ui, command: ViewCommand, on: bool| {
-        let command = Command::from(command);
-        let name = command.entry().map_or("", |listed| listed.name.as_ref());
-        ticked(ui, name, command.clone(), on, asked);
-    };
+    let Input { kind, state, .. } = *input;
     ui.menu_button("Overlays", |ui| {
-        for (command, on) in ViewCommand::OVERLAYS.into_iter().zip([
-            look.show_reflectors,
-            look.show_found,
-            look.show_theory,
-            look.show_kinds,
-        ]) {
-            tick(ui, command, on);
-        }
+        ViewCommand::OVERLAYS.into_iter().for_each(|command| item(ui, state, command, asked));
     });
-    for (command, on) in [
-        (ViewCommand::ToggleProjection, Some(look.projection == Projection::Cartesian)),
-        (ViewCommand::ToggleUnits, Some(look.units == Units::Decibels)),
-        (ViewCommand::ToggleAbsoluteDifference, Some(look.difference.absolute).filter(|_| kind.is_difference())),
-        (ViewCommand::ToggleWholeDifference, Some(!look.difference.whole).filter(|_| kind.is_difference())),
-    ] {
-        if let Some(on) = on {
-            tick(ui, command, on);
-        }
-    }
+    let of_all = [ViewCommand::ToggleProjection, ViewCommand::ToggleUnits];
+    let of_difference = [ViewCommand::ToggleAbsoluteDifference, ViewCommand::ToggleWholeDifference];
+    let of_difference = of_difference.into_iter().filter(|_| kind.is_difference());
+    of_all.into_iter().chain(of_difference).for_each(|command| item(ui, state, command, asked));
     ui.separator();
     for command in [
         Command::Window(WindowCommand::Maximise(Panel::Map(kind))),

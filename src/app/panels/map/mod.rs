@@ -34,14 +34,11 @@ pub use told::{
 };
 
 use crate::app::state::{Command, LessonCommand, MapKind, MapView, Projection, ViewCommand};
-use crate::app::widgets::axes;
-use crate::app::widgets::nudge::nudge;
-use crate::app::widgets::theme::{CAPTION, CAPTION_INK, Inks};
+use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, nudge};
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
 use crate::radar::{End, FEW_COLUMNS, Radar};
 use crate::scene::Object;
-use eframe::egui;
-use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
 use legend::{Fill, Legend};
 use menu::menu;
@@ -59,21 +56,22 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     let bar = is_told.then(|| scale::bar(&input));
     let legend = legend_of(ui, &input, area);
     // Reserved in every map, also where nothing is marked: frames beside each other stay aligned.
-    let above = if input.look.show_kinds { legend::reserved(area.height()) } else { 0.0 };
-    let rect = rect_of(area, input.look.projection, above);
+    let above = if input.state.settings.show_kinds { legend::reserved(area.height()) } else { 0.0 };
+    let rect = rect_of(area, input.state.settings.projection, above);
     let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
     let label = format!("{} map", input.kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
     describe(ui, &input, response.id);
-    let centre_x_metres = centre_x_metres(input.kind, input.radar);
-    let frame = Frame::of(rect, *view, input.radar, input.look.projection, centre_x_metres);
+    let centre_x_metres = centre_x_metres(input.kind, input.state.radar());
+    let frame = Frame::of(rect, *view, input.state.radar(), input.state.settings.projection, centre_x_metres);
     let is_bare = input.veil.is_none();
-    let holds = is_bare && hand::work(ui, input.kind, input.scene, frame, &response, memory, &mut asked);
-    navigate(ui, rect, &response, view, !holds, input.selection.is_empty());
-    if response.has_focus() && !input.selection.is_empty() {
-        asked.extend(nudge(ui.ctx(), input.radar.range_resolution_metres()));
+    let holds = is_bare && hand::work(ui, input.kind, input.state.scene(), frame, &response, memory, &mut asked);
+    navigate(ui, rect, &response, view, !holds, input.state.editor.selection().is_empty());
+    if response.has_focus() && !input.state.editor.selection().is_empty() {
+        asked.extend(nudge(ui.ctx(), input.state.radar().range_resolution_metres()));
     }
-    let morph = morph::morph(ui, area, input.look.projection, input.other_view, above);
+    let other = input.state.map_views.seen(input.state.settings.projection.other());
+    let morph = morph::morph(ui, area, input.state.settings.projection, other, above);
     // Clicks and drags refer to the places at the end of the animation.
     let frame = Frame { view: *view, ..frame };
     point(&input, frame, &response, &mut asked);
@@ -82,11 +80,11 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     let painter = ui.painter().with_clip_rect(area);
     let inner = ui.painter().with_clip_rect(frame.shown().intersect(area));
     let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
-    if input.axes {
+    if input.state.shows_axes() {
         let free = bar.as_ref().map_or(0.0, |bar| bar.overhang(&painter, rect.width()));
         let mut appearing = painter.clone();
         appearing.multiply_opacity(rest);
-        draw_axes(ui, &appearing, frame, input.look.directions, (free, line_of(&input).is_some()));
+        draw_axes(ui, &appearing, frame, input.state.settings.directions, (free, line_of(&input).is_some()));
     }
     legend.draw(ui, &painter, frame.shown());
     draw_over(&inner, frame, &input, &response, is_drawn);
@@ -95,7 +93,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     }
     response.context_menu(|ui| menu(ui, &input, &mut asked));
     if is_bare {
-        morph::button(ui, rect, input.kind, input.look.projection, &mut asked);
+        morph::button(ui, rect, input.kind, input.state.settings.projection, &mut asked);
     }
     asked
 }
@@ -134,22 +132,22 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
         told_apart.draw(inner, frame, inner.ctx().theme() == egui::Theme::Dark);
     }
     // Beneath all texts.
-    if let Some(cursor) = &input.cursor {
+    if let Some(cursor) = &input.state.shown_cursor() {
         let told = input.veil.is_none();
         let cells = input.cells.as_ref();
-        overlay::cursor(inner, frame, cursor, cells.filter(|_| told), input.look.units);
-        if let Some(cfar) = input.look.cfar.as_ref().filter(|_| told && at_rest && input.kind.is_above()) {
+        overlay::cursor(inner, frame, cursor, cells.filter(|_| told), input.state.settings.units);
+        if let Some(cfar) = input.state.settings.cfar.as_ref().filter(|_| told && at_rest && input.kind.is_above()) {
             window::draw(inner, frame, cursor, cells, cfar);
         }
     }
     if let Some(aperture) = aperture(input).filter(|_| at_rest) {
-        overlay::beam(inner, frame, beam_columns(input.radar, aperture));
+        overlay::beam(inner, frame, beam_columns(input.state.radar(), aperture));
     }
     if input.veil.is_none() {
         let pointer = response.hover_pos();
         overlay::marks(inner, frame, input.marks.objects, pointer);
         overlay::found(inner, frame, input.marks.found, input.stale);
-        overlay::selected(inner, frame, input.scene, input.selection);
+        overlay::selected(inner, frame, input.state.scene(), input.state.editor.selection());
         if let Some(theory) = &input.theory {
             theory.draw(inner, frame);
             // Maps above a threshold leave the numbers out: the map under the threshold shows the same ones.
@@ -175,7 +173,7 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &eg
 
 /// Places that text must not cover: blobs of the scene's reflectors, and the caption.
 fn taken(input: &Input<'_>, frame: Frame<'_>) -> Vec<Pos2> {
-    let reflectors = input.scene.objects.iter().flat_map(Object::marks).take(overlay::MARKS);
+    let reflectors = input.state.scene().objects.iter().flat_map(Object::marks).take(overlay::MARKS);
     let caption = input.line.iter().map(|_| frame.rect.left_bottom() + vec2(12.0, -12.0));
     reflectors.map(|reflector| frame.blob(&reflector)).chain(caption).collect()
 }
@@ -208,7 +206,7 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
                 overlay::line(inner, frame, map, ui.visuals().strong_text_color());
                 return true;
             }
-            match frame.morph.is_none() && input.pictured == input.look.projection {
+            match frame.morph.is_none() && input.pictured == input.state.settings.projection {
                 true => _ = inner.image(texture, rect, uv, tint),
                 false => morph::picture(inner, frame, texture, input.pictured, tint),
             }
@@ -224,7 +222,10 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
 /// Reports the pointer's place. A click answers a question that asks for a place.
 fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: &mut Vec<Command>) {
     let Some(pos) = response.hover_pos() else { return };
-    let Some(cursor) = cursor_at(input.radar, input.look.projection, frame.view.at(frame.rect, pos)) else { return };
+    let Some(cursor) = cursor_at(input.state.radar(), input.state.settings.projection, frame.view.at(frame.rect, pos))
+    else {
+        return;
+    };
     if input.veil.is_some_and(|v| v.is_clicked) && response.clicked() {
         let cell = crate::lesson::Cell { bin: cursor.bin, column: cursor.column };
         asked.push(LessonCommand::Predict(crate::lesson::Guess::Place(cell)).into());
@@ -234,15 +235,16 @@ fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: 
 
 /// The map of one range bin, where it is drawn as a line over directions.
 fn line_of<'a>(input: &'a Input<'_>) -> Option<&'a RangeAngleMap> {
-    let is_flat = input.look.projection == Projection::RangeAngle && input.pictured == input.look.projection;
+    let is_flat =
+        input.state.settings.projection == Projection::RangeAngle && input.pictured == input.state.settings.projection;
     let is_lambda = !input.kind.is_above() && input.kind != MapKind::Doubt;
     let cells = input.cells.as_ref().filter(|cells| cells.minus.is_none());
-    cells.filter(|_| input.radar.samples == 1 && is_flat && is_lambda).map(|cells| cells.map)
+    cells.filter(|_| input.state.radar().samples == 1 && is_flat && is_lambda).map(|cells| cells.map)
 }
 
 /// The elements whose beam is drawn over a map of few of them.
 fn aperture(input: &Input<'_>) -> Option<Aperture> {
-    if input.radar.elements >= FEW_COLUMNS || input.look.projection != Projection::RangeAngle {
+    if input.state.radar().elements >= FEW_COLUMNS || input.state.settings.projection != Projection::RangeAngle {
         return None;
     }
     match input.kind {

@@ -3,7 +3,7 @@
 use super::frame::{Frame, Morph};
 use super::plot::rect_of;
 use crate::app::state::{Command, MapKind, MapView, Projection, ViewCommand};
-use crate::app::widgets::icons::{self, Icon};
+use crate::app::widgets::{Icon, icons};
 use eframe::egui::emath::easing::cubic_in_out;
 use eframe::egui::{Color32, Id, Mesh, Painter, Rect, Shape, TextureId, Ui, pos2, vec2};
 

@@ -57,33 +57,17 @@ pub fn hull(places: &[Pos2], radius: f32) -> Vec<Pos2> {
 mod tests {
     use super::*;
 
-    fn path() -> Vec<Pos2> {
-        (0..40).map(|i| Pos2::new(i as f32, 20.0 + 0.01 * (i * i) as f32)).collect()
-    }
-
     #[test]
-    fn every_point_of_an_outline_is_one_radius_from_the_path() {
-        let path = path();
-        for point in &outline(&path, 6.0) {
+    fn an_outline_goes_round_its_path_at_one_radius() {
+        let path: Vec<Pos2> = (0..40).map(|i| Pos2::new(i as f32, 20.0 + 0.01 * (i * i) as f32)).collect();
+        let around = outline(&path, 6.0);
+        for point in &around {
             let nearest = path.iter().map(|p| p.distance(*point)).fold(f32::INFINITY, f32::min);
             assert!((nearest - 6.0).abs() < 0.3, "{nearest} at {point:?}");
         }
-    }
-
-    #[test]
-    fn an_outline_goes_round_without_a_jump() {
-        let around = outline(&path(), 6.0);
         let mut closed = around.iter().zip(around.iter().cycle().skip(1));
-        assert!(!around.is_empty() && closed.all(|(a, b)| a.distance(*b) < 4.0));
-    }
-
-    #[test]
-    fn the_outline_of_one_point_is_a_circle() {
-        assert_eq!(outline(&[Pos2::ZERO], 6.0).len(), 2 + 2 * (HALF_CIRCLE_CORNERS - 1));
-    }
-
-    #[test]
-    fn a_path_without_points_has_no_outline() {
+        assert!(!around.is_empty() && closed.all(|(a, b)| a.distance(*b) < 4.0), "without a jump");
+        assert_eq!(outline(&[Pos2::ZERO], 6.0).len(), 2 + 2 * (HALF_CIRCLE_CORNERS - 1), "a circle");
         assert!(outline(&[], 6.0).is_empty());
     }
 

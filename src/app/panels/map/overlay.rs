@@ -3,10 +3,7 @@
 use super::frame::{Cells, Frame, Marked};
 use super::outline::{hull, outline};
 use crate::app::state::{Cursor, Projection, Units};
-use crate::app::widgets::axes;
-use crate::app::widgets::direction::direction;
-use crate::app::widgets::levels::with_unit;
-use crate::app::widgets::theme::{MARK, MARK_EDGE, MARK_SELECTED};
+use crate::app::widgets::{MARK, MARK_EDGE, MARK_SELECTED, axes, direction, with_unit};
 use crate::interact::Selection;
 use crate::maps::RangeAngleMap;
 use crate::picture::finer;
@@ -239,7 +236,7 @@ mod tests {
     use ndarray::array;
 
     #[test]
-    fn values_are_told_in_lambda_with_decibels_beside() {
+    fn values_are_told_in_the_chosen_unit_with_the_other_beside() {
         let map = RangeAngleMap { lambda: array![[1.0f32, 0.5], [0.0, 0.25]] };
         let cells = |peak, floor| Cells { map: &map, minus: None, scale: Some(LambdaScale { peak, floor }) };
         let value_text = |cells: &Cells<'_>, bin, column| value_text(cells, Units::Lambda, bin, column);
@@ -251,15 +248,11 @@ mod tests {
         let other = RangeAngleMap { lambda: array![[0.75f32]] };
         let difference = Cells { minus: Some(&other), ..cells(5.0, 0.0) };
         assert_eq!(value_text(&difference, 0, 0).unwrap(), "ΔΛ +0.250  (Δ +25.0 dB)");
-    }
-
-    #[test]
-    fn decibels_come_first_where_they_are_chosen() {
         let map = RangeAngleMap { lambda: array![[1.0f32, 0.1]] };
         // The span of a map whose least cell is a rounding error of f64: the cell of Λ 0.1 is at -281.5 dB.
         let cells = Cells { map: &map, minus: None, scale: Some(LambdaScale { peak: 1.6, floor: 1.6 - 281.5 / 18.0 }) };
-        assert_eq!(value_text(&cells, Units::Decibels, 0, 0).unwrap(), "0.0 dB  (Λ 1.000)");
-        assert_eq!(value_text(&cells, Units::Decibels, 0, 1).unwrap(), "≤ −200 dB  (Λ 0.100)");
+        let told = [0, 1].map(|column| super::value_text(&cells, Units::Decibels, 0, column).unwrap());
+        assert_eq!(told, ["0.0 dB  (Λ 1.000)", "≤ −200 dB  (Λ 0.100)"]);
     }
 
     /// Five blobs this far apart.
@@ -274,25 +267,15 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_has_one_outline() {
-        assert_eq!(count(true, &five(4.0)), 1);
+    fn what_wraps_has_two_outlines_and_what_is_apart_has_rings() {
         let mut wrapped = five(4.0);
         wrapped[3..].iter_mut().for_each(|at| at.y -= 90.0);
-        assert_eq!(count(true, &wrapped), 2, "what wraps around is in two pieces");
-    }
-
-    #[test]
-    fn separate_reflectors_have_a_ring_each() {
-        assert_eq!([count(true, &five(14.0)), count(false, &five(4.0))], [5, 5]);
-    }
-
-    #[test]
-    fn a_selected_cluster_of_many_reflectors_has_one_outline() {
-        let blobs: Vec<Pos2> = (0..40).map(|i| Pos2::new((i * 7 % 23) as f32, (i * 5 % 17) as f32)).collect();
-        assert_eq!(around(blobs.clone(), 300.0).len(), 1);
-        let mut wrapped = blobs;
-        wrapped[..20].iter_mut().for_each(|at| at.y += 280.0);
-        assert_eq!(around(wrapped, 300.0).len(), 2, "what wraps around is in two pieces");
+        let counts = [(true, five(4.0)), (true, wrapped), (true, five(14.0)), (false, five(4.0))];
+        assert_eq!(counts.map(|(is_line, blobs)| count(is_line, &blobs)), [1, 2, 5, 5]);
+        let mut cluster: Vec<Pos2> = (0..40).map(|i| Pos2::new((i * 7 % 23) as f32, (i * 5 % 17) as f32)).collect();
+        assert_eq!(around(cluster.clone(), 300.0).len(), 1);
+        cluster[..20].iter_mut().for_each(|at| at.y += 280.0);
+        assert_eq!(around(cluster, 300.0).len(), 2);
     }
 
     /// Shapes drawn for a selected wall, with the pointer away from it or on its nearest blob.

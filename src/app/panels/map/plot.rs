@@ -2,8 +2,7 @@
 
 use super::frame::Frame;
 use crate::app::state::{Directions, MapView, Projection};
-use crate::app::widgets::axes::{self, Axis, Tick};
-use crate::app::widgets::nudge::{pan_keys, zoom_keys};
+use crate::app::widgets::{Axis, Tick, axes, pan_keys, zoom_keys};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
 

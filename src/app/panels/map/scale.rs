@@ -2,14 +2,12 @@
 
 use super::input::Input;
 use crate::app::state::{MapKind, Units};
-use crate::app::widgets::colour_bar::Bar;
-use crate::app::widgets::levels::lowest_db;
-use crate::app::widgets::textures::colour_table;
+use crate::app::widgets::{Bar, colour_table, lowest_db};
 use crate::picture::ColourMap;
 
 /// The colour bar of a map.
 pub fn bar(input: &Input<'_>) -> Bar {
-    let Input { kind, look, .. } = *input;
+    let (kind, look) = (input.kind, &input.state.settings.view);
     let lambda = input.cells.as_ref().and_then(|cells| cells.scale);
     let range_db = lambda.map(|s| s.decibels()).filter(|range| *range > 0.0);
     let range_db = range_db.filter(|_| look.units == Units::Decibels);
@@ -36,40 +34,33 @@ pub fn bar(input: &Input<'_>) -> Bar {
 mod tests {
     use super::*;
     use crate::app::panels::map::frame::Cells;
-    use crate::app::state::{DifferenceView, View};
-    use crate::interact::Selection;
+    use crate::app::state::{DifferenceView, State};
     use crate::maps::{LambdaScale, RangeAngleMap};
-    use crate::radar::Radar;
-    use crate::scene::Scene;
 
     const END: f32 = 0.2;
 
     /// Ends and title of the bar.
     fn scale(kind: MapKind, units: Units, absolute: bool) -> (f64, f64, &'static str) {
-        let (radar, scene, selection) = (Radar::default(), Scene::default(), Selection::default());
-        let look = View { units, difference: DifferenceView { absolute, whole: false }, ..View::default() };
+        let mut state = State::new(Vec::new());
+        (state.settings.units, state.settings.difference) = (units, DifferenceView { absolute, whole: false });
         let map = RangeAngleMap { lambda: ndarray::Array2::zeros((1, 1)) };
         let cells = Some(Cells { map: &map, minus: None, scale: Some(LambdaScale { peak: 1.0, floor: -2.0 }) });
-        let bar = bar(&Input { cells, end: END, ..Input::bare(kind, &radar, &look, &scene, &selection) });
+        let bar = bar(&Input { cells, end: END, ..Input::bare(kind, &state) });
         (bar.low, bar.high, bar.title)
     }
 
     #[test]
-    fn the_scale_of_a_map_is_normalised() {
-        assert_eq!(scale(MapKind::Target, Units::Lambda, false), (0.0, 1.0, "Λ, normalised"));
-        assert_eq!(scale(MapKind::Target, Units::Decibels, false), (-60.0, 0.0, "dB"));
-    }
-
-    #[test]
-    fn a_difference_is_symmetric() {
+    fn a_map_is_normalised_and_only_a_signed_difference_symmetric() {
         let end = f64::from(END);
-        assert_eq!(scale(MapKind::Difference, Units::Lambda, false), (-end, end, "ΔΛ"));
-        assert_eq!(scale(MapKind::Difference, Units::Decibels, false), (-60.0 * end, 60.0 * end, "Δ dB"));
-    }
-
-    #[test]
-    fn what_has_no_sign_begins_at_0() {
-        assert_eq!(scale(MapKind::Doubt, Units::Lambda, false), (0.0, f64::from(END), "± Λ"));
-        assert_eq!(scale(MapKind::Difference, Units::Lambda, true), (0.0, f64::from(END), "|ΔΛ|"));
+        for (kind, units, absolute, expected) in [
+            (MapKind::Target, Units::Lambda, false, (0.0, 1.0, "Λ, normalised")),
+            (MapKind::Target, Units::Decibels, false, (-60.0, 0.0, "dB")),
+            (MapKind::Difference, Units::Lambda, false, (-end, end, "ΔΛ")),
+            (MapKind::Difference, Units::Decibels, false, (-60.0 * end, 60.0 * end, "Δ dB")),
+            (MapKind::Doubt, Units::Lambda, false, (0.0, end, "± Λ")),
+            (MapKind::Difference, Units::Lambda, true, (0.0, end, "|ΔΛ|")),
+        ] {
+            assert_eq!(scale(kind, units, absolute), expected, "{kind:?}");
+        }
     }
 }

@@ -2,22 +2,12 @@
 
 impl<'a> Input<'a> {
     /// A map without a picture.
-    pub fn bare(
-        kind: MapKind,
-        radar: &'a Radar,
-        look: &'a View,
-        scene: &'a Scene,
-        selection: &'a Selection,
-    ) -> Input<'a> {
+    pub fn bare(kind: MapKind, state: &'a State) -> Input<'a> {
         Input {
             kind,
-            radar,
-            scene,
-            selection,
-            look,
-            other_view: MapView::default(),
+            state,
             texture: None,
-            pictured: look.projection,
+            pictured: state.settings.projection,
             end: 1.0,
             sentence: None,
             stale: false,
@@ -27,12 +17,10 @@ impl<'a> Input<'a> {
             kinds: None,
             told_apart: None,
             theory: None,
-            cursor: None,
             note: None,
             line: None,
             error: None,
             veil: None,
-            axes: true,
             places: None,
         }
     }
@@ -40,34 +28,39 @@ impl<'a> Input<'a> {
 
 use super::frame::Marks;
 use super::*;
-use crate::app::state::{Cursor, Projection, Units, View};
-use crate::app::widgets::seen;
-use crate::interact::Selection;
+use crate::app::jobs::Fates;
+use crate::app::state::{Cursor, Projection, State, Units};
+use crate::app::widgets::seen::{self, User};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Carrier;
 use crate::scene::Scene;
-use eframe::egui::Shape;
-use eframe::egui::TextureId;
+use eframe::egui::{Shape, TextureId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use ndarray::Array2;
 use std::sync::LazyLock;
 
-static NOTHING: LazyLock<(Scene, Selection)> = LazyLock::new(Default::default);
+static NO_CELLS: LazyLock<RangeAngleMap> = LazyLock::new(|| RangeAngleMap { lambda: Array2::zeros((2, 2)) });
 
-static LOOK: LazyLock<View> = LazyLock::new(View::default);
+fn state() -> State {
+    State::of(Radar::default(), Scene::default())
+}
 
-static NO_CELLS: LazyLock<RangeAngleMap> = LazyLock::new(|| RangeAngleMap { lambda: Array2::zeros((1, 1)) });
-
-fn input<'a>(radar: &'a Radar, error: Option<Problem<'a>>) -> Input<'a> {
-    let (scene, selection) = &*NOTHING;
-    Input { error, ..Input::bare(MapKind::Output, radar, &LOOK, scene, selection) }
+fn input<'a>(state: &'a State, error: Option<Problem<'a>>) -> Input<'a> {
+    Input { error, ..Input::bare(MapKind::Output, state) }
 }
 
 fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
-    let radar = Radar::default();
-    let input = Input { cursor: Some(Cursor::at_cell(&radar, 200.0, 500.0)), ..input(&radar, error) };
-    asked.extend(show(ui, input, &mut MapView::default(), &mut HandMemory::default()));
+    let mut state = state();
+    state.pointer.now = Some(Cursor::at_cell(state.radar(), 200.0, 500.0));
+    asked.extend(show(ui, input(&state, error), &mut MapView::default(), &mut HandMemory::default()));
+}
+
+/// A map of this state with its input changed by `change`.
+fn drawn(size: [f32; 2], state: State, change: impl for<'a> Fn(Input<'a>) -> Input<'a> + 'static) -> Harness<'static> {
+    Harness::builder().with_size(size).build_ui(move |ui| {
+        _ = show(ui, change(input(&state, None)), &mut MapView::default(), &mut HandMemory::default());
+    })
 }
 
 #[test]
@@ -81,61 +74,38 @@ fn the_pointer_is_told_in_cells() {
     assert!((cursor.bin - 255.5).abs() < 1.0 && (cursor.column - 511.5).abs() < 1.0, "{cursor:?}");
 }
 
-/// A map whose method refuses, where another method works.
-fn refused() -> Harness<'static, Vec<Command>> {
+#[test]
+fn a_refusal_is_told_in_place_of_the_map_with_another_method() {
     let problem = || Problem { reason: "trained on another radar", instead: Some("capon") };
     let mut map = Harness::new_ui_state(move |ui, asked| draw(ui, Some(problem()), asked), Vec::new());
     map.step();
-    map
-}
-
-#[test]
-fn a_refusal_is_told_in_place_of_the_map() {
-    let map = refused();
     let _told = map.get_by_label("trained on another radar");
     assert!(!map.output().shapes.iter().any(|s| matches!(s.shape, Shape::Circle(_))), "no crosshair is drawn over it");
     let _one = map.get_by_label("Output map");
-}
-
-#[test]
-fn a_refusal_offers_another_method() {
-    let mut map = refused();
-    map.get_by_label("Use capon").click();
-    map.step();
+    map.clicks(&["Use capon"]);
     assert!(map.state().contains(&Command::View(ViewCommand::Method("capon"))), "{:?}", map.state());
 }
 
 #[test]
 fn every_label_of_a_map_is_inside_its_panel() {
-    let lambda = RangeAngleMap { lambda: Array2::zeros((2, 2)) };
     for size in [[270.0, 130.0], [450.0, 270.0], [1400.0, 800.0]] {
-        for (kind, units) in [
-            (MapKind::Target, Units::Lambda),
-            (MapKind::Target, Units::Decibels),
-            (MapKind::Difference, Units::Lambda),
-            (MapKind::Difference, Units::Decibels),
-            (MapKind::TargetAbove, Units::Lambda),
+        for (kind, units, bar) in [
+            (MapKind::Target, Units::Lambda, Some("Λ, normalised")),
+            (MapKind::Target, Units::Decibels, Some("−200")),
+            (MapKind::Difference, Units::Lambda, Some("ΔΛ")),
+            (MapKind::Difference, Units::Decibels, Some("Δ dB")),
+            (MapKind::TargetAbove, Units::Lambda, None),
         ] {
-            let (lambda, radar) = (lambda.clone(), Radar::default());
-            let map = Harness::builder().with_size(size).build_ui(move |ui| {
+            let mut state = state();
+            state.settings.units = units;
+            let map = drawn(size, state, move |input| {
                 let scale = Some(LambdaScale { peak: 3.0, floor: -12.5 });
-                let cells = Some(Cells { map: &lambda, minus: None, scale });
-                let texture = Some(TextureId::default());
-                let look = View { units, ..View::default() };
-                let input = Input { kind, look: &look, cells, texture, end: 0.05, ..input(&radar, None) };
-                _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
+                let cells = Some(Cells { map: &NO_CELLS, minus: None, scale });
+                Input { kind, cells, texture: Some(TextureId::default()), end: 0.05, ..input }
             });
             seen::assert_readable(map.output());
-            let texts = seen::texts(map.output());
-            assert!(texts.iter().any(|t| t.text == "range, m" || size[1] < 200.0), "{texts:?}");
-            let bar = match (kind, units) {
-                (MapKind::TargetAbove, _) => None,
-                (MapKind::Difference, Units::Lambda) => Some("ΔΛ"),
-                (MapKind::Difference, Units::Decibels) => Some("Δ dB"),
-                (_, Units::Lambda) => Some("Λ, normalised"),
-                (_, Units::Decibels) => Some("−200"),
-            };
-            assert!(bar.is_none_or(|bar| texts.iter().any(|t| t.text == bar)), "{bar:?} at {size:?}: {texts:?}");
+            assert!(map.reads("range, m") || size[1] < 200.0);
+            assert!(bar.is_none_or(|bar| map.reads(bar)), "{bar:?} at {size:?}");
         }
     }
 }
@@ -144,19 +114,17 @@ fn every_label_of_a_map_is_inside_its_panel() {
 fn every_map_has_the_same_margins() {
     for (size, projection) in [([330.0, 170.0], Projection::RangeAngle), ([700.0, 400.0], Projection::Cartesian)] {
         let rect = |kind: MapKind, units| {
-            let radar = Radar::default();
-            let map = Harness::builder().with_size(size).build_ui(move |ui| {
+            let mut state = state();
+            (state.settings.units, state.settings.projection) = (units, projection);
+            let map = drawn(size, state, move |input| {
                 let told_apart =
                     Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9], ghosts: &[] });
                 let told_apart = told_apart.filter(|_| kind == MapKind::OutputAbove);
-                let texture = Some(TextureId::default());
-                let look = View { units, projection, ..View::default() };
-                let (look, pictured) = (&look, Projection::RangeAngle);
-                let input = Input { kind, look, pictured, texture, told_apart, ..input(&radar, None) };
-                _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
+                let (texture, pictured) = (Some(TextureId::default()), Projection::RangeAngle);
+                Input { kind, pictured, texture, told_apart, ..input }
             });
             seen::assert_readable(map.output());
-            let has_one = seen::texts(map.output()).iter().any(|t| t.text == "1.0");
+            let has_one = map.reads("1.0");
             assert!(has_one || projection == Projection::Cartesian, "{kind:?}: the end of the axis has its label");
             map.get_by_label(&format!("{} map", kind.title())).rect()
         };
@@ -169,15 +137,21 @@ fn every_map_has_the_same_margins() {
     }
 }
 
+/// The state in which objects are marked by their fates.
+fn marking() -> State {
+    let mut state = state();
+    state.settings.show_kinds = true;
+    state
+}
+
+static FATES: LazyLock<Fates> = LazyLock::new(kinds::tests::fates);
+
 #[test]
 fn maps_beside_each_other_stay_aligned_while_objects_are_marked() {
     let rect = |kind: MapKind| {
-        let (radar, fates) = (Radar::default(), kinds::tests::fates());
-        let map = Harness::builder().with_size([500.0, 300.0]).build_ui(move |ui| {
-            let kinds = Some(Kinds { fates: &fates, current: true }).filter(|_| kind == MapKind::Output);
-            let (texture, look) = (Some(TextureId::default()), View { show_kinds: true, ..View::default() });
-            let input = Input { kind, kinds, look: &look, texture, ..input(&radar, None) };
-            _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
+        let map = drawn([500.0, 300.0], marking(), move |input| {
+            let kinds = Some(Kinds { fates: &FATES, current: true }).filter(|_| kind == MapKind::Output);
+            Input { kind, kinds, texture: Some(TextureId::default()), ..input }
         });
         map.get_by_label(&format!("{} map", kind.title())).rect()
     };
@@ -187,9 +161,7 @@ fn maps_beside_each_other_stay_aligned_while_objects_are_marked() {
 #[test]
 fn directions_rise_from_left_to_right_with_either_carrier() {
     let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
-    let map = Harness::builder().with_size([450.0, 270.0]).build_ui(move |ui| {
-        _ = show(ui, input(&radar, None), &mut MapView::default(), &mut HandMemory::default());
-    });
+    let map = drawn([450.0, 270.0], State::of(radar, Scene::default()), |input| input);
     let texts = seen::texts(map.output());
     let left = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.left());
     let places = ["−0.4", "−0.2", "0.0", "0.2", "0.4"].map(left);
@@ -198,40 +170,21 @@ fn directions_rise_from_left_to_right_with_either_carrier() {
 }
 
 #[test]
-fn a_map_that_was_never_there_is_not_of_an_earlier_scene() {
-    let radar = Radar::default();
-    let map = Harness::builder().build_ui(move |ui| {
-        _ = show(ui, Input { stale: true, ..input(&radar, None) }, &mut MapView::default(), &mut HandMemory::default());
-    });
-    let texts = seen::texts(map.output());
-    assert!(texts.iter().any(|t| t.text == "computing…"));
-    assert!(!texts.iter().any(|t| t.text.contains("Previous scene")), "{texts:?}");
-}
-
-#[test]
-fn a_map_of_an_earlier_scene_says_so() {
-    let radar = Radar::default();
-    let says_so = |stale| {
-        let radar = radar.clone();
-        let map = Harness::builder().build_ui(move |ui| {
-            let input = Input { stale, texture: Some(TextureId::default()), ..input(&radar, None) };
-            _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
-        });
-        seen::texts(map.output()).iter().any(|t| t.text.contains("Previous scene"))
-    };
-    assert_eq!([true, false].map(says_so), [true, false]);
+fn a_map_of_an_earlier_scene_says_so_where_it_is_there() {
+    for (stale, texture) in [(true, Some(TextureId::default())), (false, Some(TextureId::default())), (true, None)] {
+        let map = drawn([800.0, 600.0], state(), move |input| Input { stale, texture, ..input });
+        let says_so = seen::texts(map.output()).iter().any(|t| t.text.contains("Previous scene"));
+        assert_eq!((says_so, map.reads("computing…")), (stale && texture.is_some(), texture.is_none()));
+    }
 }
 
 /// A map with marks for the verdicts on objects.
 fn judged(size: [f32; 2]) -> Harness<'static> {
-    let (radar, fates) = (Radar::default(), kinds::tests::fates());
-    let mut map = Harness::builder().with_size(size).build_ui(move |ui| {
-        let kinds = Some(Kinds { fates: &fates, current: true });
-        let texture = Some(TextureId::default());
+    let mut map = drawn(size, marking(), |input| {
+        let kinds = Some(Kinds { fates: &FATES, current: true });
         let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9], ghosts: &[] });
-        let (kind, look) = (MapKind::OutputAbove, View { show_kinds: true, ..View::default() });
-        let input = Input { kinds, texture, told_apart, look: &look, kind, ..input(&radar, None) };
-        _ = show(ui, input, &mut MapView::default(), &mut HandMemory::default());
+        let texture = Some(TextureId::default());
+        Input { kind: MapKind::OutputAbove, kinds, texture, told_apart, ..input }
     });
     map.step();
     seen::assert_readable(map.output());
@@ -239,19 +192,11 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
 }
 
 #[test]
-fn fates_of_objects_are_counted_above_the_map() {
+fn fates_are_counted_above_the_map_and_told_under_the_pointer() {
     let legend = "Legend: hit, rim, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 ghost, 1 hidden";
-    assert!(judged([900.0, 500.0]).query_by_label(legend).is_some());
-}
-
-#[test]
-fn a_small_panel_has_no_legend() {
-    assert!(judged([260.0, 140.0]).query_by_label_contains("Legend").is_none());
-}
-
-#[test]
-fn the_fate_of_an_object_is_told_under_the_pointer() {
+    assert!(judged([260.0, 140.0]).query_by_label_contains("Legend").is_none(), "not in a small panel");
     let mut map = judged([900.0, 500.0]);
+    assert!(map.query_by_label(legend).is_some());
     let rect = map.get_by_label("Output > η map").rect();
     let blob = crate::theory::blob_cell(&Radar::default(), -4.0, 16.0, crate::maps::Aperture::Full);
     let at = pos2(

@@ -2,9 +2,7 @@
 
 use super::clear::clear_patch;
 use super::frame::Frame;
-use crate::app::widgets::direction::angle_degrees;
-use crate::app::widgets::numbers::signed;
-use crate::app::widgets::theme::MARK_EDGE;
+use crate::app::widgets::{MARK_EDGE, angle_degrees, signed};
 use crate::radar::Decibels;
 use crate::scene::Reflector;
 use crate::theory::overlay::STREAK;
@@ -253,16 +251,21 @@ mod tests {
         }
     }
 
+    /// A reflector and its overlay in the map of the whole array.
+    fn of(radar: &Radar, x_metres: f64, y_metres: f64) -> (Reflector, Overlay) {
+        let reflector = Reflector { x_metres, y_metres, reflectivity: 1.0 };
+        (reflector, Overlay::of(radar, &reflector, Aperture::Full).unwrap())
+    }
+
     /// On screen, the box of the half-power widths holds the cells of the simulated map that are above half power in the peak's row and
     /// column, and no others.
     #[test]
     fn the_box_is_drawn_around_what_the_map_has_above_half_power() {
         for (x_metres, y_metres) in [(0.6, 2.6), (-2.0, 3.0), (1.0, 9.0)] {
             let radar = Radar { elements: 128, samples: 64, ..Radar::default() };
-            let reflector = Reflector { x_metres, y_metres, reflectivity: 1.0 };
+            let (reflector, overlay) = of(&radar, x_metres, y_metres);
             let profiles = range_transform(&radar, &exact::beat_signal(&radar, &[reflector]));
             let map = angle_transform(&radar, &profiles, Aperture::Full).cells.mapv(|v| v.norm());
-            let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
             let frame = frame(&radar);
             let drawn = theory(&overlay, reflector).half_power(frame);
             let within = Rect::from_points(&drawn);
@@ -288,14 +291,14 @@ mod tests {
     }
 
     #[test]
-    fn the_numbers_are_those_of_table_3_1() {
+    fn the_numbers_are_those_of_table_3_1_and_say_whose_they_are() {
         let radar = Radar::default();
-        let reflector = Reflector { x_metres: 0.0, y_metres: 20.0, reflectivity: 1.0 };
-        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+        let (reflector, overlay) = of(&radar, 0.0, 20.0);
         let text: Vec<String> = theory(&overlay, reflector).lines(frame(&radar)).into_iter().map(|(_, t)| t).collect();
         let all = text.join("\n");
         // The comb of 1.04 columns at true directions is squinted with everything else.
         for part in [
+            "Theory of middle of line 1, as a point",
             "c/2B 7.5 cm",
             "at −20 dB",
             "every 1.01 columns",
@@ -305,31 +308,17 @@ mod tests {
         ] {
             assert!(all.contains(part), "{part} in:\n{all}");
         }
-    }
-
-    #[test]
-    fn grating_lobes_are_told_in_degrees_from_straight_ahead() {
         let radar = Radar { carrier: crate::radar::Carrier::TwoWay, ..Radar::default() };
-        let reflector = Reflector { x_metres: 10.0, y_metres: 17.32, reflectivity: 1.0 };
-        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+        let (reflector, overlay) = of(&radar, 10.0, 17.32);
         let told = theory(&overlay, reflector).aliases(frame(&radar));
         assert!(told.contains("grating lobes at −") && told.contains("° (cos θ −0."), "{told}");
-    }
-
-    #[test]
-    fn the_numbers_say_whose_they_are() {
-        let radar = Radar::default();
-        let reflector = Reflector { x_metres: 0.0, y_metres: 20.0, reflectivity: 1.0 };
-        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
-        assert_eq!(theory(&overlay, reflector).lines(frame(&radar))[0].1, "Theory of middle of line 1, as a point");
     }
 
     #[test]
     fn the_numbers_leave_the_whole_blob_in_sight() {
         let radar = Radar::default();
         for (x_metres, y_metres) in [(0.0, 5.0), (-10.0, 5.0), (10.0, 25.0), (-20.0, 20.0)] {
-            let reflector = Reflector { x_metres, y_metres, reflectivity: 1.0 };
-            let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+            let (reflector, overlay) = of(&radar, x_metres, y_metres);
             let (theory, frame) = (theory(&overlay, reflector), frame(&radar));
             let lines = vec![vec2(330.0, 13.0); theory.lines(frame).len()];
             let (patch, count) = clear_patch(RECT, &theory.places(frame), &lines);
@@ -342,8 +331,7 @@ mod tests {
     #[test]
     fn the_ellipse_is_drawn_large_enough_to_be_seen() {
         let radar = Radar::default();
-        let reflector = Reflector { x_metres: 3.0, y_metres: 20.0, reflectivity: 1.0 };
-        let overlay = Overlay::of(&radar, &reflector, Aperture::Full).unwrap();
+        let (reflector, overlay) = of(&radar, 3.0, 20.0);
         let theory = theory(&overlay, reflector);
         let (outline, times) = theory.outline(frame(&radar)).unwrap();
         let size = Rect::from_points(&outline).size();

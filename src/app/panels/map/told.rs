@@ -8,7 +8,7 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, Scores, TheoryResult, fates_of};
 use crate::app::panels::captions;
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
-use crate::app::widgets::textures::Texture;
+use crate::app::widgets::Texture;
 use crate::engine::ReadyMap;
 use crate::evaluate::{TARGET_ETA, median_offset_metres};
 use crate::reconstruct::untrained_noise;
@@ -105,11 +105,7 @@ pub fn map_input<'a>(
         .filter(|_| settings.layout.is_none() || !matches!(kind, MapKind::Input0 | MapKind::Input1));
     Input {
         kind,
-        radar: state.editor.radar(),
-        scene: state.scene(),
-        selection: state.editor.selection(),
-        look: settings,
-        other_view: state.map_views.seen(settings.projection.other()),
+        state,
         texture,
         pictured: picture.map_or(settings.projection, |p| p.projection),
         end: picture.map_or(1.0, |p| p.end),
@@ -121,12 +117,10 @@ pub fn map_input<'a>(
         kinds: kinds(state, jobs, kind),
         told_apart: kind.slot().filter(|_| kind.is_above()).and_then(|slot| told_apart(state, jobs, slot)),
         theory: of_formulas.and_then(|r| theory(r, kind)),
-        cursor: state.shown_cursor(),
         note: note(state, kind),
         line: captions::of_map(state, kind),
         error: error(state, jobs, kind),
         veil: veil(state, kind),
-        axes: state.shows_axes(),
         places: places(state, kind),
     }
 }
@@ -148,7 +142,7 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<Tol
 
 /// Note on the noise that the map's method was trained on, where the scene has another noise. None for a recording, whose noise is unknown.
 fn note(state: &State, kind: MapKind) -> Option<String> {
-    let method = state.method_in(kind.slot()?).filter(|_| state.editor.document().recording().is_none())?;
+    let method = state.method_in(kind.slot()?).filter(|_| !state.is_recorded())?;
     method.trained_noise()?;
     let echoing = Echoing::of(state.radar(), state.scene());
     untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor)
@@ -194,7 +188,7 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
 /// Figures of a method's output against the target. There are none while a lesson's question is open, and none for a recording, whose target
 /// is the recording itself.
 pub fn scores(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<Scores> {
-    let is_shown = !state.is_predicting() && state.editor.document().recording().is_none();
+    let is_shown = !state.is_predicting() && !state.is_recorded();
     jobs.pipeline.scores_in(slot).filter(|_| is_shown)
 }
 
@@ -291,8 +285,8 @@ fn theory(result: &TheoryResult, kind: MapKind) -> Option<Theory<'_>> {
         overlay: overlay.as_ref()?,
         reflector: result.request.reflector,
         ellipse: result.ellipse.filter(|_| !matches!(kind, MapKind::Input0 | MapKind::Input1)),
-        listening: result.request.elements.name(),
-        snr: result.request.snr,
+        listening: result.request.settings.elements.name(),
+        snr: result.request.settings.snr,
         comb: kind.needs_output(),
     })
 }
@@ -334,7 +328,7 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>
     if kind == MapKind::Input1 && state.settings.layout.is_some() {
         return Some(Problem { reason: "Input 0 shows what the elements of the layout hear.", instead: None });
     }
-    let is_recorded = state.editor.document().recording().is_some();
+    let is_recorded = state.is_recorded();
     if kind == MapKind::Unexplained {
         let reason = match jobs.pipeline.why_unexplained() {
             Some(reason) => reason,

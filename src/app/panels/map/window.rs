@@ -2,9 +2,7 @@
 
 use super::frame::{Cells, Frame};
 use crate::app::state::Cursor;
-use crate::app::widgets::axes;
-use crate::app::widgets::levels::{difference, with_unit};
-use crate::app::widgets::theme::{MARK, MARK_EDGE, MARK_SELECTED};
+use crate::app::widgets::{MARK, MARK_EDGE, MARK_SELECTED, axes, difference, with_unit};
 use crate::maps::cfar::{Cfar, Level};
 use eframe::egui::{Align2, Painter, Pos2, Shape, Stroke, pos2, vec2};
 

@@ -1,6 +1,6 @@
 //! Transmitters and receivers in the radar panel: their numbers, their places, and the elements that their pairs make.
 
-use crate::app::widgets::number_field::NumberField;
+use crate::app::widgets::NumberField;
 use crate::radar::{Antennas, Radar, counted};
 use eframe::egui::{Id, Ui};
 

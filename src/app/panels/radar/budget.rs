@@ -1,11 +1,7 @@
 //! The link budget in the radar panel: its numbers, SNR against range, and the SNR of the selected object.
 
 use super::table::{GAP, Table, number};
-use crate::app::widgets::axes::Axis;
-use crate::app::widgets::chart::Chart;
-use crate::app::widgets::labelled::{Quantity, labelled};
-use crate::app::widgets::number_field::NumberField;
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::{Axis, Chart, Inks, NumberField, Quantity, labelled};
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{LinkBudget, Radar};
 use eframe::egui::{Align, CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};

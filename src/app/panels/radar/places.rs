@@ -115,7 +115,7 @@ fn places(text: &str) -> Result<Vec<f64>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::Key;
+    use crate::app::widgets::seen::User;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -154,26 +154,15 @@ mod tests {
         let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
         let mut panel = Harness::builder().with_size([600.0, 300.0]).build_ui_state(draw, radar());
         panel.run();
-        panel.get_by_label(NAMES[0]).focus();
-        panel.run();
-        panel.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
-        panel.run();
-        panel.get_by_label(NAMES[0]).type_text(text);
-        panel.run();
-        panel.key_press(Key::Enter);
-        panel.run();
+        panel.enters(NAMES[0], text);
         let told = panel.query_by_label_contains("is no number").is_some();
         (panel.state().antennas.as_ref().unwrap().transmitter_x_metres().len(), told)
     }
 
     #[test]
-    fn places_are_typed() {
+    fn places_are_typed_and_what_is_no_number_is_told() {
         let apart = 8.0 * radar().element_spacing_metres;
         assert_eq!(typed(&listed(&[0.0, apart, 2.0 * apart, 3.0 * apart])), (4, false));
-    }
-
-    #[test]
-    fn a_place_that_is_no_number_is_told() {
         assert_eq!(typed("0, viel"), (3, true));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The mouse drags an antenna along the line and off it. The arrow keys choose one, and Shift with an arrow moves it.
 
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::Inks;
 use crate::radar::{Antennas, Radar};
 use eframe::egui::{
     self, Align2, Color32, CursorIcon, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Sense,
@@ -275,7 +275,7 @@ impl Strip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, User};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -343,28 +343,17 @@ mod tests {
     }
 
     #[test]
-    fn shift_with_up_moves_the_chosen_transmitter_towards_the_scene() {
+    fn shift_with_an_arrow_moves_the_chosen_antenna() {
         let mut panel = panel();
         panel.run();
         panel.get_by_label("Antennas").focus();
         panel.run();
-        panel.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
-        panel.run();
-        panel.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
-        panel.run();
-        assert_eq!(panel.state().antennas.as_ref().unwrap().transmitter_y_metres(), [0.002, 0.0, 0.0]);
-    }
-
-    #[test]
-    fn shift_with_an_arrow_moves_the_chosen_receiver() {
-        let mut panel = panel();
-        panel.run();
-        panel.get_by_label("Antennas").focus();
-        panel.run();
-        for key in [Key::ArrowDown, Key::ArrowRight, Key::ArrowRight, Key::ArrowRight] {
-            panel.key_press(key);
+        for _ in 0..2 {
+            panel.key_press_modifiers(Modifiers::SHIFT, Key::ArrowUp);
             panel.run();
         }
+        assert_eq!(panel.state().antennas.as_ref().unwrap().transmitter_y_metres(), [0.002, 0.0, 0.0]);
+        panel.presses(&[Key::ArrowDown, Key::ArrowRight, Key::ArrowRight, Key::ArrowRight]);
         let before = panel.state().antennas.clone().unwrap();
         panel.key_press_modifiers(Modifiers::SHIFT, Key::ArrowRight);
         panel.run();

@@ -1,6 +1,6 @@
 //! Rows of the radar panel: name, value and consequence of a constant.
 
-use crate::app::widgets::labelled::Quantity;
+use crate::app::widgets::Quantity;
 use eframe::egui::{Align, Color32, Id, Label, Response, TextStyle, Ui};
 
 /// Gap between two columns, points.

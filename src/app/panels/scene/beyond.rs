@@ -4,8 +4,9 @@ use super::canvas::Canvas;
 use crate::interact::Place;
 use crate::radar::Radar;
 use crate::scene::{Object, Scene, Shape as Body};
-use eframe::egui::{self, Color32, FontId, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2};
-use eframe::egui::{WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    self, Color32, FontId, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
 
 /// Distance from the edge of the canvas to the middle of a sign there, points.
 const INSET: f32 = 13.0;

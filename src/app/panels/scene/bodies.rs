@@ -4,8 +4,7 @@ use crate::interact::Place;
 use crate::radar::{End, Radar};
 use crate::scattering::{AntennaPlaces, EchoKind, PathEcho, Scatterer, SeenObject};
 use crate::scene::{Scene, Shape};
-use eframe::egui::{Color32, Painter, Pos2, Stroke, vec2};
-use eframe::egui::{Shape as Drawn, epaint::PathShape};
+use eframe::egui::{Color32, Painter, Pos2, Shape as Drawn, Stroke, epaint::PathShape, vec2};
 use std::f64::consts::TAU;
 
 /// Most bodies whose shadows and glints are drawn.

@@ -2,13 +2,11 @@
 
 use super::bodies;
 use crate::app::state::{Cursor, SceneView};
-use crate::app::widgets::axes;
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::{Inks, axes};
 use crate::interact::{Grip, Place, grips};
 use crate::radar::{End, Radar};
 use crate::scene::{Object, Reflector};
-use eframe::egui;
-use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use std::f64::consts::PI;
 
 /// Most reflectors that are drawn of one object.

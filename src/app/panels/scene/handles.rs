@@ -1,7 +1,7 @@
 //! The handles of objects: names, tooltips, and keys that drag them.
 
 use crate::app::state::SceneView;
-use crate::app::widgets::nudge::focused_steps;
+use crate::app::widgets::focused_steps;
 use crate::interact::{Editor, Grip, Place, Snap, grips, hit};
 use crate::scene::Object;
 use eframe::egui::{self, Id, Rect, RectAlign, Response, Sense, Ui, vec2};

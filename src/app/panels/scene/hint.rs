@@ -1,7 +1,7 @@
 //! One line over the scene with a task or a result, and an arrow along the path of a drag.
 
 use super::canvas::Canvas;
-use crate::app::widgets::theme::{CAPTION, CAPTION_INK};
+use crate::app::widgets::{CAPTION, CAPTION_INK};
 use crate::interact::Place;
 use eframe::egui::{FontId, Galley, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use std::sync::Arc;

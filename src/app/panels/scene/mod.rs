@@ -11,15 +11,12 @@ mod told;
 mod trail;
 
 use crate::app::state::{Command, Cursor, EditCommand, NewObject, SceneView, ViewCommand};
-use crate::app::widgets::entry::entry;
-use crate::app::widgets::nudge::{nudge, pan_keys, zoom_keys};
-use crate::app::widgets::theme::Inks;
+use crate::app::widgets::{Inks, entry, nudge, pan_keys, zoom_keys};
 use crate::interact::{Editor, Grip, Place, SelectionMode, Snap, hit};
 use crate::radar::Radar;
 use crate::scene::{Reflector, Scene};
 use canvas::{Canvas, Look};
-use eframe::egui;
-use eframe::egui::{CursorIcon, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
+use eframe::egui::{self, CursorIcon, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
 pub use hint::Hint;
 pub use told::ScenePanel;
 

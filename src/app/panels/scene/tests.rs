@@ -1,7 +1,7 @@
 use super::*;
-use crate::app::widgets::seen;
+use crate::app::widgets::seen::{self, User};
 use crate::interact::grips;
-use crate::scene::Scene;
+use crate::scene::{Block, GaussianCluster, Line, Object, Point, Scene, Wall};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -45,33 +45,14 @@ fn panel(scene: Scene) -> Harness<'static, Held> {
     panel
 }
 
-/// A point that was dragged 40 points of the screen to the right.
-fn dragged() -> Harness<'static, Held> {
+#[test]
+fn a_drag_moves_the_object_and_tells_the_place_of_the_pointer() {
     let mut scene = panel(Scene::of_points([(0.0, 20.0)]));
     let from = scene.get_by_label("point 1: move").rect().center();
-    scene.hover_at(from);
-    scene.step();
-    scene.drag_at(from);
-    scene.step();
-    scene.hover_at(from + vec2(40.0, 0.0));
-    scene.step();
-    scene.drop_at(from + vec2(40.0, 0.0));
-    scene.step();
-    scene
-}
-
-#[test]
-fn a_drag_moves_the_object() {
-    let scene = dragged();
+    scene.drags(&[from, from + vec2(40.0, 0.0)]);
     let held = scene.state();
     let moved = held.editor.scene().objects[0].centre_metres()[0];
     assert!((moved - 40.0 * held.view.metres_per_point).abs() < 1e-6, "{moved}");
-}
-
-#[test]
-fn a_drag_tells_the_place_of_the_pointer() {
-    let scene = dragged();
-    let held = scene.state();
     assert!(held.asked.iter().all(|c| matches!(c, Command::View(ViewCommand::Hover(_)))) && !held.asked.is_empty());
 }
 
@@ -98,7 +79,7 @@ fn ghosts_stand_where_the_radar_hears_them() {
 }
 
 #[test]
-fn labels_stand_around_the_half_disc() {
+fn labels_stand_around_the_half_disc_from_straight_ahead() {
     // The last case also shows a point far behind the array, so that the half disc is small.
     for (size, y_metres) in
         [([280.0, 170.0], 20.0), ([480.0, 300.0], 20.0), ([1400.0, 800.0], 20.0), ([490.0, 170.0], -30.0)]
@@ -108,14 +89,18 @@ fn labels_stand_around_the_half_disc() {
         let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
             _ = show(ui, input(&radar), editor, view);
         };
-        state.0.add(crate::scene::Object::Point(crate::scene::Point::new(-12.0, y_metres)));
+        state.0.add(Object::Point(Point::new(-12.0, y_metres)));
         let scene = Harness::builder().with_size(size).build_ui_state(draw, state);
         seen::assert_readable(scene.output());
+        let texts = seen::texts(scene.output());
+        let middle = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.center().x);
+        let spokes = ["−60°", "−30°", "0°", "30°", "60°"].map(middle);
+        assert!(spokes[0].is_some() && spokes.is_sorted(), "from straight ahead: {texts:?}");
         let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().1);
         let radius = Radar::default().max_range_metres() / view.metres_per_point;
         let origin = view.to_screen(rect, Place::new(0.0, 0.0));
         assert!(f64::from(origin.x - rect.left()) > radius + 10.0, "the disc doesn't touch the panel at {size:?}");
-        for text in seen::texts(scene.output()).iter().filter(|t| t.text.ends_with('°')) {
+        for text in texts.iter().filter(|t| t.text.ends_with('°')) {
             let outside = text.rect.distance_to_pos(origin) >= radius as f32;
             assert!(outside, "{} is on the arc at {size:?}", text.text);
         }
@@ -137,17 +122,21 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
     assert!(rect.contains(scene.state().1.to_screen(rect, Place::new(0.0, 15.0))), "what was found is in sight");
 }
 
-fn wall() -> Harness<'static, Held> {
-    let line = crate::scene::Object::Line(crate::scene::Line::vertical(0.0, 10.0, 0.5, 21));
-    let mut scene = panel(Scene { objects: vec![line], ..Scene::default() });
+/// The panel with one object, which is selected.
+fn selected(object: Object) -> Harness<'static, Held> {
+    let mut scene = panel(Scene { objects: vec![object], ..Scene::default() });
     scene.state_mut().editor.select_all();
     scene.step();
     scene
 }
 
-fn line(scene: &Harness<'static, Held>) -> crate::scene::Line {
+fn wall() -> Harness<'static, Held> {
+    selected(Object::Line(Line::vertical(0.0, 10.0, 0.5, 21)))
+}
+
+fn line(scene: &Harness<'static, Held>) -> Line {
     match &scene.state().editor.scene().objects[0] {
-        crate::scene::Object::Line(line) => line.clone(),
+        Object::Line(line) => line.clone(),
         other => panic!("{other:?}"),
     }
 }
@@ -155,16 +144,7 @@ fn line(scene: &Harness<'static, Held>) -> crate::scene::Line {
 /// Drags a handle in several steps. Returns metres per point.
 fn drag(scene: &mut Harness<'static, Held>, handle: &str, by: egui::Vec2) -> f64 {
     let from = scene.get_by_label(handle).rect().center();
-    scene.hover_at(from);
-    scene.step();
-    scene.drag_at(from);
-    scene.step();
-    for part in [0.3, 0.7, 1.0] {
-        scene.hover_at(from + by * part);
-        scene.step();
-    }
-    scene.drop_at(from + by);
-    scene.step();
+    scene.drags(&[0.0, 0.3, 0.7, 1.0].map(|part| from + by * part));
     scene.state().view.metres_per_point
 }
 
@@ -199,20 +179,11 @@ fn the_handle_of_a_line_turns_it_in_one_step_of_undo() {
 }
 
 #[test]
-fn the_spokes_are_labelled_from_straight_ahead() {
-    let scene = panel(Scene::default());
-    let texts = seen::texts(scene.output());
-    let middle = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.center().x);
-    let labels = ["−60°", "−30°", "0°", "30°", "60°"].map(middle);
-    assert!(labels[0].is_some() && labels.is_sorted(), "{texts:?}");
-}
-
-#[test]
 fn what_stands_beyond_the_maximum_range_is_warned_of() {
     let sentence = "point 2 stands beyond the maximum range of 38.4 m: the maps show it at 21.6 m.";
     let mut scene = panel(Scene::of_points([(0.0, 20.0), (0.0, 60.0)]));
     let _told = scene.get_by_label(sentence);
-    assert!(seen::texts(scene.output()).iter().any(|t| t.text == sentence), "it is seen, too");
+    assert!(scene.reads(sentence), "it is seen, too");
     let view = &mut scene.state_mut().view;
     (view.centre, view.metres_per_point, view.fit) = (Place::new(0.0, 18.0), 0.1, false);
     view.fitted = None;
@@ -227,7 +198,7 @@ fn what_stands_beyond_the_maximum_range_is_warned_of() {
 
 #[test]
 fn a_wall_that_reaches_beyond_the_maximum_range_says_so() {
-    let line = crate::scene::Object::Line(crate::scene::Line::vertical(0.0, 30.0, 0.5, 21));
+    let line = Object::Line(Line::vertical(0.0, 30.0, 0.5, 21));
     let scene = panel(Scene { objects: vec![line.clone()], ..Scene::default() });
     let _told =
         scene.get_by_label("line 1 reaches beyond the maximum range of 38.4 m: its far part wraps around in the maps.");
@@ -252,16 +223,13 @@ fn a_double_click_asks_for_a_point_there() {
 
 #[test]
 fn every_grip_is_dragged_by_arrow_keys_while_it_has_the_focus() {
-    use crate::scene::{GaussianCluster, Line, Object};
     let cluster = GaussianCluster { seed: 1, ..GaussianCluster::new([-4.0, 18.0], [1.0, 1.0], 20) };
     for (object, key) in [
         (Object::Line(Line::vertical(4.0, 10.0, 0.5, 20)), egui::Key::ArrowUp),
         (Object::Gaussian(cluster.clone()), egui::Key::ArrowRight),
         (Object::Gaussian(cluster), egui::Key::ArrowUp),
     ] {
-        let mut scene = panel(Scene { objects: vec![object.clone()], ..Scene::default() });
-        scene.state_mut().editor.select([0], SelectionMode::Replace);
-        scene.step();
+        let mut scene = selected(object.clone());
         let metres_per_point = scene.state().view.metres_per_point;
         let mut changed = 0;
         let names: Vec<String> = grips(&object, metres_per_point)
@@ -291,13 +259,11 @@ fn arrow_keys_pan_the_scene_while_nothing_is_selected() {
     scene.run_steps(2);
     let centre = |scene: &Harness<'static, Held>| scene.state().view.centre;
     let before = centre(&scene);
-    scene.key_press(egui::Key::ArrowRight);
-    scene.run_steps(2);
+    scene.presses(&[egui::Key::ArrowRight]);
     let panned = centre(&scene);
     assert!(panned.x_metres > before.x_metres && panned.y_metres == before.y_metres);
     scene.state_mut().editor.select([0], SelectionMode::Replace);
-    scene.key_press(egui::Key::ArrowRight);
-    scene.run_steps(2);
+    scene.presses(&[egui::Key::ArrowRight]);
     assert_eq!(centre(&scene), panned, "arrows are the selection's");
     assert!(
         scene.state().asked.iter().any(|c| matches!(c, Command::Edit(crate::app::state::EditCommand::Nudge { .. })))
@@ -308,12 +274,9 @@ fn arrow_keys_pan_the_scene_while_nothing_is_selected() {
 }
 
 #[test]
-fn a_corner_of_a_box_resizes_it_in_one_step_of_undo() {
-    use crate::scene::{Block, Object};
+fn a_corner_resizes_a_box_and_the_round_handle_turns_a_wall() {
     let object = Object::Box(Block::new([4.0, 12.0], [4.0, 2.0], 0.0));
-    let mut scene = panel(Scene { objects: vec![object.clone()], ..Scene::default() });
-    scene.state_mut().editor.select([0], SelectionMode::Replace);
-    scene.step();
+    let mut scene = selected(object.clone());
     let metres = drag(&mut scene, "box 1: move corner 3", vec2(40.0, -30.0));
     let Object::Box(after) = scene.state().editor.scene().objects[0].clone() else { panic!() };
     assert!((after.length_metres - 4.0 - 40.0 * metres).abs() < 0.3, "{after:?}");
@@ -321,15 +284,7 @@ fn a_corner_of_a_box_resizes_it_in_one_step_of_undo() {
     let [x, y] = after.corners_metres()[0];
     assert!((x - 2.0).hypot(y - 11.0) < 1e-9, "the opposite corner stays: {x}, {y}");
     assert!(scene.state_mut().editor.undo() && scene.state().editor.scene().objects[0] == object);
-}
-
-#[test]
-fn the_round_handle_turns_a_wall_about_its_middle() {
-    use crate::scene::{Object, Wall};
-    let wall = Object::Wall(Wall::new(0.0, 15.0, 6.0, 0.0));
-    let mut scene = panel(Scene { objects: vec![wall], ..Scene::default() });
-    scene.state_mut().editor.select([0], SelectionMode::Replace);
-    scene.step();
+    let mut scene = selected(Object::Wall(Wall::new(0.0, 15.0, 6.0, 0.0)));
     drag(&mut scene, "wall 1: turn it about its middle", vec2(0.0, -40.0));
     let Object::Wall(after) = scene.state().editor.scene().objects[0].clone() else { panic!() };
     assert!(after.angle_degrees > 5.0 && (after.x_metres, after.y_metres) == (0.0, 15.0), "{after:?}");

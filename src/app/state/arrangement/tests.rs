@@ -1,16 +1,12 @@
 use super::*;
 
 #[test]
-fn tools_are_closed_at_first() {
+fn tools_are_closed_at_first_and_settings_in_a_lesson() {
     let arrangement = Arrangement::default();
     for panel in Panel::tiles() {
         let closed = [MapKind::Doubt, MapKind::Unexplained].map(Panel::Map).contains(&panel) || panel.is_tool();
         assert_eq!(arrangement.is_open(panel), !closed, "{panel:?}");
     }
-}
-
-#[test]
-fn a_lesson_has_no_settings() {
     let lesson = Arrangement::of_a_lesson();
     assert!([Panel::Lesson, Panel::Scene, Panel::Map(MapKind::Target)].iter().all(|p| lesson.is_open(*p)));
     assert!(!lesson.is_open(Panel::Controls) && !lesson.is_open(Panel::Cuts));
@@ -64,16 +60,8 @@ fn older_tiles_become_views() {
     arrangement.join_views();
     assert!(arrangement.is_open(Panel::Elements), "it was open");
     assert!(arrangement.is_open(Panel::Chirp) && !arrangement.is_open(Panel::RangeDoppler), "both were open");
-    let tiles: Vec<Panel> = arrangement
-        .tree
-        .tiles
-        .tiles()
-        .filter_map(|t| match t {
-            Tile::Pane(panel) => Some(*panel),
-            Tile::Container(_) => None,
-        })
-        .collect();
-    assert!(tiles.iter().all(|panel| panel.tile() == *panel), "{tiles:?}");
+    let is_tile = |tile: &Tile<Panel>| if let Tile::Pane(panel) = tile { panel.tile() == *panel } else { true };
+    assert!(arrangement.tree.tiles.tiles().all(is_tile));
 }
 
 fn tabs_of(arrangement: &Arrangement, panel: Panel) -> Option<TileId> {
@@ -92,21 +80,15 @@ fn compare_opens_in_the_large_place_with_the_maps_it_needs() {
 }
 
 #[test]
-fn rows_have_the_whole_width_below_the_maps() {
-    let mut arrangement = Arrangement::default();
-    arrangement.set_open(Panel::Failures, true);
-    let tabs = tabs_of(&arrangement, Panel::Failures).unwrap();
-    assert_eq!(arrangement.tree.tiles.parent_of(tabs), arrangement.tree.root());
-    assert!([MapKind::Target, MapKind::Output].iter().all(|kind| arrangement.is_open(Panel::Map(*kind))));
-}
-
-#[test]
 fn closing_a_large_panel_gives_the_arrangement_back() {
     let mut arrangement = Arrangement::default();
     arrangement.set_open(Panel::Map(MapKind::Input1), false);
     for panel in [Panel::Compare, Panel::Failures] {
         arrangement.set_open(panel, true);
     }
+    let tabs = tabs_of(&arrangement, Panel::Failures).unwrap();
+    assert_eq!(arrangement.tree.tiles.parent_of(tabs), arrangement.tree.root(), "rows have the whole width");
+    assert!([MapKind::Target, MapKind::Output].iter().all(|kind| arrangement.is_open(Panel::Map(*kind))));
     arrangement.set_open(Panel::Failures, false);
     assert_eq!(arrangement.task(), Task::Explore);
     assert!(!arrangement.is_open(Panel::Map(MapKind::Input1)), "as the user left it");

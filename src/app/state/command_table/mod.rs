@@ -185,14 +185,8 @@ mod tests {
         for colours in ColourMap::ALL {
             assert!(Command::View(ViewCommand::Colours(colours)).entry().is_some(), "{colours:?}");
         }
-    }
-
-    #[test]
-    fn closing_a_panel_is_listed_as_its_switch() {
         let map = Panel::Map(MapKind::Target);
-        assert_eq!(
-            Command::Window(WindowCommand::ClosePanel(map)).entry(),
-            Command::Window(WindowCommand::TogglePanel(map)).entry()
-        );
+        let [close, toggle] = [WindowCommand::ClosePanel(map), WindowCommand::TogglePanel(map)].map(Command::Window);
+        assert_eq!(close.entry(), toggle.entry(), "closing a panel is listed as its switch");
     }
 }

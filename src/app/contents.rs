@@ -1,9 +1,5 @@
 //! All panels of the app, each with its memory and its computed value.
 
-mod bars;
-
-pub use bars::{menu_input, status_input};
-
 use super::chrome::tiles::Draw;
 use super::content::{AnyPanel, Content, Held};
 use super::jobs::{Derived, Jobs, Wants};
@@ -38,7 +34,7 @@ impl Panels {
 
     /// Takes in values computed since the last frame. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
-        self.0.values_mut().filter_map(|panel| panel.polled().poll()).collect()
+        self.0.values_mut().filter_map(|panel| panel.poll()).collect()
     }
 
     /// The maps and methods that the last frame's panels read.
@@ -63,6 +59,11 @@ impl Panels {
     pub fn drawn_as_fresh_but_old(&self, state: &State, jobs: &Jobs) -> Vec<String> {
         let old = self.0.iter().filter(|(_, held)| held.is_fresh_but_old(state, jobs));
         old.map(|(panel, _)| panel.title().to_owned()).collect()
+    }
+
+    /// Values that a panel has asked for since the start.
+    pub fn requests(&self, panel: Panel) -> u64 {
+        self.0.get(&panel).map_or(0, |held| held.requests())
     }
 
     /// The own value of a panel of type `C`.
