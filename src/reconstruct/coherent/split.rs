@@ -123,7 +123,7 @@ impl Settled<'_> {
         };
         let tried: Vec<Fit> = STARTS.par_iter().map(start).collect();
         let best = tried.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
-        let two = refined(best.atoms, best.gains, Limits::FINE);
+        let two = refined(best.atoms, best.gains, Limits::FINAL_FIT);
         let mut fit = without;
         fit.atoms.extend(two.atoms);
         fit.gains.extend(two.gains);
@@ -153,7 +153,7 @@ impl Settled<'_> {
             let less = self.bench.less(self.fit.clone(), &[gone]);
             let beside = if beside > gone { beside - 1 } else { beside };
             let marked: Vec<bool> = (0..less.atoms.len()).map(|i| i == beside).collect();
-            let fewer = self.search().refined(less, &marked, APART_BINS, Limits::FINE)?;
+            let fewer = self.search().refined(less, &marked, APART_BINS, Limits::FINAL_FIT)?;
             if fewer.cost() > (1.0 + AS_GOOD) * self.fit.cost() + 4.0 * noise + self.enough {
                 break;
             }

@@ -44,7 +44,7 @@ impl Limits {
     pub const ROUGH: Limits = Limits { iterations: 12, least_gain: 1e-2, ridge: 0.0 };
 
     /// Limits of a refinement once all atoms are there.
-    pub const FINE: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
+    pub const FINAL_FIT: Limits = Limits { iterations: 60, least_gain: 1e-4, ridge: 0.0 };
 }
 
 /// Gains at the first and at the last end.

@@ -1,12 +1,12 @@
 //! Beginnings of walls: rows over two points or from the edge of a wall, tested against the samples.
 
-use super::grow::{LOOK_ECHOES, tried};
+use super::grow::LOOK_ECHOES;
 use super::on_wall::is_on;
 use super::propose::edges::rows_from_edges;
 use super::propose::end_beams::beam_noise_power;
 use super::propose::phased::PhasedBeams;
-use super::propose::strides::rows_over_pairs;
-use super::state::Search;
+use super::propose::strides::{MIN_REFLECTORS, rows_over_pairs};
+use super::state::{Search, tried};
 use super::trace::decades;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
@@ -19,9 +19,6 @@ const MOST_TRIED: usize = 24;
 
 /// Least part of the energy in its range bins that a row must explain to be followed to its ends.
 const LEAST_BEGUN: f64 = 0.3;
-
-/// Fewest reflectors of a wall, and those over which rows are tried first.
-pub const MIN_REFLECTORS: usize = 8;
 
 /// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
 const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (MIN_REFLECTORS, 0.97)];

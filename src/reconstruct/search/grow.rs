@@ -2,7 +2,7 @@
 
 use super::propose::end_beams::beam_noise_power;
 use super::propose::runs::{ABOVE_NOISE, LONG_RUN_BINS, longest_run_bins};
-use super::state::Search;
+use super::state::{Search, ends_agree, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
@@ -248,7 +248,7 @@ impl Search<'_> {
             }
             // Groups that are far apart still hear a little of each other: all together they come to the end at once.
             let link_bins = if sweep == 0 { LINK_BINS } else { self.radar.samples as f64 };
-            fit = self.refined(fit, &marked, link_bins, Limits::FINE)?;
+            fit = self.refined(fit, &marked, link_bins, Limits::FINAL_FIT)?;
             tracing::debug!(
                 before,
                 cost = fit.cost(),
@@ -270,27 +270,12 @@ impl Search<'_> {
         for _ in 0..rounds {
             let before = fit.cost();
             let all = vec![true; fit.atoms.len()];
-            fit = self.refined(fit, &all, 2.0 * LINK_BINS, Limits::FINE)?;
+            fit = self.refined(fit, &all, 2.0 * LINK_BINS, Limits::FINAL_FIT)?;
             if fit.cost() > 0.9 * before {
                 break;
             }
         }
         Ok(fit)
-    }
-}
-
-/// Whether the amplitudes of both ends' gains differ by less than the factor `within`.
-pub fn ends_agree(gains: &Gains, within: f64) -> bool {
-    let [a, b] = gains.map(|g| g.norm());
-    a.max(b) < within * a.min(b)
-}
-
-/// `atom` as an attempt names it.
-pub fn tried(atom: &Atom) -> Tried {
-    let [from_metres, to_metres] = [0.0, atom.reflector_count() as f64 - 1.0].map(|i| atom.position_metres(i));
-    match *atom {
-        Atom::Point { .. } => Tried::Point { at_metres: from_metres },
-        Atom::Segment { count, .. } => Tried::Line { from_metres, to_metres, count },
     }
 }
 

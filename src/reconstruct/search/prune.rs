@@ -1,9 +1,8 @@
 //! The removal of atoms that the others don't need.
 
 use super::finish::are_loud;
-use super::grow::tried;
 use super::propose::strides::MAX_RANGES;
-use super::state::Search;
+use super::state::{Search, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;

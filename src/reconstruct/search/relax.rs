@@ -6,9 +6,9 @@
 //! one more explains less than it costs. What an echo costs is the price of its four numbers, a place and a complex gain, in the
 //! likelihood (P. Stoica and Y. Selén, "Model-order selection: a review of information criterion rules", IEEE Signal Process. Mag. 21, 2004).
 
-use super::grow::{LOOK_ECHOES, tried};
+use super::grow::LOOK_ECHOES;
 use super::settings::price_of_an_echo;
-use super::state::Search;
+use super::state::{Search, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;

@@ -1,14 +1,11 @@
 //! The work of each rung of the search.
 
 use super::on_wall::is_on;
-use super::state::{Search, State};
+use super::state::{MOST_ROUNDS, Search, State};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 use crate::reconstruct::fit::{Atom, Gains, Limits, Tie};
-
-/// Most rounds of pairing what is left, and of dropping pairs that the ends don't agree on.
-pub const MOST_ROUNDS: usize = 3;
 
 /// Another round needs that this part of the energy at most is left by the last.
 pub const WORTH_ANOTHER: f64 = 0.5;

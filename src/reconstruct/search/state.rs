@@ -1,19 +1,20 @@
 //! The input of a search, its state, and the functions that several rungs share.
 
-use super::grow::{ends_agree, tried};
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
-use super::rungs::MOST_ROUNDS;
 use super::settings::Settings;
 use super::trace::{ORDERING, Trace, decades};
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
-use crate::reconstruct::fit::{Atom, Fit, Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
 use crate::task::Task;
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
 pub const NEARLY_NOTHING: f64 = 1e-5;
+
+/// Most rounds of pairing what is left, and of dropping pairs that the ends don't agree on.
+pub const MOST_ROUNDS: usize = 3;
 
 /// Gains of one pair at both ends agree within this factor.
 const MOST_UNLIKE: f64 = 1.5;
@@ -148,5 +149,20 @@ impl Search<'_> {
             return Ok(known);
         }
         if !polished || self.is_explained(&fit) { self.pruned(fit) } else { self.pruned(self.polished(fit, 1)?) }
+    }
+}
+
+/// Whether the amplitudes of both ends' gains differ by less than the factor `within`.
+pub fn ends_agree(gains: &Gains, within: f64) -> bool {
+    let [a, b] = gains.map(|g| g.norm());
+    a.max(b) < within * a.min(b)
+}
+
+/// `atom` as an attempt names it.
+pub fn tried(atom: &Atom) -> Tried {
+    let [from_metres, to_metres] = [0.0, atom.reflector_count() as f64 - 1.0].map(|i| atom.position_metres(i));
+    match *atom {
+        Atom::Point { .. } => Tried::Point { at_metres: from_metres },
+        Atom::Segment { count, .. } => Tried::Line { from_metres, to_metres, count },
     }
 }

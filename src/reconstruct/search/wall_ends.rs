@@ -1,7 +1,7 @@
 //! The ends of a wall: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
 
-use super::begin::MIN_REFLECTORS;
 use super::on_wall::MOST_REFLECTORS;
+use super::propose::strides::MIN_REFLECTORS;
 use super::state::Search;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
 

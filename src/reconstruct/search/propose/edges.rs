@@ -3,9 +3,8 @@
 //! From such a point the beams tell whether echoes go on in a direction that walls mostly have. There every step that may be meant is tried
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
-use super::super::begin::MIN_REFLECTORS;
 use super::phased::{PhasedBeams, Presence, Row};
-use super::strides::{MOST_STEP_METRES, Start, best_of_each, pitches_metres, summits};
+use super::strides::{MIN_REFLECTORS, MOST_STEP_METRES, Start, best_of_each, pitches_metres, summits};
 use crate::reconstruct::fit::Atom;
 use crate::task::Task;
 use rayon::prelude::*;

@@ -4,7 +4,6 @@
 //! are moved to where all their echoes add up, over more and more reflectors: the longer the row, the finer it is known, and the fewer
 //! wrong ones go along.
 
-use super::super::begin::MIN_REFLECTORS;
 use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
 use crate::reconstruct::fit::{Atom, damped_step};
 use crate::signal::simd::{Kernel, Simd};
@@ -13,6 +12,9 @@ use faer::Mat;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
+
+/// Fewest reflectors of a wall, and those over which rows are tried first.
+pub const MIN_REFLECTORS: usize = 8;
 
 /// Longest step from one reflector of a row to the next, metres.
 pub const MOST_STEP_METRES: f64 = 0.4;
