@@ -47,10 +47,18 @@ fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
     app.snapshot_options(name, &tolerant);
 }
 
+// One test a picture: a test has one harness whose pictures are compared.
 #[test]
-fn panels_look_as_in_their_pictures() {
-    let target = Panel::Map(MapKind::Target);
+fn the_scene_looks_as_in_its_picture() {
     compare("scene-light", Theme::Light, Panel::Scene, vec![EditCommand::SelectAll.into()]);
-    compare("target-dark", Theme::Dark, target, vec![ViewCommand::ToggleReflectors.into()]);
+}
+
+#[test]
+fn the_target_looks_as_in_its_picture() {
+    compare("target-dark", Theme::Dark, Panel::Map(MapKind::Target), vec![ViewCommand::ToggleReflectors.into()]);
+}
+
+#[test]
+fn the_guide_looks_as_in_its_picture() {
     compare("guide-light", Theme::Light, Panel::Guide, vec![]);
 }

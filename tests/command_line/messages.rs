@@ -8,7 +8,7 @@ fn numbers_out_of_range_say_what_is_allowed() {
     for (arguments, allowed) in [
         ("robustness --phase-degrees -5", "'--phase-degrees <DEGREES>': expected a number from 0 to 180"),
         ("robustness --scale 1,x", "expected a number from 0 to 180"),
-        ("robustness --set 4", "expected a whole number from 1 to 3"),
+        ("robustness --set 4", "expected test set 1, 2 or 3, or clusters"),
         ("robustness --count 0", "expected a whole number from 1 to 10000"),
         ("evaluate --count 1e9", "'--count <N>': expected a whole number from 1 to 1000000"),
         ("evaluate --seed -1", "expected a whole number from 0 to 18446744073709551615"),

@@ -134,7 +134,8 @@ fn shipped_recordings_are_reconstructed_without_a_radar() {
     // The ends of a snapshot of unknown range.
     apertura(&folder).args(["maps", &cascade, "-o", "maps.npz"]).assert().success();
     std::fs::write(folder.path().join("r.toml"), "[radar]\nelements = 86\nsamples = 1\n").unwrap();
-    run("maps.npz", &["--radar", "r.toml", "--method", "sbl"]).success();
+    run("maps.npz", &["--radar", "r.toml"]).failure().stderr(contains("--radar names another"));
+    run("maps.npz", &["--method", "sbl"]).success();
     let mut npz = NpzReader::new(File::open(folder.path().join("o.npz")).unwrap()).unwrap();
     let range: ndarray::Array1<f64> = npz.by_name("found_range_metres").unwrap();
     assert!(!range.is_empty() && range.iter().all(|r| r.is_nan()), "{range}");
