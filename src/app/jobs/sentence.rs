@@ -5,7 +5,7 @@ use crate::app::state::Cursor;
 use crate::app::widgets::{angle_degrees, signed};
 use crate::evaluate::TARGET_ETA;
 use crate::picture::CellVerdict;
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use ndarray::Array2;
 
 /// Most peaks that a sentence names.
@@ -33,7 +33,8 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
             };
             let [hits, alarms, misses] =
                 [CellVerdict::Hit, CellVerdict::FalseAlarm, CellVerdict::Miss].map(|kind| of(kind).count());
-            format!("{} hit, {alarms} false alarms, {misses} missed; {}", cells(hits), lowered(&peaks(radar, map)))
+            let alarms = counted(alarms, "false alarm", "false alarms");
+            format!("{} hit, {alarms}, {misses} missed; {}", cells(hits), lowered(&peaks(radar, map)))
         }
         (Paint::Difference { .. }, Some(target)) => largest_difference(radar, map, target),
         (Paint::Detections { .. } | Paint::Difference { .. }, None) => "There is no target to compare with.".to_owned(),
@@ -135,7 +136,7 @@ mod tests {
     fn detections_are_counted() {
         let (output, target) = (map(&[(9, 9, 0.95), (99, 99, 0.9)]), map(&[(9, 9, 0.95), (200, 9, 1.0)]));
         let told = said(Paint::Detections { eta: 0.8, dark: true }, output.clone(), Some(target));
-        assert!(told.starts_with("1 cell hit, 1 false alarms, 1 missed; peaks"), "{told}");
+        assert!(told.starts_with("1 cell hit, 1 false alarm, 1 missed; peaks"), "{told}");
         let told = said(Paint::Above { eta: 0.8, dark: true }, output, None);
         assert!(told.starts_with("2 cells above the threshold; peaks"), "{told}");
     }

@@ -14,8 +14,13 @@ const SAME_PLACE_METRES: f64 = 1.0;
 /// The heading of the group.
 const HEADING: &str = "How the search found them";
 
-/// Tooltip of the gain.
-const GAIN: &str = "Decades by which the unexplained energy falls with it. One decade is 10 dB.";
+/// Heading and tooltip of each column.
+const COLUMNS: [(&str, &str); 4] = [
+    ("step", "The step of the search that tried it."),
+    ("tried", "A reflector or a row, at the place where it was tried."),
+    ("gain", "Decades by which the unexplained energy falls with it. One decade is 10 dB."),
+    ("verdict", "Whether the search kept it, or the reason why not."),
+];
 
 /// Draws the folded group; nothing where there is no attempt. `objects` are those of the scene on screen.
 pub fn show(ui: &mut Ui, attempts: &[Attempt], objects: &[Object]) -> Vec<Command> {
@@ -25,9 +30,8 @@ pub fn show(ui: &mut Ui, attempts: &[Attempt], objects: &[Object]) -> Vec<Comman
     }
     CollapsingHeader::new(HEADING).id_salt("attempts").show_unindented(ui, |ui| {
         Grid::new("attempts").num_columns(4).striped(true).spacing([14.0, 3.0]).show(ui, |ui| {
-            for heading in ["step", "tried", "gain", "verdict"] {
-                let heading = ui.strong(heading);
-                heading.on_hover_text(GAIN);
+            for (heading, help) in COLUMNS {
+                ui.strong(heading).on_hover_text(help);
             }
             ui.end_row();
             for attempt in attempts {
