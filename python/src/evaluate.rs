@@ -47,7 +47,7 @@ use std::sync::Arc;
 ///     cfar: A detector as `cfar` takes it, which is tried on every output beside the threshold; rows say it in `cfar_detection`,
 ///         `cfar_false_alarm` and `cfar`.
 ///     path: A CSV file in the program's format. Each row is appended as it is found, and the same call goes on where a stopped one ended. A file that
-///         holds anything else is refused, and one whose first row of a function has another error than the function has now.
+///         holds anything else is refused. The first row of a function without weights is made again; a file where it differs is refused, too.
 ///     overwrite: Whether `path` begins anew, over any content.
 ///     only: The rows to find, as (set, number of the scene, method), in place of all rows of the run.
 ///

@@ -47,7 +47,7 @@ fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
     app.snapshot_options(name, &tolerant);
 }
 
-// One test a picture: a test has one harness whose pictures are compared.
+// One picture a test: the harness compares the pictures of one window a thread.
 #[test]
 fn the_scene_looks_as_in_its_picture() {
     compare("scene-light", Theme::Light, Panel::Scene, vec![EditCommand::SelectAll.into()]);
