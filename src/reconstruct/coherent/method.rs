@@ -136,34 +136,12 @@ pub(in crate::reconstruct) fn explained(
     task: &Task,
     look: impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
 ) -> Result<Vec<Gained>, ReconstructError> {
-    let mut first = None;
-    let mut settled = looked(Settled::new(radar, ends, task), &mut first, 0.0, &look)?;
-    if settled.is_doubtful() {
-        settled = settled.or(looked(Settled::new(radar, ends, task).trying_two(), &mut first, 0.45, &look)?);
-    }
-    settled.found(ends)
-}
-
-/// `settled` after all looks; `first` holds the peaks of the first look, which are the same for the same samples. Progress begins at `from`.
-fn looked<'a>(
-    mut settled: Settled<'a>,
-    first: &mut Option<Vec<Peak>>,
-    from: f32,
-    look: &impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
-) -> Result<Settled<'a>, ReconstructError> {
+    let mut settled = Settled::new(radar, ends, task);
     for round in 0..LOOKS {
-        settled.task.set_progress(from + 0.45 * round as f32 / LOOKS as f32);
-        let peaks = match first {
-            Some(peaks) if round == 0 => peaks.clone(),
-            _ => look(&settled.left())?,
-        };
-        let goes_on = settled.take(&peaks)?;
-        if round == 0 {
-            *first = Some(peaks);
-        }
-        if !goes_on {
+        task.set_progress(0.9 * round as f32 / LOOKS as f32);
+        if !settled.take(&look(&settled.left())?)? {
             break;
         }
     }
-    Ok(settled)
+    settled.ordered()?.found(ends)
 }

@@ -21,9 +21,10 @@
 //! | `linear` | that iteration's linear algebra, for wide vectors |
 //! | `peaks` | reflectors from powers, and their gains |
 //! | `settle` | reflectors moved off the grid, without needless ones |
-//! | `split` | one echo in place of two, and two in place of one |
 //! | `method` | all of these in order |
 
+#[cfg(test)]
+mod close_tests;
 mod ends;
 mod iaa;
 mod linear;
@@ -34,9 +35,6 @@ mod places;
 mod sbl;
 mod sectors;
 mod settle;
-mod split;
-#[cfg(test)]
-mod split_tests;
 
 pub use iaa::IAA;
 pub use method::CoherentMethod;

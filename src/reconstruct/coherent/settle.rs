@@ -45,12 +45,6 @@ const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
 /// Budget of work, in units of about ten microseconds.
 const MOST_WORK: usize = 30_000;
 
-/// Most echoes among which doubtful ones are searched, since rows of reflectors always leave a residual; and most that are taken away at once.
-pub(super) const MOST_TWOS: usize = 24;
-
-/// Most successive echoes that fail to be two.
-pub(super) const MOST_FAILURES: usize = 4;
-
 /// A peak without a reflector so far.
 struct Waiting {
     echo: ArrayEcho,
@@ -61,18 +55,16 @@ struct Waiting {
 
 /// Reflectors found so far, with their residual.
 pub(super) struct Settled<'a> {
-    pub(super) radar: &'a Radar,
-    pub(super) task: &'a Task,
-    pub(super) bench: Workbench<'a>,
+    radar: &'a Radar,
+    task: &'a Task,
+    bench: Workbench<'a>,
     detector: Arc<Detector>,
     settings: Settings,
     samples: Samples,
     trace: Trace,
-    pub(super) fit: Fit,
+    fit: Fit,
     /// Residual energy at which the search ends.
-    pub(super) enough: f64,
-    /// Number of successive echoes that failed to be two, after [`MOST_FAILURES`] of which none is tried.
-    pub(super) failures: usize,
+    enough: f64,
 }
 
 impl<'a> Settled<'a> {
@@ -83,16 +75,10 @@ impl<'a> Settled<'a> {
         let samples = Samples::new(&bench.sensor, &flat);
         let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
-        let (trace, failures) = (Trace::default(), MOST_FAILURES);
-        Settled { radar, task, bench, detector, settings, samples, trace, fit, enough, failures }
+        Settled { radar, task, bench, detector, settings, samples, trace: Trace::default(), fit, enough }
     }
 
-    /// The start, with echoes tried as two.
-    pub fn trying_two(self) -> Self {
-        Settled { failures: 0, ..self }
-    }
-
-    pub(super) fn search(&self) -> Search<'_> {
+    fn search(&self) -> Search<'_> {
         let Settled { radar, task, bench, detector, settings, samples, trace, .. } = self;
         Search { radar, bench, detector, samples, in_noise: false, settings, task, trace }
     }
@@ -127,11 +113,9 @@ impl<'a> Settled<'a> {
             }
             let search = self.search();
             self.fit = search.settled(search.with_points(self.fit.clone(), &taken)?)?;
-            self.split()?;
             waiting = left.into_iter().map(|(_, w)| w).collect();
         }
         self.fit = self.search().pruned(self.fit.clone())?;
-        self.merge()?;
         let is_better = self.fit.cost() < WORTH_ANOTHER * before.cost();
         if self.fit.cost() > before.cost() {
             self.fit = before;
@@ -139,8 +123,20 @@ impl<'a> Settled<'a> {
         Ok(is_better && !self.is_done())
     }
 
+    /// The reflectors, with those that may hide each other sought anew where something is left.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn ordered(mut self) -> Result<Self, ReconstructError> {
+        if !self.is_done() {
+            let search = self.search();
+            self.fit = search.pruned(search.relaxed(self.fit.clone())?)?;
+        }
+        Ok(self)
+    }
+
     /// Whether the residual is small enough, or the work is spent.
-    pub(super) fn is_done(&self) -> bool {
+    fn is_done(&self) -> bool {
         self.fit.cost() <= self.enough || self.bench.work.is_spent()
     }
 

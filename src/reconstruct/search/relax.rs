@@ -33,7 +33,8 @@ impl Search<'_> {
         let rows: Vec<Rows> = fit.atoms.iter().map(|atom| rows_of(self.radar, atom)).collect();
         let are_points: Vec<bool> = fit.atoms.iter().map(|atom| matches!(atom, Atom::Point { .. })).collect();
         let found = groups(self.radar.samples, &rows, &are_points, HIDING_BINS, usize::MAX);
-        let price = price_of_an_echo(self.radar) * self.bench.gain_noise(self.radar, &fit);
+        let rounding = self.bench.worth_of(self.rounding_amplitude(), self.radar);
+        let price = rounding.max(price_of_an_echo(self.radar) * self.bench.gain_noise(self.radar, &fit));
         let is_sought = |group: &Vec<usize>| {
             let is_crowd = group.len() > 1 || group.iter().any(|&i| self.is_beyond(&fit.atoms[i]));
             is_crowd && group.len() <= MAX_GROUP && group.iter().all(|i| are_points[*i])
