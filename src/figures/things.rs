@@ -43,7 +43,7 @@ fn with_maps(source: &SceneSource, seen: &ScenePictures, title: &str) -> Vec<She
 fn outlines(source: &SceneSource, title: &str, scene: &Scene) -> SheetPanel {
     let extent = source.radar.max_range_metres();
     let pair = |p: [f64; 2]| (p[0], p[1]);
-    let of_body = |object: &Object| match object.body()?.shape() {
+    let of_body = |object: &Object| match object.body()?.shape {
         Shape::Wall(ends) => Some(ends.map(pair).to_vec()),
         Shape::Outline(corners) => Some(corners.iter().chain(corners.first()).map(|c| pair(*c)).collect()),
         Shape::Circle { centre_metres: [x, y], radius_metres } => {

@@ -17,7 +17,7 @@ pub(super) fn grips(object: &Object, beyond_metres: f64) -> Vec<GripPlace> {
         Object::Box(b) => (corners(&b.corners_metres()), Some((b.angle_degrees, b.length_metres / 2.0))),
         Object::Post(p) => (vec![at(Grip::Radius, [p.x_metres + p.radius_metres, p.y_metres])], None),
         Object::Polygon(p) => {
-            let (_, reach) = object.body().map_or(([0.0; 2], 0.0), |body| body.shape().around());
+            let (_, reach) = object.body().map_or(([0.0; 2], 0.0), |body| body.shape.around());
             (corners(&p.corners_metres), Some((90.0, reach)))
         }
         Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => (Vec::new(), None),

@@ -157,8 +157,8 @@ impl Field {
             (Field::Angle, Object::Wall(w)) => w.angle_degrees,
             (Field::Angle, Object::Box(b)) => b.angle_degrees,
             (Field::Radius, Object::Post(p)) => p.radius_metres,
-            (Field::Roughness, body) => body.body()?.surface().roughness_millimetres,
-            (Field::Seed, body) => body.body()?.surface().seed as f64,
+            (Field::Roughness, body) => body.body()?.roughness_millimetres,
+            (Field::Seed, body) => body.body()?.seed as f64,
             _ => return None,
         })
     }

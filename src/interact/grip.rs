@@ -137,7 +137,7 @@ pub(super) fn extent(object: &Object) -> (Place, Place) {
         ),
         Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
             let centre = object.centre_metres();
-            let (low, high) = object.body().map_or((centre, centre), |body| body.shape().extent());
+            let (low, high) = object.body().map_or((centre, centre), |body| body.shape.extent());
             (low.into(), high.into())
         }
     }

@@ -61,7 +61,7 @@ fn body_distance(object: &Object, at: Place) -> f64 {
             out_x.hypot(out_y) + 1e-3 * inside
         }
         Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
-            let Some(shape) = object.body().map(|body| body.shape()) else { return f64::INFINITY };
+            let Some(shape) = object.body().map(|body| body.shape) else { return f64::INFINITY };
             let (_, radius) = shape.around();
             // As within a cluster: a small object that lies on a large one can be grabbed.
             shape.distance_metres([at.x_metres, at.y_metres]) + 1e-3 * centre.distance_metres(at) / radius.max(1e-9)

@@ -137,9 +137,9 @@ fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64
         };
         let colour = RGBColor(red, green, blue);
         if let Some(body) = object.body() {
-            chart.draw_series([Polygon::new(outline(&body.shape()), colour.mix(0.5))]).map_err(PictureError::new)?;
+            chart.draw_series([Polygon::new(outline(&body.shape), colour.mix(0.5))]).map_err(PictureError::new)?;
             chart
-                .draw_series([PathElement::new(outline(&body.shape()), colour.stroke_width(2))])
+                .draw_series([PathElement::new(outline(&body.shape), colour.stroke_width(2))])
                 .map_err(PictureError::new)?;
         }
         // A line array sees y and -y alike: reflectors behind it are drawn ahead, hollow.

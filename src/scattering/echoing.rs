@@ -35,7 +35,7 @@ impl Bodies {
     fn of(radar: &Radar, scene: &Scene) -> Self {
         let array = Array::of(radar, &scene.disturbances.elements);
         let screen = |(index, object): (usize, &Object)| {
-            let screen = array.screen(&object.body()?.shape());
+            let screen = array.screen(&object.body()?.shape);
             Some((index, Arc::new(object.clone()), screen))
         };
         let bodies = scene.objects.iter().enumerate().filter_map(screen);

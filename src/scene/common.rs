@@ -4,7 +4,7 @@
 macro_rules! moving {
     ($(#[$about:meta])* pub struct $name:ident { $($fields:tt)* }) => {
         $(#[$about])*
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct $name {
             /// Name of the object, empty for none; at most [`MAX_NAME_CHARACTERS`](super::MAX_NAME_CHARACTERS).

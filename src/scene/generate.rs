@@ -287,7 +287,7 @@ mod tests {
         }
         let rough = scenes(Kind::Rough).into_iter().flatten();
         let deviations: Vec<f64> = rough
-            .filter_map(|o| Some(o.body()?.surface().roughness_millimetres))
+            .filter_map(|o| Some(o.body()?.roughness_millimetres))
             .filter(|deviation| *deviation > 0.0)
             .collect();
         assert!(deviations.len() >= 40 && deviations.iter().all(|d| (0.2..=1.5).contains(d)), "{deviations:?}");

@@ -14,7 +14,7 @@ pub mod presets;
 pub mod shape;
 mod turn;
 
-pub use body::{Block, Body, Polygon, Post, Surface, Wall};
+pub use body::{Block, Body, Polygon, Post, Wall};
 pub use disturbances::{Disturbances, Interferer, Mirror};
 pub use motion::MAX_SPEED_METRES_PER_SECOND;
 pub use object::{GaussianCluster, Line, MAX_NAME_CHARACTERS, Object, Point};

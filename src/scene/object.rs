@@ -2,6 +2,7 @@
 
 use super::Reflector;
 use super::body::{Block, Body, Polygon, Post, Wall, is_zero, one};
+use super::shape::Shape;
 use super::common::{moving, of_each};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -98,18 +99,8 @@ fn is_straight_ahead(direction_degrees: &f64) -> bool {
 impl Line {
     /// A line straight ahead from (`x_metres`, `y_start_metres`), of reflectivity 1.
     pub fn vertical(x_metres: f64, y_start_metres: f64, spacing_metres: f64, count: usize) -> Self {
-        let direction_degrees = straight_ahead();
-        Line {
-            x_metres,
-            y_start_metres,
-            spacing_metres,
-            direction_degrees,
-            count,
-            reflectivity: 1.0,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        let (direction_degrees, reflectivity) = (straight_ahead(), 1.0);
+        Line { x_metres, y_start_metres, spacing_metres, direction_degrees, count, reflectivity, ..Line::default() }
     }
 
     /// Step from one reflector to the next, (x, y) in metres. Exactly (0, spacing) straight ahead.
@@ -134,32 +125,15 @@ impl Line {
 impl GaussianCluster {
     /// A cluster of reflectivity 1 and seed 0 around a centre, with standard deviations along x and y.
     pub fn new([x_metres, y_metres]: [f64; 2], [x_std_metres, y_std_metres]: [f64; 2], count: usize) -> Self {
-        GaussianCluster {
-            x_metres,
-            y_metres,
-            x_std_metres,
-            y_std_metres,
-            count,
-            seed: 0,
-            reflectivity: 1.0,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        let reflectivity = 1.0;
+        GaussianCluster { x_metres, y_metres, x_std_metres, y_std_metres, count, reflectivity, ..Self::default() }
     }
 }
 
 impl Point {
     /// A point of reflectivity 1.
     pub fn new(x_metres: f64, y_metres: f64) -> Self {
-        Point {
-            x_metres,
-            y_metres,
-            reflectivity: 1.0,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        Point { x_metres, y_metres, reflectivity: 1.0, ..Point::default() }
     }
 }
 
@@ -202,14 +176,18 @@ impl Object {
     }
 
     /// The object as a body; `None` for objects made of points.
-    pub fn body(&self) -> Option<Body<'_>> {
-        match self {
-            Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => None,
-            Object::Wall(w) => Some(Body::Wall(w)),
-            Object::Box(b) => Some(Body::Box(b)),
-            Object::Post(p) => Some(Body::Post(p)),
-            Object::Polygon(p) => Some(Body::Polygon(p)),
-        }
+    pub fn body(&self) -> Option<Body> {
+        let (shape, roughness_millimetres, seed) = match self {
+            Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => return None,
+            Object::Wall(w) => (Shape::Wall(w.ends_metres()), w.roughness_millimetres, w.seed),
+            Object::Box(b) => (Shape::Outline(b.corners_metres().to_vec()), b.roughness_millimetres, b.seed),
+            Object::Post(p) => {
+                let circle = Shape::Circle { centre_metres: [p.x_metres, p.y_metres], radius_metres: p.radius_metres };
+                (circle, p.roughness_millimetres, p.seed)
+            }
+            Object::Polygon(p) => (Shape::Outline(p.outline_metres()), p.roughness_millimetres, p.seed),
+        };
+        Some(Body { shape, reflectivity: self.reflectivity(), roughness_millimetres, seed })
     }
 
     /// Number of reflectors; bodies have none.
