@@ -7,7 +7,7 @@ use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
 use crate::radar::LayoutKind;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, is_default};
 use crate::scene::file::{SceneFile, SceneTextError, from_toml_beside, to_toml_beside};
 use crate::signal::Floor;
 use crate::view::{Projection, View};
@@ -76,12 +76,8 @@ pub struct SharedView {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonPlace>,
     /// Time at which moving objects are looked at, seconds.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub time_seconds: f64,
-}
-
-fn is_zero(seconds: &f64) -> bool {
-    *seconds == 0.0
 }
 
 /// Part of a map, as fractions of its width and height from the lower left.

@@ -3,6 +3,7 @@
 use super::report::EngineReport;
 use crate::maps::{Aperture, LambdaScale, Normalisation, RangeAngleMap};
 use crate::radar::End;
+use crate::scene::{Disturbances, Object, Scene};
 use crate::signal::{Floor, TwoEnds};
 use std::sync::Arc;
 
@@ -42,6 +43,28 @@ impl Default for MapRequest {
             full: true,
             ends: true,
         }
+    }
+}
+
+/// The parts of a scene, and the floor, that maps depend on.
+pub(super) struct Pictured {
+    objects: Vec<Object>,
+    shadows: bool,
+    disturbances: Disturbances,
+    floor: (Floor, u64),
+}
+
+impl Pictured {
+    pub fn of(scene: &Scene, wanted: &MapRequest) -> Self {
+        let Scene { objects, shadows, disturbances, .. } = scene.clone();
+        Pictured { objects, shadows, disturbances, floor: (wanted.floor, wanted.seed) }
+    }
+
+    pub fn is(&self, scene: &Scene, wanted: &MapRequest) -> bool {
+        self.objects == scene.objects
+            && self.shadows == scene.shadows
+            && self.disturbances == scene.disturbances
+            && self.floor == (wanted.floor, wanted.seed)
     }
 }
 

@@ -105,38 +105,19 @@ pub enum Ink {
 
 /// A shape of a sketch.
 #[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum SketchShape {
-    /// A line through places; an arrow head at its end if `arrow`.
-    Line {
-        places: Vec<(f64, f64)>,
-        /// Whether it ends in an arrow head.
-        arrow: bool,
-        ink: Ink,
-    },
+    /// A line through places.
+    Line(Vec<(f64, f64)>, Ink),
+    /// A line from the first place to an arrow head at the second.
+    Arrow((f64, f64), (f64, f64), Ink),
     /// A filled dot, its radius in pixels.
-    Dot { at: (f64, f64), pixels: i32, ink: Ink },
-    /// A filled area.
-    Area {
-        corners: Vec<(f64, f64)>,
-        /// Its ink, thinned.
-        ink: Ink,
-    },
-    /// A box with its text in the middle.
-    Block {
-        /// Lower left corner.
-        low: (f64, f64),
-        /// Upper right corner.
-        high: (f64, f64),
-        text: String,
-    },
+    Dot((f64, f64), i32, Ink),
+    /// An area within corners, its ink thinned.
+    Area(Vec<(f64, f64)>, Ink),
+    /// A box from the lower left to the upper right corner, with its text in the middle.
+    Block((f64, f64), (f64, f64), String),
     /// Words, their middle at a place.
-    Words {
-        /// The middle.
-        at: (f64, f64),
-        text: String,
-        ink: Ink,
-    },
+    Words((f64, f64), String, Ink),
 }
 
 impl SheetAxis {
@@ -167,29 +148,6 @@ impl SheetPanel {
 
     pub fn cells(title: impl Into<String>, cells: SheetCells) -> Self {
         SheetPanel { title: title.into(), content: PanelContent::Cells(cells) }
-    }
-}
-
-impl SketchShape {
-    /// A line without an arrow head.
-    pub fn line(places: impl IntoIterator<Item = (f64, f64)>, ink: Ink) -> Self {
-        SketchShape::Line { places: places.into_iter().collect(), arrow: false, ink }
-    }
-
-    pub fn arrow(from: (f64, f64), to: (f64, f64), ink: Ink) -> Self {
-        SketchShape::Line { places: vec![from, to], arrow: true, ink }
-    }
-
-    pub fn dot(at: (f64, f64), pixels: i32, ink: Ink) -> Self {
-        SketchShape::Dot { at, pixels, ink }
-    }
-
-    pub fn block(low: (f64, f64), high: (f64, f64), text: impl Into<String>) -> Self {
-        SketchShape::Block { low, high, text: text.into() }
-    }
-
-    pub fn words(at: (f64, f64), text: impl Into<String>, ink: Ink) -> Self {
-        SketchShape::Words { at, text: text.into(), ink }
     }
 }
 

@@ -27,6 +27,7 @@ pub enum FigureError {
 }
 
 /// The thesis' radar and conventions: table 3.1, its floor, min-max.
+#[derive(Default)]
 pub struct SceneSource {
     pub radar: Radar,
 }
@@ -40,10 +41,6 @@ pub struct ScenePictures {
 }
 
 impl SceneSource {
-    pub fn new() -> Self {
-        SceneSource { radar: Radar::default() }
-    }
-
     /// The scene over `floor`, seed 0.
     /// # Errors
     /// [`FigureError::Scene`].
@@ -122,22 +119,25 @@ impl SceneSource {
         SheetPanel::cells(title, SheetCells { x, y, values, colours, ends_of_bar: None, rings: Vec::new() })
     }
 
-    pub fn scene_panel(&self, title: impl Into<String>, scene: &Scene) -> SheetPanel {
+    /// Outlines of bodies, and the reflectors; those behind the array are drawn ahead.
+    pub fn scene_panel(&self, title: &str, scene: &Scene) -> SheetPanel {
         let extent = self.radar.max_range_metres();
-        let places = scene.objects.iter().flat_map(Object::marks).map(|r| (r.x_metres, r.y_metres.abs()));
-        let dots = Series::line("", places).with(Stroke::Dots);
-        SheetPanel::chart(
-            title,
-            SheetAxis::new("x (m)", -extent, extent),
-            SheetAxis::new("y (m)", 0.0, extent),
-            vec![dots],
-        )
+        let bodies = scene.objects.iter().filter_map(Object::body);
+        let mut series: Vec<Series> = bodies.map(|body| Series::line("", body.shape.line_around())).collect();
+        let points = scene.reflectors().into_iter().map(|r| (r.x_metres, r.y_metres.abs()));
+        series.push(Series::line("", points).with(Stroke::Dots));
+        SheetPanel::chart(title, SheetAxis::new("x (m)", -extent, extent), SheetAxis::new("y (m)", 0.0, extent), series)
     }
-}
 
-impl Default for SceneSource {
-    fn default() -> Self {
-        SceneSource::new()
+    /// The scene, the inputs and the target.
+    pub fn panels_of(&self, seen: &ScenePictures, title: &str) -> Vec<SheetPanel> {
+        let [first, last, full] = &seen.lambda;
+        vec![
+            self.scene_panel(title, &seen.scene),
+            self.lambda_panel("Input 0", first),
+            self.lambda_panel("Input 1", last),
+            self.lambda_panel("Target", full),
+        ]
     }
 }
 

@@ -6,7 +6,7 @@ use crate::platform::fs;
 use crate::radar::Radar;
 use crate::recording::{self, Recording, RecordingError, presets};
 use crate::scene::Scene;
-use crate::scene::file::{self, FileLoss, SceneFile, SceneFileError, SceneFormat};
+use crate::scene::file::{self, SceneFile, SceneFileError, SceneFormat};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -133,9 +133,11 @@ impl Document {
         }
     }
 
-    pub(super) fn losses(&self, format: SceneFormat) -> Vec<FileLoss> {
+    pub(super) fn losses(&self, format: SceneFormat) -> Vec<String> {
         let mut losses = format.losses(&self.to_file());
-        losses.extend((format == SceneFormat::Npz && self.measured.is_some()).then_some(FileLoss::Recording));
+        if format == SceneFormat::Npz && self.measured.is_some() {
+            losses.push("the recording that it is laid over".to_owned());
+        }
         losses
     }
 

@@ -19,7 +19,10 @@ pub enum Aperture {
 }
 
 impl Aperture {
-    pub(super) fn channels(self, radar: &Radar) -> Range<usize> {
+    /// The first end, the last end, and the whole array.
+    pub const ALL: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
+
+    pub(crate) fn channels(self, radar: &Radar) -> Range<usize> {
         match self {
             Aperture::Full => 0..radar.elements,
             Aperture::End(end) => radar.end_range(end),

@@ -17,44 +17,44 @@ pub struct InputMap {
 }
 
 impl InputMap {
-    /// The input maps of both ends.
-    pub(super) fn of_ends(radar: &Radar, ends: [&LogMap; 2], normalisation: Normalisation) -> Vec<InputMap> {
-        let of_end = |(number, (end, map)): (usize, (End, &LogMap))| {
-            let elements = radar.end_range(end);
-            let title = format!("Input {number}: elements {} to {}", elements.start, elements.end - 1);
-            InputMap { title, lambda: map.normalise(normalisation) }
+    /// The input maps of both ends, or that of a layout, with its samples.
+    /// # Errors
+    /// As [`layout_samples`].
+    pub(super) fn of(
+        radar: &Radar,
+        elements: &BuiltArray,
+        signal: Option<&BeatSignal>,
+        ends: [&LogMap; 2],
+        (layout, normalisation): (Option<&LayoutKind>, Normalisation),
+    ) -> Result<(Option<Arc<LayoutSamples>>, Vec<InputMap>), ComposeError> {
+        let Some(layout) = layout else {
+            let of_end = |(number, (end, map)): (usize, (End, &LogMap))| {
+                let elements = radar.end_range(end);
+                let title = format!("Input {number}: elements {} to {}", elements.start, elements.end - 1);
+                InputMap { title, lambda: map.normalise(normalisation) }
+            };
+            return Ok((None, End::BOTH.into_iter().zip(ends).enumerate().map(of_end).collect()));
         };
-        End::BOTH.into_iter().zip(ends).enumerate().map(of_end).collect()
+        let samples = layout_samples(radar, signal, layout)?;
+        let name = layout.to_string();
+        let name = if name.len() > MAX_NAME_LETTERS { "listed elements".to_owned() } else { name };
+        let lambda = layout_map(radar, elements, &samples).log_magnitude().normalise(normalisation);
+        Ok((Some(samples), vec![InputMap { title: format!("Input: {name}"), lambda }]))
     }
 }
 
 /// Letters of a layout's name for which a title has room.
 const MAX_NAME_LETTERS: usize = 16;
 
-/// The samples of a layout's elements, and their map.
-pub(super) struct HeardByLayout {
-    pub(super) samples: Arc<LayoutSamples>,
-    pub(super) input: InputMap,
-}
-
-impl HeardByLayout {
-    /// The samples and the map of `layout`, from the samples of every element; `signal` is `None` where the two ends alone were recorded.
-    /// # Errors
-    /// [`ComposeError`] where `radar` has no such elements, or their samples are missing.
-    pub(super) fn of(
-        radar: &Radar,
-        elements: &BuiltArray,
-        signal: Option<&BeatSignal>,
-        layout: &LayoutKind,
-        normalisation: Normalisation,
-    ) -> Result<Self, ComposeError> {
-        let numbers = layout.numbers(radar)?;
-        let signal = signal.ok_or_else(|| ComposeError::EndsAlone(layout.to_string()))?;
-        let samples = signal.of_layout(&numbers);
-        let name = layout.to_string();
-        let title =
-            if name.len() > MAX_NAME_LETTERS { "Input: listed elements".to_owned() } else { format!("Input: {name}") };
-        let lambda = layout_map(radar, elements, &samples).log_magnitude().normalise(normalisation);
-        Ok(HeardByLayout { samples: Arc::new(samples), input: InputMap { title, lambda } })
-    }
+/// The samples of `layout`, from those of every element; `signal` is `None` where the two ends alone were recorded.
+/// # Errors
+/// [`ComposeError`] where `radar` has no such elements, or their samples are missing.
+pub(super) fn layout_samples(
+    radar: &Radar,
+    signal: Option<&BeatSignal>,
+    layout: &LayoutKind,
+) -> Result<Arc<LayoutSamples>, ComposeError> {
+    let numbers = layout.numbers(radar)?;
+    let signal = signal.ok_or_else(|| ComposeError::EndsAlone(layout.to_string()))?;
+    Ok(Arc::new(signal.of_layout(&numbers)))
 }

@@ -108,7 +108,7 @@ impl Drawing for Panels<'_> {
     }
 
     fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
-        root.fill(&PAPER).map_err(PictureError::new)?;
+        root.fill(&PAPER)?;
         self.header(root)?;
         let (field_width, field_height) = (LEFT - MARGIN - 8, 396);
         let field = |row: i32| {
@@ -133,7 +133,7 @@ impl Drawing for Panels<'_> {
             let area = root.clone().shrink((LEFT + column * width, HEADER + row * height), (width, height));
             panel.draw(&area, self.radar)?;
         }
-        root.present().map_err(PictureError::new)
+        Ok(root.present()?)
     }
 }
 

@@ -12,9 +12,6 @@ use crate::radar::{Decibels, Radar};
 use crate::signal::TwoEnds;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The method's knowledge beside the samples, [`About::told`].
-const TOLD_TO_HYBRID: &str = "the same as nomp; and by its network, the training scenes of live";
-
 /// [`super::search::Nomp`], and a network for scenes that the search can't explain, or not in time.
 #[derive(Clone)]
 pub struct Hybrid {
@@ -67,15 +64,6 @@ impl Hybrid {
         let eta = own_threshold(&lambda, network.doubt.map(|doubt| shown.doubt(doubt)).as_ref());
         Ok(Reconstruction { eta: Some(eta), ..found.as_drawn(lambda, Some(least_eta)) })
     }
-
-    fn about_itself() -> About {
-        About {
-            name: "hybrid",
-            description: "draws the exact map of the objects it finds; in cells that they don't explain it believes a network more",
-            told: TOLD_TO_HYBRID,
-            eta: super::search::ETA,
-        }
-    }
 }
 
 impl Reconstructor for Hybrid {
@@ -84,7 +72,12 @@ impl Reconstructor for Hybrid {
     }
 
     fn about(&self) -> About {
-        Hybrid::about_itself()
+        About {
+            name: "hybrid",
+            description: "draws the exact map of the objects it finds; in cells that they don't explain it believes a network more",
+            told: "the same as nomp; and by its network, the training scenes of live",
+            eta: super::search::ETA,
+        }
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -162,7 +155,7 @@ struct Following {
 
 impl Reconstructor for Following {
     fn about(&self) -> About {
-        Hybrid::about_itself()
+        self.hybrid.about()
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

@@ -1,6 +1,6 @@
 //! Bodies: walls, boxes, posts and polygons. They shine where they face the radar and hide what stands behind them.
 
-use super::common::moving;
+use super::common::{is_default, moving};
 use super::shape::{Shape, direction, doubled_area, inner_corners};
 use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
@@ -37,10 +37,10 @@ macro_rules! body {
                 #[serde(default = "one")]
                 pub reflectivity: f64,
                 /// Standard deviation of the surface's height, millimetres: 0 is smooth.
-                #[serde(default, skip_serializing_if = "is_zero")]
+                #[serde(default, skip_serializing_if = "is_default")]
                 pub roughness_millimetres: f64,
                 /// Seed of the surface's random heights.
-                #[serde(default, skip_serializing_if = "is_first")]
+                #[serde(default, skip_serializing_if = "is_default")]
                 pub seed: u64,
             }
         }
@@ -57,7 +57,7 @@ body! {
         /// Length from end to end, metres.
         pub length_metres: f64,
         /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub angle_degrees: f64,
     }
 }
@@ -74,7 +74,7 @@ body! {
         /// Its width, across the length, metres.
         pub width_metres: f64,
         /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub angle_degrees: f64,
     }
 }
@@ -102,16 +102,6 @@ body! {
 /// Reflectivity of a body whose file gives none.
 pub(super) fn one() -> f64 {
     1.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-pub(super) fn is_zero(number: &f64) -> bool {
-    *number == 0.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-fn is_first(seed: &u64) -> bool {
-    *seed == 0
 }
 
 impl Wall {

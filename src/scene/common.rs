@@ -12,10 +12,10 @@ macro_rules! moving {
             pub name: String,
             $($fields)*
             /// Velocity along the array's axis, metres a second.
-            #[serde(default, skip_serializing_if = "is_zero")]
+            #[serde(default, skip_serializing_if = "is_default")]
             pub velocity_x_metres_per_second: f64,
             /// Velocity away from the array, metres a second.
-            #[serde(default, skip_serializing_if = "is_zero")]
+            #[serde(default, skip_serializing_if = "is_default")]
             pub velocity_y_metres_per_second: f64,
         }
     };
@@ -37,3 +37,8 @@ macro_rules! of_each {
     };
 }
 pub(super) use of_each;
+
+/// Whether a value is that of a file that leaves it out.
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -121,17 +121,6 @@ impl Generator {
             Kind::Noise => Vec::new(),
             Kind::Points(count) => (0..count).map(|_| self.point(rng)).collect(),
             Kind::Mixed(count) => (0..count).map(|_| self.point_or_line(rng)).collect(),
-            Kind::Clusters
-            | Kind::Walls
-            | Kind::Spacings
-            | Kind::Corner
-            | Kind::Crowd
-            | Kind::Dynamic
-            | Kind::Near
-            | Kind::Fences
-            | Kind::Rain => {
-                PlacementField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
-            }
             Kind::Bodies | Kind::Street | Kind::Rails | Kind::Occlusion | Kind::Rough => {
                 things::objects(kind, self.max_range, rng)
             }
@@ -139,6 +128,7 @@ impl Generator {
             Kind::Beyond(kind) => {
                 BeyondField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
             }
+            _ => PlacementField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng),
         };
         let name = format!("{kind:?} {number}, seed {}", self.seed);
         Scene { name, noise_seed: self.noise_seed(kind, number), objects, ..Scene::default() }

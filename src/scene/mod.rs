@@ -14,6 +14,8 @@ pub mod presets;
 pub mod shape;
 mod turn;
 
+pub(crate) use common::is_default;
+
 pub use body::{Block, Body, Polygon, Post, Wall};
 pub use disturbances::{Disturbances, Interferer, Mirror};
 pub use motion::MAX_SPEED_METRES_PER_SECOND;
@@ -45,7 +47,7 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub notes: String,
     /// Picks the noise of the floor beneath the scene, where there is noise. TOML holds it up to 2^63.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub noise_seed: u64,
     /// Whether bodies hide what stands behind them.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
@@ -72,11 +74,6 @@ pub(crate) fn yes() -> bool {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_true(value: &bool) -> bool {
     *value
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-fn is_zero(seed: &u64) -> bool {
-    *seed == 0
 }
 
 /// Smallest distance of a reflector from an element, metres. Nearer, the 1/R^2 law is unbounded.

@@ -16,7 +16,7 @@ use super::heard::HeardEchoes;
 use super::path::{PairBlocks, Path, range_span_metres};
 use super::phase::{EchoLanes, EchoModel};
 use super::rows::Rows;
-use super::simd::{ComplexLanes, Lanes, Real, phasor};
+use super::simd::{ComplexLanes, Lanes, Real, horner, phasor};
 use crate::radar::{Radar, WindowFunction};
 use crate::scene::Reflector;
 use num_complex::Complex;
@@ -161,7 +161,7 @@ impl<T: Real> ClosedForm<T> {
         let mut turn = first.rem_euclid(self.samples as isize) as usize;
         for j in first..=last {
             let w = self.turns[turn];
-            let turned = turning.times::<FMA>(ComplexLanes { re: Lanes::splat(w.re), im: Lanes::splat(w.im) });
+            let turned = turning.times::<FMA>(ComplexLanes::splat(w));
             let distance = narrow - Lanes::splat(T::of(j as f64));
             let mut value = (turned - still).scaled(far::<T, W, FMA>(distance, bins, sin_edge));
             if (j as f64) > lowest - PEAK_BINS && (j as f64) < highest + PEAK_BINS {
@@ -227,15 +227,8 @@ fn far<T: Real, const W: usize, const FMA: bool>(distance: Lanes<T, W>, bins: f6
     let splat = |v: f64| Lanes::<T, W>::splat(T::of(v));
     let turns = distance * splat(0.5 / bins);
     let square = turns * turns;
-    let horner = |terms: &[f64]| {
-        let mut value = splat(terms[terms.len() - 1]);
-        for term in terms[..terms.len() - 1].iter().rev() {
-            value = value.mul_add::<FMA>(square, splat(*term));
-        }
-        value
-    };
-    let cos = horner(T::COS);
-    let q = turns * horner(T::SIN) * splat(1.0 / sin_edge);
+    let cos = horner::<T, W, FMA>(T::COS, square);
+    let q = turns * horner::<T, W, FMA>(T::SIN, square) * splat(1.0 / sin_edge);
     let below = q - q * q * q;
     cos.zip(below, |a, b| a / b)
 }

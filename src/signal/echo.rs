@@ -156,8 +156,7 @@ fn polynomial<const FMA: bool>(z: Complex64, y: &[Complex64]) -> Complex64 {
     let mut powers = [Complex64::from(1.0); SUMS];
     powers[1] = z;
     (2..SUMS).for_each(|i| powers[i] = powers[i / 2] * powers[i.div_ceil(2)]);
-    let stride = powers[SUMS / 2] * powers[SUMS / 2];
-    let stride = ComplexLanes { re: Lanes::splat(stride.re), im: Lanes::splat(stride.im) };
+    let stride = ComplexLanes::splat(powers[SUMS / 2] * powers[SUMS / 2]);
     let mut sums = [ComplexLanes::<f64, W>::zero(); GROUPS];
     let whole = y.chunks_exact(SUMS);
     let rest = whole.remainder();

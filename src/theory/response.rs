@@ -3,7 +3,7 @@
 //! A sum over the elements of equation 3.3's windowed transform over range, which is the window's [`WindowPattern`] moved to the element's own
 //! distance; nothing is approximated, so near field, range migration and squint are all in it.
 
-use super::{WindowPattern, elements};
+use super::WindowPattern;
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -31,7 +31,7 @@ pub struct ResponseRow {
 impl Response {
     /// The response of `reflector` under `aperture`. The radar must be valid ([`Radar::validate`]).
     pub fn new(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Self {
-        let elements = elements(radar, aperture);
+        let elements = aperture.channels(radar);
         let window = radar.window.weights(elements.len());
         let scale = ((radar.samples * radar.elements) as f64).sqrt().recip();
         let model = EchoModel::new(radar);

@@ -45,17 +45,19 @@ impl Statistic {
 
     /// Name in sentences.
     pub fn name(self) -> &'static str {
-        match self {
-            Statistic::CellAveraging => "cell averaging",
-            Statistic::OrderedStatistics => "ordered statistics",
-        }
+        self.names()[0]
     }
 
     /// Name of a detector with this estimate, in captions.
     pub fn short_name(self) -> &'static str {
+        self.names()[1]
+    }
+
+    /// Names in sentences, in captions and in a detector's text.
+    fn names(self) -> [&'static str; 3] {
         match self {
-            Statistic::CellAveraging => "CA-CFAR",
-            Statistic::OrderedStatistics => "OS-CFAR",
+            Statistic::CellAveraging => ["cell averaging", "CA-CFAR", "ca"],
+            Statistic::OrderedStatistics => ["ordered statistics", "OS-CFAR", "os"],
         }
     }
 }

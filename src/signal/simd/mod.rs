@@ -9,6 +9,7 @@ pub mod powers;
 
 pub use instructions::{Kernel, SIMD_VARIABLE, Simd, SimdError};
 
+use num_complex::Complex;
 use rustfft::FftNum;
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -210,7 +211,13 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
     /// Zero in every lane.
     #[inline(always)]
     pub fn zero() -> Self {
-        ComplexLanes { re: Lanes::splat(T::default()), im: Lanes::splat(T::default()) }
+        ComplexLanes::splat(Complex::default())
+    }
+
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(v: Complex<T>) -> Self {
+        ComplexLanes { re: Lanes::splat(v.re), im: Lanes::splat(v.im) }
     }
 
     /// The complex conjugate.
@@ -259,6 +266,16 @@ impl<T: Real, const W: usize> Sub for ComplexLanes<T, W> {
     }
 }
 
+/// The sum of `terms[k] * x^k`, by Horner's rule.
+#[inline(always)]
+pub(super) fn horner<T: Real, const W: usize, const FMA: bool>(terms: &[f64], x: Lanes<T, W>) -> Lanes<T, W> {
+    let mut value = Lanes::splat(T::of(terms[terms.len() - 1]));
+    for term in terms[..terms.len() - 1].iter().rev() {
+        value = value.mul_add::<FMA>(x, Lanes::splat(T::of(*term)));
+    }
+    value
+}
+
 /// `exp(2 pi j t)` of every lane, `|t|` below 2^49. Within two units in the last place of 1.
 ///
 /// Whole quarter turns are taken off in f64, the rest (at most an eighth of a turn) goes through the Taylor series.
@@ -274,15 +291,8 @@ pub fn phasor<T: Real, const W: usize, const FMA: bool>(turns: Lanes<f64, W>) ->
     let sign: Lanes<T, W> = (of(1.0) - halves * halves * of(2.0)).round_to();
 
     let square = rest * rest;
-    let horner = |terms: &[f64]| {
-        let mut value = Lanes::splat(T::of(terms[terms.len() - 1]));
-        for term in terms[..terms.len() - 1].iter().rev() {
-            value = value.mul_add::<FMA>(square, Lanes::splat(T::of(*term)));
-        }
-        value
-    };
-    let sin = rest * horner(T::SIN) * sign;
-    let cos = horner(T::COS) * sign;
+    let sin = rest * horner::<T, W, FMA>(T::SIN, square) * sign;
+    let cos = horner::<T, W, FMA>(T::COS, square) * sign;
     let even = Lanes::splat(T::of(1.0)) - odd * odd;
     ComplexLanes { re: even * cos - odd * sin, im: even * sin + odd * cos }
 }
