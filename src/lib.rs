@@ -65,6 +65,7 @@ pub mod bounds;
 #[cfg(feature = "command-line")]
 #[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod commands;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod engine;
 pub mod evaluate;
 #[cfg(feature = "external")]
@@ -73,12 +74,15 @@ pub mod external;
 #[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod figures;
 pub mod files;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod interact;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod lesson;
 pub mod maps;
 pub mod methods;
 #[cfg(feature = "live")]
 pub mod network;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod picture;
 pub mod platform;
 pub mod radar;
@@ -86,8 +90,10 @@ pub mod reconstruct;
 pub mod recording;
 pub mod scattering;
 pub mod scene;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod share;
 pub mod signal;
 pub mod task;
 pub mod theory;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod view;

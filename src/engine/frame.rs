@@ -7,22 +7,15 @@ use crate::scene::{Disturbances, Object, Scene};
 use crate::signal::{Floor, TwoEnds};
 use std::sync::Arc;
 
-/// A request for maps and samples of a scene. The engine computes no others.
+/// A request for the maps of the first end, the last end and the whole array, and for the samples of the ends. The engine computes no others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapRequest {
-    /// The floor beneath the reflectors.
     pub floor: Floor,
-    /// Seed of the floor's noise.
     pub seed: u64,
-    /// Normalisation of the maps.
     pub normalisation: Normalisation,
-    /// Whether the map of the first end is wanted.
     pub first: bool,
-    /// Whether the map of the last end is wanted.
     pub last: bool,
-    /// Whether the map of the whole array is wanted.
     pub full: bool,
-    /// Whether the samples of the two ends are wanted, for a reconstruction.
     pub ends: bool,
 }
 
@@ -73,24 +66,18 @@ impl Pictured {
 pub struct ReadyMap {
     /// Lambda, `[range bins, columns]`.
     pub lambda: Arc<RangeAngleMap>,
-    /// Scale from decades of amplitude to Lambda.
     pub scale: LambdaScale,
 }
 
 /// The requested maps and samples of one scene.
 #[derive(Debug, Clone)]
 pub struct EngineFrame {
-    /// Map of the first end, if wanted.
     pub first: Option<ReadyMap>,
-    /// Map of the last end, if wanted.
     pub last: Option<ReadyMap>,
-    /// Map of the whole array, if wanted.
     pub full: Option<ReadyMap>,
-    /// Samples of both ends, if wanted.
     pub ends: Option<Arc<TwoEnds>>,
     /// Whether the maps have the same bits as a command's ([`super::Engine::settle`]), so that figures may be made of them.
     pub settled: bool,
-    /// Time of each stage, and the reasons for skipped ones.
     pub report: EngineReport,
 }
 

@@ -4,7 +4,7 @@ use super::Place;
 use super::grip_kind::{Grip, GripPlace};
 use crate::scene::body::{MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
 use crate::scene::shape::direction;
-use crate::scene::{Block, Object, Polygon, Wall};
+use crate::scene::{Block, Object, Wall};
 
 /// The grips of a body but for the body itself. The turning grip stands `beyond_metres` away from it.
 pub(super) fn grips(object: &Object, beyond_metres: f64) -> Vec<GripPlace> {
@@ -49,7 +49,12 @@ pub(super) fn move_grip(object: &mut Object, grip: Grip, to: Place) {
                 *angle_degrees = angle;
             }
         }
-        (Object::Polygon(p), Grip::Rotate) => turn(p, to),
+        // The side that faced ahead faces `to`.
+        (polygon @ Object::Polygon(_), Grip::Rotate) => {
+            if let Some(angle) = angle_to(polygon.centre_metres(), to) {
+                polygon.turn(angle - 90.0);
+            }
+        }
         _ => {}
     }
 }
@@ -85,17 +90,6 @@ fn move_corner(block: &mut Block, corner: usize, to: Place) {
     let (l, w) = (half(block.length_metres, ahead), half(block.width_metres, left));
     block.x_metres = stays[0] + l * along[0] - w * along[1];
     block.y_metres = stays[1] + l * along[1] + w * along[0];
-}
-
-/// Turns a polygon about its middle so that the side that faced ahead faces `to`.
-fn turn(polygon: &mut Polygon, to: Place) {
-    let [x, y] = polygon.centre_metres();
-    let Some(angle) = angle_to([x, y], to) else { return };
-    let [cos, sin] = direction(angle - 90.0);
-    for corner in &mut polygon.corners_metres {
-        let (dx, dy) = (corner[0] - x, corner[1] - y);
-        *corner = [x + dx * cos - dy * sin, y + dx * sin + dy * cos];
-    }
 }
 
 #[cfg(test)]

@@ -92,11 +92,6 @@ impl Document {
         Document::new(content.clone(), None, Some(content))
     }
 
-    /// A scene that was just made: untitled, and nowhere on disk.
-    pub fn made(file: SceneFile) -> Self {
-        Document::new(Content::of(file), None, None)
-    }
-
     /// Reads the document at `path`.
     /// # Errors
     /// [`SceneFileError`] names the file, the line or key, and what was expected.
@@ -157,7 +152,7 @@ impl Document {
         Document::new(content.clone(), Some(path.into()), Some(content))
     }
 
-    /// A document at `path` from an autosave's copy, which differs from the file.
+    /// A document that is nowhere on disk, or an autosave's copy of the one at `path`, which differs from the file.
     pub fn unsaved(path: Option<&Path>, file: SceneFile) -> Self {
         Document::new(Content::of(file), path.map(Arc::from), None)
     }
@@ -341,7 +336,6 @@ mod tests {
         for (document, title) in [
             (Document::default(), "untitled"),
             (Document::shipped(file()), "untitled"),
-            (Document::made(file()), "untitled •"),
             (Document::opened(path, file()), "a.toml"),
             (Document::unsaved(Some(path), file()), "a.toml •"),
             (Document::unsaved(None, file()), "untitled •"),

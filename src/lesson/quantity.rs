@@ -14,7 +14,6 @@ pub enum Quantity {
     RangeBinMetres,
     /// Samples times the range bin, metres.
     MaximumRangeMetres,
-    /// Length of the whole array, metres.
     ApertureMetres,
     /// Least range of the whole array's far field ([`Radar::far_field_metres`]), metres.
     FarFieldMetres,
@@ -72,7 +71,7 @@ impl Quantity {
         let thing = || -> Result<&Object, String> {
             let number =
                 object.ok_or_else(|| "this quantity belongs to an object; expected object = NUMBER".to_owned())?;
-            Ok(&scene.objects[number.index(scene.objects.len())?])
+            number.of(scene)
         };
         let centre = || thing().map(Object::centre_metres);
         Ok(match self {

@@ -16,7 +16,6 @@ use std::path::Path;
 /// Kind of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// A bitmap.
     Png,
     /// Lines and text as such, maps as bitmaps.
     Svg,
@@ -47,13 +46,10 @@ pub struct Style {
     pub floor: Floor,
     /// The elements that the method hears; those of the two ends where `None`.
     pub layout: Option<LayoutKind>,
-    /// Normalisation of decades to Lambda.
     pub normalisation: Normalisation,
-    /// Colours of the maps.
     pub colours: ColourMap,
     /// Threshold of the output; the method's own where `None`.
     pub eta: Option<f32>,
-    /// Threshold of the target.
     pub target_eta: f32,
     /// The detector in the place of both thresholds, if one is in use.
     pub cfar: Option<Cfar>,

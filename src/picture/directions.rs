@@ -8,33 +8,26 @@ use plotters::prelude::*;
 /// Power over direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// The curve's name in the legend.
     pub name: String,
     /// Angle from broadside in degrees, positive towards +x, rising; and decibels below the curve's own strongest.
     pub points: Vec<(f64, f64)>,
-    /// Its colour.
     pub colour: RGBColor,
 }
 
 /// A direction with a detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// Angle from broadside, degrees.
     pub angle_degrees: f64,
-    /// Decibels below the strongest.
     pub below_strongest_db: f64,
 }
 
 /// The contents of the picture of a snapshot.
 #[derive(Debug, Clone)]
 pub struct DirectionAxis<'a> {
-    /// Its title.
     pub name: &'a str,
-    /// A line beneath it.
     pub about: &'a str,
     /// The curves, the most important one last.
     pub curves: &'a [Curve],
-    /// The detections.
     pub found: &'a [Mark],
 }
 

@@ -12,7 +12,6 @@ use std::sync::Arc;
 pub struct InputMap {
     /// The elements that heard it, in words.
     pub title: String,
-    /// Lambda.
     pub lambda: RangeAngleMap,
 }
 

@@ -36,7 +36,6 @@ pub(super) struct MapAxes {
     /// Values at the left and the right end of the axis, rising.
     pub x: [f64; 2],
     pub y: [f64; 2],
-    /// Title of the axis to the right.
     pub x_title: &'static str,
     /// Digits of its labels after the point.
     pub x_digits: usize,

@@ -27,7 +27,6 @@ pub struct Panels<'a> {
     /// Of a recording the echoes that the method found, the strongest first. They are drawn and listed in place of the figures that need a known
     /// scene.
     pub found: Option<&'a [Detection]>,
-    /// The radar that looks at it.
     pub radar: &'a Radar,
     /// The maps' settings (reflectors, carrier, floor, normalisation), in words.
     pub about: &'a str,
@@ -35,28 +34,21 @@ pub struct Panels<'a> {
     pub inputs: &'a [InputMap],
     /// Lambda of the whole array ("target"), where it is known.
     pub target: Option<&'a RangeAngleMap>,
-    /// Lambda of a method's output.
     pub output: &'a RangeAngleMap,
-    /// Name of the method.
     pub method: &'a str,
-    /// Thresholds of output and target.
     pub etas: [f32; 2],
     /// Blobs of the output where the scene has nothing.
     pub ghosts: &'a [Ghost],
     /// The cells that a detector found, in the place of those above the thresholds.
     pub detected: Option<&'a DetectedCells>,
-    /// Colours of the maps.
     pub colours: ColourMap,
 }
 
 /// Detected cells of target and output. A detected cell is 1 and any other 0; both maps are `[range bins, columns]`.
 #[derive(Debug, Clone)]
 pub struct DetectedCells {
-    /// The detector.
     pub cfar: Cfar,
-    /// Detected cells of the target.
     pub target: RangeAngleMap,
-    /// Detected cells of the output.
     pub output: RangeAngleMap,
 }
 

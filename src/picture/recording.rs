@@ -17,13 +17,11 @@ use num_complex::Complex64;
 use plotters::style::RGBColor;
 use std::sync::Arc;
 
-/// Largest number of detections that are drawn.
 const MAX_DRAWN_DETECTIONS: usize = 64;
 
 /// Columns that a snapshot's curves are padded to.
 const FINE_COLUMNS: usize = 8192;
 
-/// Dynamic range of a snapshot's curves.
 const CURVE_RANGE: Decibels = Decibels(60.0);
 
 const ALL_ELEMENTS: RGBColor = RGBColor(120, 128, 138);

@@ -206,7 +206,7 @@ fn within_limit(count: usize, what: &'static str) -> Result<(), SceneError> {
 }
 
 /// The element that a reflector comes too close to, if any.
-fn touched_element(radar: &Radar, r: &Reflector) -> Option<usize> {
+pub(crate) fn touched_element(radar: &Radar, r: &Reflector) -> Option<usize> {
     let [hind, fore] = radar.antenna_depth_metres();
     if (r.y_metres - r.y_metres.clamp(hind, fore)).abs() >= MIN_ELEMENT_DISTANCE_METRES {
         return None;
