@@ -61,6 +61,7 @@
 pub mod app;
 #[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod benchmark;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod bounds;
 #[cfg(feature = "command-line")]
 #[allow(missing_docs)] // A part of the program: names of fields say what is in them.
@@ -78,6 +79,7 @@ pub mod files;
 pub mod interact;
 #[allow(missing_docs)] // Names of fields say what is in them.
 pub mod lesson;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod maps;
 pub mod methods;
 #[cfg(feature = "live")]
@@ -86,14 +88,20 @@ pub mod network;
 pub mod picture;
 pub mod platform;
 pub mod radar;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod reconstruct;
 pub mod recording;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod scattering;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod scene;
 #[allow(missing_docs)] // Names of fields say what is in them.
 pub mod share;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod signal;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod task;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod theory;
 #[allow(missing_docs)] // Names of fields say what is in them.
 pub mod view;

@@ -9,7 +9,6 @@ pub struct Sheet {
     pub panels: Vec<SheetPanel>,
     /// Panels beside one another; the rest follow below.
     pub columns: usize,
-    /// Width and height of one panel in pixels.
     pub panel_pixels: (u32, u32),
 }
 
@@ -21,15 +20,12 @@ pub struct SheetPanel {
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum PanelContent {
-    /// Curves over two axes.
     Chart(SheetChart),
-    /// Coloured cells over two axes.
     Cells(SheetCells),
     /// Lines, circles and words in a plane without axes.
     Sketch(Sketch),
 }
 
-/// An axis: its label and span.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetAxis {
     /// Quantity and unit.
@@ -50,20 +46,16 @@ pub struct SheetChart {
 pub enum Stroke {
     /// A line from point to point.
     Solid,
-    /// A dashed line from point to point.
     Dashed,
-    /// A stem from zero to each point.
     Stems,
     /// Points alone.
     Dots,
 }
 
-/// A named curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     pub name: &'static str,
     pub stroke: Stroke,
-    /// Points, in the axes' units.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -77,7 +69,6 @@ pub struct SheetCells {
     pub colours: ColourMap,
     /// Labels of 0 and 1 beside the colour bar; `None` for no bar.
     pub ends_of_bar: Option<(&'static str, &'static str)>,
-    /// Places with a ring around them, in the axes' units.
     pub rings: Vec<(f64, f64)>,
 }
 
@@ -86,27 +77,21 @@ pub struct SheetCells {
 pub struct Sketch {
     pub x: Range<f64>,
     pub y: Range<f64>,
-    /// Shapes, the last on top.
     pub shapes: Vec<SketchShape>,
 }
 
 /// Ink of a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ink {
-    /// The colour of text.
     Dark,
-    /// Paler than text.
     Pale,
-    /// Colour of the figure's subject.
     Accent,
-    /// Colour of a comparison.
     Second,
 }
 
 /// A shape of a sketch.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SketchShape {
-    /// A line through places.
     Line(Vec<(f64, f64)>, Ink),
     /// A line from the first place to an arrow head at the second.
     Arrow((f64, f64), (f64, f64), Ink),
@@ -131,7 +116,6 @@ impl Series {
         Series { name, stroke: Stroke::Solid, points: points.into_iter().collect() }
     }
 
-    /// The series with another stroke.
     pub fn with(self, stroke: Stroke) -> Self {
         Series { stroke, ..self }
     }
@@ -152,7 +136,6 @@ impl SheetPanel {
 }
 
 impl Sheet {
-    /// Panels beside one another, `columns` in a row.
     pub fn of(columns: usize, panel_pixels: (u32, u32), panels: Vec<SheetPanel>) -> Self {
         Sheet { panels, columns: columns.max(1), panel_pixels }
     }

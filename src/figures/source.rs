@@ -14,7 +14,6 @@ use crate::signal::{self, BeatSignal, Floor};
 use ndarray::Array2;
 
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum FigureError {
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -32,7 +31,6 @@ pub struct SceneSource {
     pub radar: Radar,
 }
 
-/// A scene simulated and transformed.
 pub struct ScenePictures {
     pub scene: Scene,
     pub signal: BeatSignal,
@@ -81,17 +79,14 @@ impl SceneSource {
         Ok(method.reconstruct(&self.radar, &ends, &Request::default())?.lambda)
     }
 
-    /// Range, from 0 to the maximum.
     pub fn range_axis(&self) -> SheetAxis {
         SheetAxis::new("range (m)", 0.0, self.radar.max_range_metres())
     }
 
-    /// Lambda over cos(theta) and range.
     pub fn lambda_panel(&self, title: impl Into<String>, map: &RangeAngleMap) -> SheetPanel {
         self.cells_panel(title, map.lambda.clone(), ColourMap::default(), Some(("Λ 0", "Λ 1")))
     }
 
-    /// Cells above a threshold, white on black.
     pub fn above_panel(&self, title: impl Into<String>, map: &RangeAngleMap, eta: f32) -> SheetPanel {
         self.cells_panel(title, map.lambda.mapv(|v| f32::from(v > eta)), ColourMap::Grey, None)
     }
@@ -129,7 +124,6 @@ impl SceneSource {
         SheetPanel::chart(title, SheetAxis::new("x (m)", -extent, extent), SheetAxis::new("y (m)", 0.0, extent), series)
     }
 
-    /// The scene, the inputs and the target.
     pub fn panels_of(&self, seen: &ScenePictures, title: &str) -> Vec<SheetPanel> {
         let [first, last, full] = &seen.lambda;
         vec![

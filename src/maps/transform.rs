@@ -12,9 +12,7 @@ use std::ops::Range;
 /// The elements that a map is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Aperture {
-    /// Every element.
     Full,
-    /// The elements of one end.
     End(End),
 }
 
@@ -33,14 +31,12 @@ impl Aperture {
 /// Windowed range transform of every channel: complex, `[channels, range bins]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RangeProfiles {
-    /// The profiles, one row a channel.
     pub profiles: Array2<Complex64>,
 }
 
 /// Complex range-angle map, `[range bins, columns]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComplexMap {
-    /// The cells.
     pub cells: Array2<Complex64>,
 }
 

@@ -53,9 +53,7 @@ pub(super) fn row_ranges_metres(radar: &Radar) -> Vec<f64> {
 /// A direction and the column of the whole array's map that shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Direction {
-    /// Cosine of the angle to the array's axis.
     pub cos_theta: f64,
-    /// Column of the map.
     pub column: usize,
 }
 

@@ -59,7 +59,6 @@ impl Array {
         self.corners.into_iter().flat_map(far).fold(0.0, f64::max)
     }
 
-    /// A body as an obstacle.
     pub fn screen(&self, shape: &Shape) -> Screen {
         let (corners, radius) = corners_of(shape);
         let corners = hull(corners);
@@ -67,7 +66,6 @@ impl Array {
         Screen { corners, radius, farthest }
     }
 
-    /// All ways to an object.
     pub fn ways_to(&self, object: &Object) -> Ways {
         let (places, radius, legs) = match object.body().map(|body| body.shape) {
             // Faces are mirrors: their ways go on behind them, as long as they came.

@@ -5,16 +5,13 @@ use super::shape::{Shape, direction, doubled_area, inner_corners};
 use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
 
-/// Most corners of a polygon.
 pub const MAX_CORNERS: usize = 256;
 
 /// Smallest radius of a post, metres: a thinner one is no mirror for waves of 8 mm, and a point describes it better.
 pub const MIN_RADIUS_METRES: f64 = 0.01;
 
-/// Smallest length and width of a body, metres.
 pub const MIN_SIZE_METRES: f64 = 1e-3;
 
-/// Largest size of a body, metres.
 pub const MAX_SIZE_METRES: f64 = 1e4;
 
 /// Largest height deviation of a rough surface, millimetres.
@@ -50,11 +47,8 @@ macro_rules! body {
 body! {
     /// A straight wall without thickness; both its sides reflect.
     pub struct Wall {
-        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
-        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
-        /// Length from end to end, metres.
         pub length_metres: f64,
         /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
         #[serde(default, skip_serializing_if = "is_default")]
@@ -65,11 +59,8 @@ body! {
 body! {
     /// A rectangle: a car is 4.5 m by 1.8 m.
     pub struct Block {
-        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
-        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
-        /// Its length, metres.
         pub length_metres: f64,
         /// Its width, across the length, metres.
         pub width_metres: f64,
@@ -80,13 +71,9 @@ body! {
 }
 
 body! {
-    /// A round post.
     pub struct Post {
-        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
-        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
-        /// Its radius, metres.
         pub radius_metres: f64,
     }
 }
@@ -166,13 +153,9 @@ impl Polygon {
 /// An object that is a body: its outline and its surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    /// Its outline.
     pub shape: Shape,
-    /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
     pub reflectivity: f64,
-    /// Standard deviation of the surface's height, millimetres: 0 is smooth.
     pub roughness_millimetres: f64,
-    /// Seed of the surface's random heights.
     pub seed: u64,
 }
 

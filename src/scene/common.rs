@@ -11,10 +11,8 @@ macro_rules! moving {
             #[serde(default, skip_serializing_if = "String::is_empty")]
             pub name: String,
             $($fields)*
-            /// Velocity along the array's axis, metres a second.
             #[serde(default, skip_serializing_if = "is_default")]
             pub velocity_x_metres_per_second: f64,
-            /// Velocity away from the array, metres a second.
             #[serde(default, skip_serializing_if = "is_default")]
             pub velocity_y_metres_per_second: f64,
         }

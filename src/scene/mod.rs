@@ -52,7 +52,6 @@ pub struct Scene {
     /// Whether bodies hide what stands behind them.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub shadows: bool,
-    /// Element errors, interference and mirrors.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
     /// The objects, in the order they were added.
@@ -84,7 +83,6 @@ pub const MAX_REFLECTORS: usize = 200_000;
 
 /// A reason for which a scene can't be simulated. Messages count objects from 1, as the app does.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
 pub enum SceneError {
     #[error("object {} ({kind}): {field} is {value}; expected {expected}", object + 1)]
     Value { object: usize, kind: &'static str, field: &'static str, value: f64, expected: &'static str },
@@ -115,7 +113,6 @@ impl Scene {
         Scene { objects, ..Scene::default() }
     }
 
-    /// Every reflector of every object, in order.
     pub fn reflectors(&self) -> Vec<Reflector> {
         self.objects.iter().flat_map(Object::reflectors).collect()
     }
@@ -145,7 +142,6 @@ impl Scene {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.echo_count()))
     }
 
-    /// Whether there is a body among the objects.
     pub fn has_bodies(&self) -> bool {
         self.objects.iter().any(|o| o.body().is_some())
     }

@@ -16,30 +16,19 @@ pub const MAX_NAME_CHARACTERS: usize = 40;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Object {
-    /// One reflector.
     Point(Point),
-    /// Reflectors one behind the other, on a straight line.
     Line(Line),
-    /// Reflectors scattered around a centre (thesis figure 5-5).
     Gaussian(GaussianCluster),
-    /// A straight wall.
     Wall(Wall),
-    /// A rectangle, such as a car.
     Box(Block),
-    /// A round post.
     Post(Post),
-    /// A closed outline of straight faces.
     Polygon(Polygon),
 }
 
 moving! {
-    /// One reflector.
     pub struct Point {
-        /// Position along the array's axis, metres.
         pub x_metres: f64,
-        /// Position ahead of the array, metres.
         pub y_metres: f64,
-        /// Reflectivity sigma.
         #[serde(default = "one")]
         pub reflectivity: f64,
     }
@@ -48,18 +37,13 @@ moving! {
 moving! {
     /// Reflectors at equal spacing on a straight line: the thesis' vertical line (section 3.2), or one at any slant.
     pub struct Line {
-        /// x of the first reflector, along the array's axis, metres.
         pub x_metres: f64,
-        /// y of the first reflector, metres.
         pub y_start_metres: f64,
-        /// Distance between neighbouring reflectors, metres.
         pub spacing_metres: f64,
         /// Direction of the line from its first reflector: 0 along +x, 90 (the default) straight ahead (+y).
         #[serde(default = "straight_ahead", skip_serializing_if = "is_straight_ahead")]
         pub direction_degrees: f64,
-        /// Number of reflectors.
         pub count: usize,
-        /// Reflectivity sigma of each reflector.
         #[serde(default = "one")]
         pub reflectivity: f64,
     }
@@ -68,20 +52,13 @@ moving! {
 moving! {
     /// Reflectors drawn from a normal distribution around a centre; the same seed gives the same cluster.
     pub struct GaussianCluster {
-        /// Centre along the array's axis, metres.
         pub x_metres: f64,
-        /// Centre ahead of the array, metres.
         pub y_metres: f64,
-        /// Standard deviation along x, metres.
         pub x_std_metres: f64,
-        /// Standard deviation along y, metres.
         pub y_std_metres: f64,
-        /// Number of reflectors.
         pub count: usize,
-        /// Seed of the offsets from the centre.
         #[serde(default)]
         pub seed: u64,
-        /// Reflectivity sigma of each reflector.
         #[serde(default = "one")]
         pub reflectivity: f64,
     }
@@ -164,7 +141,6 @@ impl Object {
         if self.name().is_empty() { format!("{} {}", self.noun(), index + 1) } else { self.name().to_owned() }
     }
 
-    /// Its name; empty where it has none.
     pub fn name(&self) -> &str {
         of_each!(self, one => &one.name)
     }
@@ -293,7 +269,6 @@ impl Object {
         [*x, *y] = place_metres;
     }
 
-    /// Moves the whole object.
     pub fn translate(&mut self, dx_metres: f64, dy_metres: f64) {
         if let Object::Polygon(p) = self {
             p.corners_metres.iter_mut().for_each(|c| *c = [c[0] + dx_metres, c[1] + dy_metres]);

@@ -13,11 +13,8 @@ pub enum Shape {
     Wall([[f64; 2]; 2]),
     /// Corners of a closed outline, counter-clockwise with y up, (x, y) in metres.
     Outline(Vec<[f64; 2]>),
-    /// A circle.
     Circle {
-        /// Its middle, (x, y) in metres.
         centre_metres: [f64; 2],
-        /// Its radius, metres.
         radius_metres: f64,
     },
 }

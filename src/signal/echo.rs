@@ -69,8 +69,12 @@ impl ArrayEcho {
                 }
             })
             .collect();
-        let power: f64 = series.iter().map(|s| s.start.norm_sqr()).sum();
-        ArrayEcho { reflector, series, samples: radar.samples, norm: (power * radar.samples as f64).sqrt() }
+        ArrayEcho { reflector, series, samples: radar.samples, norm: 0.0 }.with_norm()
+    }
+
+    fn with_norm(self) -> Self {
+        let power: f64 = self.series.iter().map(|s| s.start.norm_sqr()).sum();
+        ArrayEcho { norm: (power * self.samples as f64).sqrt(), ..self }
     }
 
     /// The echo at those elements alone for which `hears` is true; `hears` has one entry an element.
@@ -78,8 +82,7 @@ impl ArrayEcho {
         for (series, _) in self.series.iter_mut().zip(hears).filter(|(_, hears)| !**hears) {
             series.start = Complex64::default();
         }
-        let power: f64 = self.series.iter().map(|s| s.start.norm_sqr()).sum();
-        ArrayEcho { norm: (power * self.samples as f64).sqrt(), ..self }
+        self.with_norm()
     }
 
     /// Root of the sum of squares of its samples.

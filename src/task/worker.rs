@@ -22,7 +22,6 @@ pub type Generation = u64;
 
 /// The reply to a request.
 #[derive(Debug)]
-#[allow(missing_docs)] // Names of fields say what is in them.
 pub enum Reply<T> {
     /// The work is finished.
     Done {

@@ -18,7 +18,6 @@ pub const MIN_LOBE: Decibels = Decibels(-100.0);
 /// The blob of one reflector on the map of one aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blob {
-    /// The peak.
     pub peak: MapPlace,
     /// Magnitude of the peak, as on the complex map.
     pub magnitude: f64,

@@ -17,9 +17,7 @@ pub(super) struct GridCells<'a> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct GridCell {
-    /// Range bin.
     pub bin: usize,
-    /// Index of the direction.
     pub direction: usize,
 }
 
@@ -35,7 +33,6 @@ impl<'a> GridCells<'a> {
         GridCells { hears: ends.hears(), ..GridCells::new(radar) }
     }
 
-    /// The radar of the cells.
     pub fn radar(&self) -> &'a Radar {
         self.radar
     }

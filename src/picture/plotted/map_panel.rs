@@ -1,9 +1,9 @@
 //! One range-angle map with title, axes and colour bar.
 
 use super::canvas::{FAINT_INK, HAIRLINE, INK, PanelArea, PictureError};
-use super::colour::{ColourMap, Rgb};
-use super::detections::CellVerdict;
 use super::text::{self, Weight};
+use crate::picture::colour::{ColourMap, Rgb};
+use crate::picture::detections::CellVerdict;
 use crate::radar::{FEW_COLUMNS, Radar};
 use ndarray::{Array2, CowArray, Ix2};
 use plotters::prelude::*;

@@ -1,17 +1,16 @@
 //! The picture of all panels, drawn by [`render`] and [`render_svg`].
 
 use super::canvas::{Drawing, FAINT_INK, INK, PAPER, PanelArea, PictureError};
-use super::detections::{CellVerdict, told_apart};
-use super::finer::{finer, in_place};
 use super::inputs::InputMap;
 use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
-use super::{ColourMap, text};
+use super::text;
 use crate::evaluate::failure::Ghost;
 use crate::evaluate::{Metrics, eta_text, squared_error};
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::picture::{CellVerdict, ColourMap, finer, in_place, told_apart};
 use crate::radar::Radar;
 use crate::reconstruct::Detection;
 use crate::scene::Scene;

@@ -1,9 +1,9 @@
 //! The half plane ahead of the array from above, in metres: the scene, or a map projected onto it (thesis figure 2-12).
 
-use super::ColourMap;
 use super::canvas::{FAINT_INK, HAIRLINE, INK, PAPER, PanelArea, PictureError};
 use super::text::{self, Weight};
 use crate::maps::{RangeAngleMap, cartesian::project};
+use crate::picture::ColourMap;
 use crate::radar::{End, Radar};
 use crate::scene::{Object, Scene};
 use plotters::coord::types::RangedCoordf64;

@@ -2,9 +2,10 @@
 
 use super::canvas::{Drawing, PAPER, PanelArea, PictureError};
 use super::map_panel::{MapAxes, MapCells, MapPanel};
-use super::{ColourMap, PictureFormat};
+use super::PictureFormat;
 use crate::maps::doppler::RangeDopplerMap;
 use crate::maps::{Normalisation, RangeAngleMap};
+use crate::picture::ColourMap;
 use crate::radar::Radar;
 use plotters::prelude::*;
 

@@ -2,11 +2,12 @@
 
 use super::error::ComposeError;
 use super::inputs::InputMap;
-use super::{ColourMap, DetectedCells, Drawing, Panels, PictureError, encode_png, render, render_svg};
+use super::{DetectedCells, Drawing, Panels, PictureError, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
 use crate::evaluate::failure::Footprints;
 use crate::maps::cfar::{Cfar, DETECTED};
 use crate::maps::{LogMaps, Normalisation};
+use crate::picture::ColourMap;
 use crate::radar::{Carrier, LayoutKind, Radar, counted};
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::Scene;
