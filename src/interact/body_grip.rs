@@ -95,7 +95,7 @@ fn move_corner(block: &mut Block, corner: usize, to: Place) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Post;
+    use crate::scene::{Polygon, Post};
 
     fn is_at(a: [f64; 2], b: [f64; 2]) -> bool {
         (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12

@@ -240,7 +240,7 @@ mod tests {
     use super::*;
     use crate::maps::{LogMaps, Normalisation};
     use crate::picture::{encode_png, is_our_png};
-    use crate::radar::Decibels;
+    use crate::radar::{BuiltArray, Decibels};
     use crate::scene::presets;
     use crate::signal::BeatSignal;
 
@@ -250,7 +250,8 @@ mod tests {
         let maps = LogMaps::of_signal(&radar, &BeatSignal::silence(&radar));
         let flat = maps.full.normalise(Normalisation::MinMax);
         let file = presets::default_scene();
-        let inputs = InputMap::of_ends(&radar, [&maps.first, &maps.last], Normalisation::MinMax);
+        let (array, ends) = (BuiltArray::default(), [&maps.first, &maps.last]);
+        let (_, inputs) = InputMap::of(&radar, &array, None, ends, (None, Normalisation::MinMax)).unwrap();
         let panels = Panels {
             scene: &file.scene,
             radar: &radar,
