@@ -61,10 +61,12 @@
 pub mod app;
 #[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod benchmark;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod bounds;
 #[cfg(feature = "command-line")]
 #[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod commands;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod engine;
 pub mod evaluate;
 #[cfg(feature = "external")]
@@ -73,21 +75,33 @@ pub mod external;
 #[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod figures;
 pub mod files;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod interact;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod lesson;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod maps;
 pub mod methods;
 #[cfg(feature = "live")]
 pub mod network;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod picture;
 pub mod platform;
 pub mod radar;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod reconstruct;
 pub mod recording;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod scattering;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod scene;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod share;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod signal;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod task;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod theory;
+#[allow(missing_docs)] // Names of fields say what is in them.
 pub mod view;

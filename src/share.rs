@@ -7,7 +7,7 @@ use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
 use crate::picture::ColourMap;
 use crate::radar::LayoutKind;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, is_default};
 use crate::scene::file::{SceneFile, SceneTextError, from_toml_beside, to_toml_beside};
 use crate::signal::Floor;
 use crate::view::{Projection, View};
@@ -33,9 +33,7 @@ const MIN_EXTENT_PART: f32 = 0.005;
 /// A scene with its radar and its view.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharedScene {
-    /// The scene and the radar.
     pub file: SceneFile,
-    /// View of the scene.
     pub view: SharedView,
 }
 
@@ -45,56 +43,40 @@ pub struct SharedScene {
 pub struct SharedView {
     /// The floor beneath the reflectors.
     pub floor: Floor,
-    /// Normalisation of the maps.
     pub normalisation: Normalisation,
-    /// Colours of the maps.
     pub colours: ColourMap,
     /// Whether maps are drawn over x and y, not over cos(theta) and range.
     pub cartesian: bool,
     /// The visible part of range-angle maps; left is the first column.
     pub range_angle_part: VisiblePart,
-    /// The visible part of Cartesian maps.
     pub cartesian_part: VisiblePart,
-    /// eta', the threshold of the target.
     pub target_eta: f32,
-    /// The detector in place of the thresholds, if one is in use.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cfar: Option<Cfar>,
     /// eta of the method, where it isn't the method's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub eta: Option<f32>,
-    /// Name of the reconstruction method.
     pub method: String,
     /// The elements that methods use; `None` for the two ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<LayoutKind>,
-    /// Whether the true reflectors are drawn over the maps.
     pub marks: bool,
-    /// Whether the theory of the selected reflector is drawn over the maps.
     pub theory: bool,
     /// The step of a lesson that comes with the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonPlace>,
     /// Time at which moving objects are looked at, seconds.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub time_seconds: f64,
-}
-
-fn is_zero(seconds: &f64) -> bool {
-    *seconds == 0.0
 }
 
 /// Part of a map, as fractions of its width and height from the lower left.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VisiblePart {
-    /// Left edge.
     pub left: f32,
-    /// Lower edge.
     pub bottom: f32,
-    /// Right edge.
     pub right: f32,
-    /// Upper edge.
     pub top: f32,
 }
 
@@ -110,13 +92,11 @@ impl Default for VisiblePart {
 pub struct LessonPlace {
     /// Name of the lesson.
     pub id: String,
-    /// The step, from 1.
     pub step: usize,
 }
 
 /// The reason why a text can't be opened, or a scene not be written as text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
 pub enum ShareError {
     #[error("the text begins with \"{0}\"; expected \"{PREFIX}{VERSION}:\"")]
     Prefix(String),
@@ -130,10 +110,8 @@ pub enum ShareError {
     Damaged(String),
     #[error("the text holds no scene: {0}")]
     Scene(#[from] SceneTextError),
-    /// The scene can't be simulated.
     #[error("the text's {0}")]
     Unusable(#[from] SceneError),
-    /// A value of the view is invalid.
     #[error("the text's {field} {problem}")]
     View { field: &'static str, problem: String },
     #[error("the scene can't be written as text: {0}")]

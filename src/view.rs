@@ -99,21 +99,15 @@ macro_rules! view {
 }
 
 view! {
-    /// The floor beneath the reflectors.
     floor: Floor = Floor::Thesis,
     /// The ratio last used with [`Floor::Snr`].
     snr: Decibels = Decibels(20.0),
     /// The level last used with [`Floor::Level`].
     level: DecibelMilliwatts = DecibelMilliwatts(-20.0),
-    /// Normalisation of the maps.
     normalisation: Normalisation = Normalisation::MinMax,
-    /// Colours of the maps.
     colours: ColourMap = ColourMap::default(),
-    /// Coordinates of the maps.
     projection: Projection = Projection::default(),
-    /// Units of colour bars and cuts.
     units: Units = Units::default(),
-    /// Units of the axis of directions.
     directions: Directions = Directions::default(),
     /// Whether inputs, target and output are drawn on one scale; each on its own where not.
     one_scale: bool = false,
@@ -121,27 +115,19 @@ view! {
     fine_columns: bool = true,
     /// Whether range-Doppler maps of recordings leave out static clutter, the mean over the loops.
     static_clutter_out: bool = false,
-    /// Sign and scale of the difference.
     difference: DifferenceView = DifferenceView::default(),
     /// eta', the threshold of the target.
     target_eta: f32 = crate::evaluate::TARGET_ETA,
-    /// The detector in place of the thresholds, if one is in use.
     cfar: Option<Cfar> = None,
-    /// The last detector in use.
     last_cfar: Cfar = Cfar::default(),
     /// eta for each method, where it differs from the method's own.
     method_eta: BTreeMap<String, f32> = BTreeMap::new(),
-    /// Name of the reconstruction method.
     method: String = String::new(),
     /// The elements that methods use; `None` for the two ends.
     layout: Option<LayoutKind> = None,
-    /// Whether true reflectors are drawn over the maps.
     show_reflectors: bool = false,
-    /// Whether the reflectors that the method found are drawn.
     show_found: bool = false,
-    /// Whether the ends' fields of view are drawn in the scene.
     show_fields_of_view: bool = false,
-    /// Whether the theory of the selected reflector is drawn over the maps.
     show_theory: bool = false,
     /// Whether every object is marked by its fate in the output.
     show_kinds: bool = false,

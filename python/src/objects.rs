@@ -113,8 +113,8 @@ pub fn of_object<'py>(py: Python<'py>, object: &Object) -> PyResult<Bound<'py, P
     fields.set_item("velocity_y_metres_per_second", velocity_y)?;
     fields.set_item("name", object.name())?;
     if let Some(body) = object.body() {
-        fields.set_item("roughness_millimetres", body.surface().roughness_millimetres)?;
-        fields.set_item("seed", body.surface().seed)?;
+        fields.set_item("roughness_millimetres", body.roughness_millimetres)?;
+        fields.set_item("seed", body.seed)?;
     }
     let name = match object {
         Object::Point(p) => {

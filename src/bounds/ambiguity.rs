@@ -9,9 +9,7 @@ use rayon::prelude::*;
 /// Likeness of every place in a patch of the polar grid with one reflector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ambiguity {
-    /// Ranges of the rows, metres.
     pub range_metres: Vec<f64>,
-    /// cos(theta) of the columns.
     pub cos_theta: Vec<f64>,
     /// `|<echo there, echo of the reflector>|` of echoes scaled to norm 1, `[ranges, cosines]`: 1 where the layout can't tell the two
     /// apart, for any gains.

@@ -33,7 +33,7 @@ impl Args {
         let chosen = self.chosen()?;
         let folder = self.output.join("figures");
         std::fs::create_dir_all(&folder).map_err(|source| CommandError::File { path: folder.clone(), source })?;
-        let source = SceneSource::new();
+        let source = SceneSource::default();
         for figure in &chosen {
             let failed = |e: &dyn std::fmt::Display| CommandError::Usage(format!("figure {}: {e}", figure.number));
             let sheet = (figure.sheet)(&source).map_err(|e| failed(&e))?;

@@ -3,25 +3,19 @@
 use super::report::EngineReport;
 use crate::maps::{Aperture, LambdaScale, Normalisation, RangeAngleMap};
 use crate::radar::End;
+use crate::scene::{Disturbances, Object, Scene};
 use crate::signal::{Floor, TwoEnds};
 use std::sync::Arc;
 
-/// A request for maps and samples of a scene. The engine computes no others.
+/// A request for the maps of the first end, the last end and the whole array, and for the samples of the ends. The engine computes no others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapRequest {
-    /// The floor beneath the reflectors.
     pub floor: Floor,
-    /// Seed of the floor's noise.
     pub seed: u64,
-    /// Normalisation of the maps.
     pub normalisation: Normalisation,
-    /// Whether the map of the first end is wanted.
     pub first: bool,
-    /// Whether the map of the last end is wanted.
     pub last: bool,
-    /// Whether the map of the whole array is wanted.
     pub full: bool,
-    /// Whether the samples of the two ends are wanted, for a reconstruction.
     pub ends: bool,
 }
 
@@ -45,29 +39,45 @@ impl Default for MapRequest {
     }
 }
 
+/// The parts of a scene, and the floor, that maps depend on.
+pub(super) struct Pictured {
+    objects: Vec<Object>,
+    shadows: bool,
+    disturbances: Disturbances,
+    floor: (Floor, u64),
+}
+
+impl Pictured {
+    pub fn of(scene: &Scene, wanted: &MapRequest) -> Self {
+        let Scene { objects, shadows, disturbances, .. } = scene.clone();
+        Pictured { objects, shadows, disturbances, floor: (wanted.floor, wanted.seed) }
+    }
+
+    pub fn is(&self, scene: &Scene, wanted: &MapRequest) -> bool {
+        self.objects == scene.objects
+            && self.shadows == scene.shadows
+            && self.disturbances == scene.disturbances
+            && self.floor == (wanted.floor, wanted.seed)
+    }
+}
+
 /// One map, ready to be drawn.
 #[derive(Debug, Clone)]
 pub struct ReadyMap {
     /// Lambda, `[range bins, columns]`.
     pub lambda: Arc<RangeAngleMap>,
-    /// Scale from decades of amplitude to Lambda.
     pub scale: LambdaScale,
 }
 
 /// The requested maps and samples of one scene.
 #[derive(Debug, Clone)]
 pub struct EngineFrame {
-    /// Map of the first end, if wanted.
     pub first: Option<ReadyMap>,
-    /// Map of the last end, if wanted.
     pub last: Option<ReadyMap>,
-    /// Map of the whole array, if wanted.
     pub full: Option<ReadyMap>,
-    /// Samples of both ends, if wanted.
     pub ends: Option<Arc<TwoEnds>>,
     /// Whether the maps have the same bits as a command's ([`super::Engine::settle`]), so that figures may be made of them.
     pub settled: bool,
-    /// Time of each stage, and the reasons for skipped ones.
     pub report: EngineReport,
 }
 

@@ -190,14 +190,7 @@ impl Engine {
         let nothing = Sum { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
         let trap = self.last == Some(Precision::F32)
             && tolerance::refusal(Precision::F32, &nothing, wanted.floor, wanted.normalisation).is_some();
-        let same = |s: &ShownMaps| {
-            s.objects == scene.objects
-                && s.shadows == scene.shadows
-                && s.floor == wanted.floor
-                && s.seed == wanted.seed
-                && s.tolerance <= tolerance
-                && !trap
-        };
+        let same = |s: &ShownMaps| !trap && s.tolerance <= tolerance && s.of.is(scene, wanted);
         match self.shown.take() {
             Some(shown) if same(&shown) => shown,
             other => ShownMaps::of(scene, wanted, tolerance, other),

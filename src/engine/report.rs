@@ -8,15 +8,11 @@ use std::time::Duration;
 pub enum EngineStage {
     /// Reflectors to range profiles.
     Signal,
-    /// The floor beneath the reflectors.
     Noise,
-    /// The samples of the two ends.
     Ends,
     /// Range profiles to the first end's log-magnitude.
     FirstMap,
-    /// Range profiles to the last end's log-magnitude.
     LastMap,
-    /// Range profiles to the whole array's log-magnitude.
     FullMap,
     /// Log-magnitudes to Lambda.
     Normalise,
@@ -44,27 +40,22 @@ impl fmt::Display for EngineStage {
 /// The outcome of a stage.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StageOutcome {
-    /// The stage ran, with a description of its work.
     Computed(String),
-    /// The stage did not run, for this reason.
     Skipped(&'static str),
 }
 
 /// One stage of an update.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StageReport {
-    /// The stage.
     pub stage: EngineStage,
     /// Duration of the stage; zero when skipped.
     pub took: Duration,
-    /// The stage's work or the reason why it was skipped.
     pub outcome: StageOutcome,
 }
 
 /// All stages of an update.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct EngineReport {
-    /// The stages, in order.
     pub stages: Vec<StageReport>,
     /// Time from the call to the finished frame.
     pub total: Duration,

@@ -1,25 +1,19 @@
 //! Maps of a scene at rest, computed as every command computes them.
 
-use super::frame::{EngineFrame, MapRequest, ReadyMap};
+use super::frame::{EngineFrame, MapRequest, Pictured, ReadyMap};
 use super::report::{EngineReport, EngineStage};
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transform};
 use crate::platform::Instant;
-use crate::radar::{End, Radar, counted};
-use crate::scene::{Disturbances, Object, Scene};
-use crate::signal::{self, Floor, TwoEnds, Unfinished};
+use crate::radar::{Radar, counted};
+use crate::scene::Scene;
+use crate::signal::{self, TwoEnds, Unfinished};
 use crate::task::Task;
 use std::sync::Arc;
 
-const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
-
 /// The maps of one scene by [`signal::simulate`] and the plain transforms in f64, independent of any other scene.
 pub(super) struct SettledMaps {
-    objects: Vec<Object>,
-    shadows: bool,
-    disturbances: Disturbances,
-    floor: Floor,
-    seed: u64,
+    of: Pictured,
     ends: Arc<TwoEnds>,
     logs: [Option<LogMap>; 3],
     normalisation: Normalisation,
@@ -48,26 +42,20 @@ impl SettledMaps {
             task.check()?;
             let start = Instant::now();
             let map = match &profiles {
-                Some(profiles) => angle_transform(radar, profiles, APERTURES[i]),
-                None => map_of(radar, &scene.disturbances.elements, &signal, APERTURES[i]),
+                Some(profiles) => angle_transform(radar, profiles, Aperture::ALL[i]),
+                None => map_of(radar, &scene.disturbances.elements, &signal, Aperture::ALL[i]),
             };
             *log = Some(map.log_magnitude());
             report.computed(EngineStage::MAPS[i], start.elapsed(), "all rows in f64");
         }
-        let (objects, shadows, disturbances) = (scene.objects.clone(), scene.shadows, scene.disturbances.clone());
-        let normalisation = wanted.normalisation;
-        let (floor, seed, maps) = (wanted.floor, wanted.seed, [None, None, None]);
-        Ok(SettledMaps { objects, shadows, disturbances, floor, seed, ends, logs, normalisation, maps })
+        let (of, normalisation) = (Pictured::of(scene, wanted), wanted.normalisation);
+        Ok(SettledMaps { of, ends, logs, normalisation, maps: [None, None, None] })
     }
 
     /// Whether the maps include all that `wanted` asks of `scene`.
     pub fn has(&self, scene: &Scene, wanted: &MapRequest) -> bool {
         let visible = wanted.visible();
-        self.objects == scene.objects
-            && self.shadows == scene.shadows
-            && self.disturbances == scene.disturbances
-            && (self.floor, self.seed) == (wanted.floor, wanted.seed)
-            && (0..3).all(|i| !visible[i] || self.logs[i].is_some())
+        self.of.is(scene, wanted) && (0..3).all(|i| !visible[i] || self.logs[i].is_some())
     }
 
     /// Number of kept maps.

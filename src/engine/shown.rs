@@ -1,27 +1,24 @@
 //! Maps of the last frame.
 
 use super::bank::KeptDecades;
-use super::frame::{MapRequest, ReadyMap};
+use super::frame::{MapRequest, Pictured, ReadyMap};
 use super::report::{EngineReport, EngineStage};
 use crate::maps::fast::{FastLogMap, normalise_into};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::platform::Instant;
 use crate::radar::{Radar, counted};
-use crate::scene::{Object, Scene};
-use crate::signal::{Floor, Rows, TwoEnds};
+use crate::scene::Scene;
+use crate::signal::{Rows, TwoEnds};
 use ndarray::Array2;
 use std::sync::Arc;
 
 pub(super) struct ShownMaps {
-    pub objects: Vec<Object>,
-    pub shadows: bool,
-    pub floor: Floor,
-    pub seed: u64,
+    pub of: Pictured,
     pub tolerance: f64,
     pub normalisation: Normalisation,
     pub ends: Option<Arc<TwoEnds>>,
     pub decades: [Option<KeptDecades>; 3],
-    /// Whether each of `decades` is of `objects`.
+    /// Whether each of `decades` is of this scene.
     pub current: [bool; 3],
     pub maps: [Option<ReadyMap>; 3],
     /// Buffers of earlier maps, reused once no frame holds them.
@@ -40,10 +37,7 @@ impl ShownMaps {
             spare.drain(..excess);
         }
         ShownMaps {
-            objects: scene.objects.clone(),
-            shadows: scene.shadows,
-            floor: wanted.floor,
-            seed: wanted.seed,
+            of: Pictured::of(scene, wanted),
             tolerance,
             normalisation: wanted.normalisation,
             ends: None,

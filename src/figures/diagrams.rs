@@ -10,20 +10,20 @@ pub fn unet(_: &SceneSource) -> Result<Sheet, FigureError> {
     let size = |level: usize| format!("{} × {} × {}", channels << level, rows >> level, (2 * rows) >> level);
     let height = |level: usize| 3.0 * (levels - level) as f64;
     let mut shapes = Vec::new();
-    let block = |x: f64, y: f64, text: String| SketchShape::block((x - 2.0, y), (x + 2.0, y + 1.6), text);
+    let block = |x: f64, y: f64, text: String| SketchShape::Block((x - 2.0, y), (x + 2.0, y + 1.6), text);
     for level in 0..levels {
         let (x, y) = (2.6 * level as f64, height(level));
         let right = 2.6 * (2 * levels - level) as f64;
-        shapes.push(SketchShape::arrow((x + 2.0, y + 0.8), (right - 2.0, y + 0.8), Ink::Pale));
-        shapes.push(SketchShape::arrow((x + 1.0, y), (x + 1.6, y - 1.4), Ink::Dark));
-        shapes.push(SketchShape::arrow((right - 1.6, y - 1.4), (right - 1.0, y), Ink::Dark));
+        shapes.push(SketchShape::Arrow((x + 2.0, y + 0.8), (right - 2.0, y + 0.8), Ink::Pale));
+        shapes.push(SketchShape::Arrow((x + 1.0, y), (x + 1.6, y - 1.4), Ink::Dark));
+        shapes.push(SketchShape::Arrow((right - 1.6, y - 1.4), (right - 1.0, y), Ink::Dark));
         shapes.push(block(x, y, format!("2 conv 3×3\n{}", size(level))));
         shapes.push(block(right, y, format!("join, 2 conv 3×3\n{}", size(level))));
     }
     shapes.push(block(2.6 * levels as f64, 0.0, format!("2 conv 3×3\n{}", size(levels))));
-    shapes.push(SketchShape::words((-0.2, height(0) + 2.1), format!("in: 2 × {rows} × {}", 2 * rows), Ink::Accent));
+    shapes.push(SketchShape::Words((-0.2, height(0) + 2.1), format!("in: 2 × {rows} × {}", 2 * rows), Ink::Accent));
     let right = 5.2 * levels as f64;
-    shapes.push(SketchShape::words((right, height(0) + 2.1), format!("out: 1 × {rows} × {}", 2 * rows), Ink::Accent));
+    shapes.push(SketchShape::Words((right, height(0) + 2.1), format!("out: 1 × {rows} × {}", 2 * rows), Ink::Accent));
     let panel =
         SheetPanel::sketch("U-Net on thresholded Cartesian maps", -2.6..right + 2.8, -0.4..height(0) + 2.6, shapes);
     Ok(Sheet::of(1, (980, 480), vec![panel]))
@@ -33,28 +33,28 @@ pub fn encoder_decoder(source: &SceneSource) -> Result<Sheet, FigureError> {
     let ThesisConfig { filters, levels, .. } = ThesisConfig::default();
     let (rows, columns) = (source.radar.samples, source.radar.elements);
     let size = |channels: usize, level: usize| format!("{channels} × {} × {}", rows >> level, columns >> level);
-    let mut shapes = vec![SketchShape::block((-2.2, 2.2), (1.4, 3.8), format!("input\n{}", size(4, 0)))];
+    let mut shapes = vec![SketchShape::Block((-2.2, 2.2), (1.4, 3.8), format!("input\n{}", size(4, 0)))];
     for (kernel, y) in [(3, 4.6), (5, 0.0)] {
         for level in 1..=levels {
             let x = 4.0 * level as f64;
             let from = if level == 1 { (1.4, 3.0) } else { (x - 2.2, y + 0.8) };
-            shapes.push(SketchShape::arrow(from, (x - 1.8, y + 0.8), Ink::Dark));
+            shapes.push(SketchShape::Arrow(from, (x - 1.8, y + 0.8), Ink::Dark));
             let text = format!("conv {kernel}×{kernel}, pool\n{}", size(filters, level));
-            shapes.push(SketchShape::block((x - 1.8, y), (x + 1.8, y + 1.6), text));
+            shapes.push(SketchShape::Block((x - 1.8, y), (x + 1.8, y + 1.6), text));
         }
         let x = 4.0 * levels as f64;
-        shapes.push(SketchShape::arrow((x + 1.8, y + 0.8), (x + 2.6, 3.0), Ink::Dark));
+        shapes.push(SketchShape::Arrow((x + 1.8, y + 0.8), (x + 2.6, 3.0), Ink::Dark));
     }
     for step in 0..levels {
         let (x, level) = (4.0 * (levels + step) as f64 + 4.4, levels - step - 1);
         let channels = if level == 0 { 1 } else { 2 * filters };
-        shapes.push(SketchShape::block(
+        shapes.push(SketchShape::Block(
             (x - 1.8, 2.2),
             (x + 1.8, 3.8),
             format!("up conv 4×4\n{}", size(channels, level)),
         ));
         if step > 0 {
-            shapes.push(SketchShape::arrow((x - 2.2, 3.0), (x - 1.8, 3.0), Ink::Dark));
+            shapes.push(SketchShape::Arrow((x - 2.2, 3.0), (x - 1.8, 3.0), Ink::Dark));
         }
     }
     let right = 4.0 * (2 * levels) as f64 + 3.0;
@@ -81,7 +81,7 @@ pub fn flow(_: &SceneSource) -> Result<Sheet, FigureError> {
         (if right { x + 1.6 } else { x - 1.6 }, y)
     };
     let mut shapes: Vec<SketchShape> =
-        arrows.iter().map(|(a, b)| SketchShape::arrow(side(*a, true), side(*b, false), Ink::Dark)).collect();
-    shapes.extend(boxes.iter().map(|((x, y), text)| SketchShape::block((x - 1.6, y - 0.7), (x + 1.6, y + 0.7), *text)));
+        arrows.iter().map(|(a, b)| SketchShape::Arrow(side(*a, true), side(*b, false), Ink::Dark)).collect();
+    shapes.extend(boxes.iter().map(|((x, y), text)| SketchShape::Block((x - 1.6, y - 0.7), (x + 1.6, y + 0.7), (*text).to_owned())));
     Ok(Sheet::of(1, (1240, 330), vec![SheetPanel::sketch("From a scene to the loss", -2.0..22.0, -0.8..4.8, shapes)]))
 }

@@ -1,8 +1,7 @@
 //! Sheets as PNG and SVG.
 
-use super::canvas::{SheetArea, SheetDrawn, words};
 use super::sheet::{PanelContent, Series, Sheet, SheetAxis, SheetCells, SheetChart, SheetPanel, Stroke};
-use super::sketch;
+use super::sketch::{self, SheetArea, SheetDrawn, words};
 use crate::picture::{ColourMap, PictureError, encode_png, register_fonts};
 use image::RgbImage;
 use plotters::coord::types::RangedCoordf64;
@@ -24,7 +23,7 @@ pub fn png(sheet: &Sheet) -> Result<Vec<u8>, PictureError> {
     register_fonts()?;
     let (width, height) = sheet.pixels();
     let mut pixels = vec![0; (3 * width * height) as usize];
-    on_paper(sheet, BitMapBackend::with_buffer(&mut pixels, (width, height))).map_err(PictureError::new)?;
+    on_paper(sheet, BitMapBackend::with_buffer(&mut pixels, (width, height)))?;
     let bitmap =
         RgbImage::from_raw(width, height, pixels).ok_or_else(|| PictureError::new("its size is out of range"))?;
     encode_png(&bitmap)
@@ -36,7 +35,7 @@ pub fn png(sheet: &Sheet) -> Result<Vec<u8>, PictureError> {
 pub fn svg(sheet: &Sheet) -> Result<String, PictureError> {
     register_fonts()?;
     let mut text = String::new();
-    on_paper(sheet, SVGBackend::with_string(&mut text, sheet.pixels())).map_err(PictureError::new)?;
+    on_paper(sheet, SVGBackend::with_string(&mut text, sheet.pixels()))?;
     Ok(text)
 }
 

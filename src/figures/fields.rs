@@ -16,14 +16,14 @@ pub fn fields_of_view(_: &SceneSource) -> Result<Sheet, FigureError> {
     };
     let mut shapes = Vec::new();
     for (x, ink, name) in [(-half_base, Ink::Accent, "first end"), (half_base, Ink::Second, "last end")] {
-        shapes.push(SketchShape::Area { corners: sector(x), ink });
-        shapes.push(SketchShape::dot((x, 0.0), 7, ink));
-        shapes.push(SketchShape::words((x, -2.6), name, ink));
+        shapes.push(SketchShape::Area(sector(x), ink));
+        shapes.push(SketchShape::Dot((x, 0.0), 7, ink));
+        shapes.push(SketchShape::Words((x, -2.6), name.to_owned(), ink));
     }
-    shapes.push(SketchShape::words((0.0, 24.0), "seen by both", Ink::Dark));
-    shapes.push(SketchShape::words((-26.0, 21.0), "first end alone", Ink::Dark));
-    shapes.push(SketchShape::words((26.0, 21.0), "last end alone", Ink::Dark));
-    shapes.push(SketchShape::words((0.0, 4.0), "neither", Ink::Dark));
+    shapes.push(SketchShape::Words((0.0, 24.0), "seen by both".to_owned(), Ink::Dark));
+    shapes.push(SketchShape::Words((-26.0, 21.0), "first end alone".to_owned(), Ink::Dark));
+    shapes.push(SketchShape::Words((26.0, 21.0), "last end alone".to_owned(), Ink::Dark));
+    shapes.push(SketchShape::Words((0.0, 4.0), "neither".to_owned(), Ink::Dark));
     let panel = SheetPanel::sketch("Fields of view of the two ends", -46.0..46.0, -4.5..40.0, shapes);
     Ok(Sheet::of(1, (820, 440), vec![panel]))
 }

@@ -52,18 +52,18 @@ pub fn virtual_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     let unit = source.radar.element_spacing_metres;
     let mut shapes = Vec::new();
     let names = [("transmitters", 3.0), ("receivers", 2.0), ("virtual elements", 0.6)];
-    shapes.extend(names.map(|(name, y)| SketchShape::words((-8.6, y), name, Ink::Dark)));
+    shapes.extend(names.map(|(name, y)| SketchShape::Words((-8.6, y), name.to_owned(), Ink::Dark)));
     for x in &mimo.transmitter_x_metres {
-        shapes.push(SketchShape::dot((x / unit, 3.0), 9, Ink::Accent));
+        shapes.push(SketchShape::Dot((x / unit, 3.0), 9, Ink::Accent));
     }
     for x in &mimo.receiver_x_metres {
-        shapes.push(SketchShape::dot((x / unit, 2.0), 9, Ink::Second));
+        shapes.push(SketchShape::Dot((x / unit, 2.0), 9, Ink::Second));
     }
     for v in mimo.virtual_elements() {
         let at = (v.x_metres / unit, 0.6);
-        shapes.push(SketchShape::line([(mimo.transmitter_x_metres[v.transmitter] / unit, 3.0), at], Ink::Pale));
-        shapes.push(SketchShape::dot(at, 8, Ink::Dark));
-        shapes.push(SketchShape::words((at.0, 0.2), format!("{}+{}", v.transmitter + 1, v.receiver + 1), Ink::Dark));
+        shapes.push(SketchShape::Line(vec![(mimo.transmitter_x_metres[v.transmitter] / unit, 3.0), at], Ink::Pale));
+        shapes.push(SketchShape::Dot(at, 8, Ink::Dark));
+        shapes.push(SketchShape::Words((at.0, 0.2), format!("{}+{}", v.transmitter + 1, v.receiver + 1), Ink::Dark));
     }
     let panel = SheetPanel::sketch(
         "3 transmitters × 4 receivers = 12 virtual elements, half a wavelength apart",

@@ -96,20 +96,10 @@ pub fn a_tenth_of_a_radian(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(3, PANEL, panels))
 }
 
-pub fn clusters(source: &SceneSource) -> Result<Sheet, FigureError> {
-    beside(source, &source.preset("gaussian-clusters")?, EXPERIMENT_2)
-}
-
 /// A point hidden behind a line for one end; below, behind a wall that casts a shadow.
 pub fn hidden(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.preset("point-behind-a-line")?;
-    let [first, last, full] = &seen.lambda;
-    let mut panels = vec![
-        source.scene_panel("A line, and a point behind it", &seen.scene),
-        source.lambda_panel("Input 0", first),
-        source.lambda_panel("Input 1", last),
-        source.lambda_panel("Target", full),
-    ];
+    let mut panels = source.panels_of(&seen, "A line, and a point behind it");
     panels.extend(super::things::behind_a_wall(source)?);
     Ok(Sheet::of(2, (520, 400), panels))
 }

@@ -1,7 +1,7 @@
 //! Figures 2-4, 2-5, 2-8, 2-9, 2-11, 2-12 (four points) and 3-4 to 3-7 (the maps of one scene).
 
 use super::sheet::{PanelContent, Sheet, SheetAxis, SheetCells, SheetPanel};
-use super::source::{FigureError, SceneSource};
+use super::source::{FigureError, ScenePictures, SceneSource};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::{ComplexMap, Normalisation, RangeAngleMap, channels_map};
 use crate::picture::ColourMap;
@@ -41,14 +41,9 @@ pub fn radar_matrix(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(2, (620, 460), vec![SheetPanel::cells("Real part of the samples", matrix), ideal]))
 }
 
-pub fn all_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
-    let seen = source.preset(FOUR_REFLECTORS)?;
-    Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("512 samples × 1024 elements", &seen.lambda[2])]))
-}
-
-pub fn twelve_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
-    let seen = source.preset(FOUR_REFLECTORS)?;
-    Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("512 samples × 12 elements", &seen.lambda[0])]))
+/// Λ of the first end (0), the last end (1) or the whole array (2).
+pub fn map_of(source: &SceneSource, seen: &ScenePictures, of: usize, title: &str) -> Sheet {
+    Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel(title, &seen.lambda[of])])
 }
 
 pub fn thresholded(source: &SceneSource) -> Result<Sheet, FigureError> {
@@ -73,11 +68,6 @@ pub fn truth_and_maps(source: &SceneSource) -> Result<Sheet, FigureError> {
         source.lambda_panel("log |Y1|, elements 1012 to 1023", last),
     ];
     Ok(Sheet::of(2, (560, 420), panels))
-}
-
-pub fn lambda_full(source: &SceneSource) -> Result<Sheet, FigureError> {
-    let seen = source.test_scene(Kind::Set3, 1)?;
-    Ok(Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel("Λ of all 1024 elements", &seen.lambda[2])]))
 }
 
 fn first_end(source: &SceneSource) -> Result<ComplexMap, FigureError> {

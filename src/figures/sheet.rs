@@ -9,7 +9,6 @@ pub struct Sheet {
     pub panels: Vec<SheetPanel>,
     /// Panels beside one another; the rest follow below.
     pub columns: usize,
-    /// Width and height of one panel in pixels.
     pub panel_pixels: (u32, u32),
 }
 
@@ -21,15 +20,12 @@ pub struct SheetPanel {
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum PanelContent {
-    /// Curves over two axes.
     Chart(SheetChart),
-    /// Coloured cells over two axes.
     Cells(SheetCells),
     /// Lines, circles and words in a plane without axes.
     Sketch(Sketch),
 }
 
-/// An axis: its label and span.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetAxis {
     /// Quantity and unit.
@@ -50,20 +46,16 @@ pub struct SheetChart {
 pub enum Stroke {
     /// A line from point to point.
     Solid,
-    /// A dashed line from point to point.
     Dashed,
-    /// A stem from zero to each point.
     Stems,
     /// Points alone.
     Dots,
 }
 
-/// A named curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     pub name: &'static str,
     pub stroke: Stroke,
-    /// Points, in the axes' units.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -77,7 +69,6 @@ pub struct SheetCells {
     pub colours: ColourMap,
     /// Labels of 0 and 1 beside the colour bar; `None` for no bar.
     pub ends_of_bar: Option<(&'static str, &'static str)>,
-    /// Places with a ring around them, in the axes' units.
     pub rings: Vec<(f64, f64)>,
 }
 
@@ -86,57 +77,32 @@ pub struct SheetCells {
 pub struct Sketch {
     pub x: Range<f64>,
     pub y: Range<f64>,
-    /// Shapes, the last on top.
     pub shapes: Vec<SketchShape>,
 }
 
 /// Ink of a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ink {
-    /// The colour of text.
     Dark,
-    /// Paler than text.
     Pale,
-    /// Colour of the figure's subject.
     Accent,
-    /// Colour of a comparison.
     Second,
 }
 
 /// A shape of a sketch.
 #[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum SketchShape {
-    /// A line through places; an arrow head at its end if `arrow`.
-    Line {
-        places: Vec<(f64, f64)>,
-        /// Whether it ends in an arrow head.
-        arrow: bool,
-        ink: Ink,
-    },
+    Line(Vec<(f64, f64)>, Ink),
+    /// A line from the first place to an arrow head at the second.
+    Arrow((f64, f64), (f64, f64), Ink),
     /// A filled dot, its radius in pixels.
-    Dot { at: (f64, f64), pixels: i32, ink: Ink },
-    /// A filled area.
-    Area {
-        corners: Vec<(f64, f64)>,
-        /// Its ink, thinned.
-        ink: Ink,
-    },
-    /// A box with its text in the middle.
-    Block {
-        /// Lower left corner.
-        low: (f64, f64),
-        /// Upper right corner.
-        high: (f64, f64),
-        text: String,
-    },
+    Dot((f64, f64), i32, Ink),
+    /// An area within corners, its ink thinned.
+    Area(Vec<(f64, f64)>, Ink),
+    /// A box from the lower left to the upper right corner, with its text in the middle.
+    Block((f64, f64), (f64, f64), String),
     /// Words, their middle at a place.
-    Words {
-        /// The middle.
-        at: (f64, f64),
-        text: String,
-        ink: Ink,
-    },
+    Words((f64, f64), String, Ink),
 }
 
 impl SheetAxis {
@@ -150,7 +116,6 @@ impl Series {
         Series { name, stroke: Stroke::Solid, points: points.into_iter().collect() }
     }
 
-    /// The series with another stroke.
     pub fn with(self, stroke: Stroke) -> Self {
         Series { stroke, ..self }
     }
@@ -170,31 +135,7 @@ impl SheetPanel {
     }
 }
 
-impl SketchShape {
-    /// A line without an arrow head.
-    pub fn line(places: impl IntoIterator<Item = (f64, f64)>, ink: Ink) -> Self {
-        SketchShape::Line { places: places.into_iter().collect(), arrow: false, ink }
-    }
-
-    pub fn arrow(from: (f64, f64), to: (f64, f64), ink: Ink) -> Self {
-        SketchShape::Line { places: vec![from, to], arrow: true, ink }
-    }
-
-    pub fn dot(at: (f64, f64), pixels: i32, ink: Ink) -> Self {
-        SketchShape::Dot { at, pixels, ink }
-    }
-
-    pub fn block(low: (f64, f64), high: (f64, f64), text: impl Into<String>) -> Self {
-        SketchShape::Block { low, high, text: text.into() }
-    }
-
-    pub fn words(at: (f64, f64), text: impl Into<String>, ink: Ink) -> Self {
-        SketchShape::Words { at, text: text.into(), ink }
-    }
-}
-
 impl Sheet {
-    /// Panels beside one another, `columns` in a row.
     pub fn of(columns: usize, panel_pixels: (u32, u32), panels: Vec<SheetPanel>) -> Self {
         Sheet { panels, columns: columns.max(1), panel_pixels }
     }

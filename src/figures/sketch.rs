@@ -1,9 +1,17 @@
 //! Sketches: lines, dots, boxes and words in a plane without axes.
 
-use super::canvas::{SheetArea, SheetDrawn, words};
 use super::sheet::{Ink, Sketch, SketchShape};
+use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+pub(super) type SheetDrawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+
+pub(super) type SheetArea<B> = DrawingArea<B, Shift>;
+
+pub(super) fn words(size: f64, colour: &RGBColor) -> TextStyle<'static> {
+    FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal).color(colour)
+}
 
 fn colour(ink: Ink) -> RGBColor {
     match ink {
@@ -49,21 +57,23 @@ pub(super) fn draw<B: DrawingBackend>(sketch: &Sketch, area: &SheetArea<B>) -> S
 fn draw_shape<B: DrawingBackend>(shape: &SketchShape, scale: &Scale, area: &SheetArea<B>) -> SheetDrawn<B> {
     let centred = |size, ink| words(size, &colour(ink)).pos(Pos::new(HPos::Center, VPos::Center));
     match shape {
-        SketchShape::Line { places, arrow, ink } => {
+        SketchShape::Line(places, ink) => {
             let pixels: Vec<_> = places.iter().map(|p| scale.pixel(*p)).collect();
-            if let ([.., before, end], true) = (pixels.as_slice(), *arrow) {
-                area.draw(&Polygon::new(arrow_head(*before, *end), colour(*ink).filled()))?;
-            }
             area.draw(&PathElement::new(pixels, colour(*ink).stroke_width(2)))
         }
-        SketchShape::Dot { at, pixels, ink } => {
+        SketchShape::Arrow(from, to, ink) => {
+            let [from, to] = [from, to].map(|p| scale.pixel(*p));
+            area.draw(&Polygon::new(arrow_head(from, to), colour(*ink).filled()))?;
+            area.draw(&PathElement::new(vec![from, to], colour(*ink).stroke_width(2)))
+        }
+        SketchShape::Dot(at, pixels, ink) => {
             area.draw(&Circle::new(scale.pixel(*at), *pixels, colour(*ink).filled()))
         }
-        SketchShape::Area { corners, ink } => {
+        SketchShape::Area(corners, ink) => {
             let corners: Vec<_> = corners.iter().map(|p| scale.pixel(*p)).collect();
             area.draw(&Polygon::new(corners, colour(*ink).mix(0.22).filled()))
         }
-        SketchShape::Block { low, high, text } => {
+        SketchShape::Block(low, high, text) => {
             let corners = [scale.pixel(*low), scale.pixel(*high)];
             area.draw(&Rectangle::new(corners, RGBColor(238, 241, 244).filled()))?;
             area.draw(&Rectangle::new(corners, colour(Ink::Pale)))?;
@@ -75,7 +85,7 @@ fn draw_shape<B: DrawingBackend>(shape: &SketchShape, scale: &Scale, area: &Shee
             }
             Ok(())
         }
-        SketchShape::Words { at, text, ink } => {
+        SketchShape::Words(at, text, ink) => {
             area.draw(&Text::new(text.clone(), scale.pixel(*at), centred(15.0, *ink)))
         }
     }

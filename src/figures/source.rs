@@ -14,7 +14,6 @@ use crate::signal::{self, BeatSignal, Floor};
 use ndarray::Array2;
 
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum FigureError {
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -27,11 +26,11 @@ pub enum FigureError {
 }
 
 /// The thesis' radar and conventions: table 3.1, its floor, min-max.
+#[derive(Default)]
 pub struct SceneSource {
     pub radar: Radar,
 }
 
-/// A scene simulated and transformed.
 pub struct ScenePictures {
     pub scene: Scene,
     pub signal: BeatSignal,
@@ -40,10 +39,6 @@ pub struct ScenePictures {
 }
 
 impl SceneSource {
-    pub fn new() -> Self {
-        SceneSource { radar: Radar::default() }
-    }
-
     /// The scene over `floor`, seed 0.
     /// # Errors
     /// [`FigureError::Scene`].
@@ -84,17 +79,14 @@ impl SceneSource {
         Ok(method.reconstruct(&self.radar, &ends, &Request::default())?.lambda)
     }
 
-    /// Range, from 0 to the maximum.
     pub fn range_axis(&self) -> SheetAxis {
         SheetAxis::new("range (m)", 0.0, self.radar.max_range_metres())
     }
 
-    /// Lambda over cos(theta) and range.
     pub fn lambda_panel(&self, title: impl Into<String>, map: &RangeAngleMap) -> SheetPanel {
         self.cells_panel(title, map.lambda.clone(), ColourMap::default(), Some(("Λ 0", "Λ 1")))
     }
 
-    /// Cells above a threshold, white on black.
     pub fn above_panel(&self, title: impl Into<String>, map: &RangeAngleMap, eta: f32) -> SheetPanel {
         self.cells_panel(title, map.lambda.mapv(|v| f32::from(v > eta)), ColourMap::Grey, None)
     }
@@ -122,22 +114,24 @@ impl SceneSource {
         SheetPanel::cells(title, SheetCells { x, y, values, colours, ends_of_bar: None, rings: Vec::new() })
     }
 
-    pub fn scene_panel(&self, title: impl Into<String>, scene: &Scene) -> SheetPanel {
+    /// Outlines of bodies, and the reflectors; those behind the array are drawn ahead.
+    pub fn scene_panel(&self, title: &str, scene: &Scene) -> SheetPanel {
         let extent = self.radar.max_range_metres();
-        let places = scene.objects.iter().flat_map(Object::marks).map(|r| (r.x_metres, r.y_metres.abs()));
-        let dots = Series::line("", places).with(Stroke::Dots);
-        SheetPanel::chart(
-            title,
-            SheetAxis::new("x (m)", -extent, extent),
-            SheetAxis::new("y (m)", 0.0, extent),
-            vec![dots],
-        )
+        let bodies = scene.objects.iter().filter_map(Object::body);
+        let mut series: Vec<Series> = bodies.map(|body| Series::line("", body.shape.line_around())).collect();
+        let points = scene.reflectors().into_iter().map(|r| (r.x_metres, r.y_metres.abs()));
+        series.push(Series::line("", points).with(Stroke::Dots));
+        SheetPanel::chart(title, SheetAxis::new("x (m)", -extent, extent), SheetAxis::new("y (m)", 0.0, extent), series)
     }
-}
 
-impl Default for SceneSource {
-    fn default() -> Self {
-        SceneSource::new()
+    pub fn panels_of(&self, seen: &ScenePictures, title: &str) -> Vec<SheetPanel> {
+        let [first, last, full] = &seen.lambda;
+        vec![
+            self.scene_panel(title, &seen.scene),
+            self.lambda_panel("Input 0", first),
+            self.lambda_panel("Input 1", last),
+            self.lambda_panel("Target", full),
+        ]
     }
 }
 

@@ -1,18 +1,15 @@
 //! Figure 6-1, a cylinder and a cube, and section 5.4's hidden point behind a wall that casts a shadow.
 
-use super::sheet::{Series, Sheet, SheetAxis, SheetPanel, Stroke};
-use super::source::{FigureError, ScenePictures, SceneSource};
-use crate::scene::{Object, Point, Scene, Shape, Wall};
-use std::f64::consts::TAU;
+use super::sheet::{Sheet, SheetPanel};
+use super::source::{FigureError, SceneSource};
+use crate::scene::{Object, Point, Scene, Wall};
 
 const PANEL: (u32, u32) = (520, 400);
-
-const CIRCLE_CORNERS: usize = 48;
 
 /// A cylinder and a cube at an angle, as both ends and the whole array see them.
 pub fn cylinder_and_cube(source: &SceneSource) -> Result<Sheet, FigureError> {
     let seen = source.preset("cylinder-and-cube")?;
-    Ok(Sheet::of(2, PANEL, with_maps(source, &seen, "A cylinder and a cube")))
+    Ok(Sheet::of(2, PANEL, source.panels_of(&seen, "A cylinder and a cube")))
 }
 
 /// A wall that hides a point from the last end and not from the first.
@@ -20,7 +17,7 @@ pub fn cylinder_and_cube(source: &SceneSource) -> Result<Sheet, FigureError> {
 /// [`FigureError::Scene`].
 pub fn behind_a_wall(source: &SceneSource) -> Result<Vec<SheetPanel>, FigureError> {
     let seen = source.see(hidden_from_one_end())?;
-    Ok(with_maps(source, &seen, "A wall, and a point that it hides from the last end"))
+    Ok(source.panels_of(&seen, "A wall, and a point that it hides from the last end"))
 }
 
 /// The ways to the point pass the wall's near end 0.6 m to the left from the first end of the array, and 0.6 m to the right from the last.
@@ -30,33 +27,6 @@ fn hidden_from_one_end() -> Scene {
     Scene { objects, ..Scene::default() }
 }
 
-fn with_maps(source: &SceneSource, seen: &ScenePictures, title: &str) -> Vec<SheetPanel> {
-    let [first, last, full] = &seen.lambda;
-    vec![
-        outlines(source, title, &seen.scene),
-        source.lambda_panel("Input 0", first),
-        source.lambda_panel("Input 1", last),
-        source.lambda_panel("Target", full),
-    ]
-}
-
-fn outlines(source: &SceneSource, title: &str, scene: &Scene) -> SheetPanel {
-    let extent = source.radar.max_range_metres();
-    let pair = |p: [f64; 2]| (p[0], p[1]);
-    let of_body = |object: &Object| match object.body()?.shape() {
-        Shape::Wall(ends) => Some(ends.map(pair).to_vec()),
-        Shape::Outline(corners) => Some(corners.iter().chain(corners.first()).map(|c| pair(*c)).collect()),
-        Shape::Circle { centre_metres: [x, y], radius_metres } => {
-            let on = |i: usize| (TAU * i as f64 / CIRCLE_CORNERS as f64).sin_cos();
-            Some((0..=CIRCLE_CORNERS).map(|i| (x + radius_metres * on(i).1, y + radius_metres * on(i).0)).collect())
-        }
-    };
-    let mut series: Vec<Series> = scene.objects.iter().filter_map(of_body).map(|line| Series::line("", line)).collect();
-    let points = scene.reflectors().into_iter().map(|r| (r.x_metres, r.y_metres));
-    series.push(Series::line("", points).with(Stroke::Dots));
-    SheetPanel::chart(title, SheetAxis::new("x (m)", -extent, extent), SheetAxis::new("y (m)", 0.0, extent), series)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,7 +34,7 @@ mod tests {
 
     #[test]
     fn the_hidden_point_is_dim_in_the_last_ends_map_alone() {
-        let source = SceneSource::new();
+        let source = SceneSource::default();
         let seen = source.see(hidden_from_one_end()).unwrap();
         let bright = |end: End| {
             let map = &seen.lambda[if end == End::First { 0 } else { 1 }];
@@ -82,9 +52,9 @@ mod tests {
 
     #[test]
     fn bodies_are_drawn_by_their_outlines() {
-        let sheet = cylinder_and_cube(&SceneSource::new()).unwrap();
+        let sheet = cylinder_and_cube(&SceneSource::default()).unwrap();
         let super::super::sheet::PanelContent::Chart(chart) = &sheet.panels[0].content else { panic!("a chart") };
         let counts: Vec<usize> = chart.series.iter().map(|s| s.points.len()).collect();
-        assert_eq!(counts, [CIRCLE_CORNERS + 1, 5, 0]);
+        assert_eq!(counts, [49, 5, 0]);
     }
 }

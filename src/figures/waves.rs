@@ -54,20 +54,20 @@ pub fn range_profile(source: &SceneSource) -> Result<Sheet, FigureError> {
 pub fn plane_wave(_: &SceneSource) -> Result<Sheet, FigureError> {
     let angle = 60f64.to_radians();
     let (ux, uy) = (angle.cos(), angle.sin());
-    let mut shapes = vec![SketchShape::line([(-0.6, 0.0), (5.6, 0.0)], Ink::Pale)];
+    let mut shapes = vec![SketchShape::Line(vec![(-0.6, 0.0), (5.6, 0.0)], Ink::Pale)];
     for n in 0..6 {
         let x = f64::from(n);
-        shapes.push(SketchShape::arrow((x + 3.0 * ux, 3.0 * uy), (x + 0.06 * ux, 0.06 * uy), Ink::Second));
-        shapes.push(SketchShape::dot((x, 0.0), 7, Ink::Dark));
+        shapes.push(SketchShape::Arrow((x + 3.0 * ux, 3.0 * uy), (x + 0.06 * ux, 0.06 * uy), Ink::Second));
+        shapes.push(SketchShape::Dot((x, 0.0), 7, Ink::Dark));
     }
     // The wavefront through element 1 meets element 0's ray d cos(theta) before that element.
-    shapes.push(SketchShape::line([(0.0, 0.0), (ux * ux, ux * uy)], Ink::Accent));
-    shapes.push(SketchShape::line([(1.0, 0.0), (ux * ux, ux * uy)], Ink::Pale));
-    shapes.push(SketchShape::words((-0.35, 0.42), "d cos θ", Ink::Accent));
-    shapes.push(SketchShape::words((0.5, -0.22), "d", Ink::Dark));
+    shapes.push(SketchShape::Line(vec![(0.0, 0.0), (ux * ux, ux * uy)], Ink::Accent));
+    shapes.push(SketchShape::Line(vec![(1.0, 0.0), (ux * ux, ux * uy)], Ink::Pale));
+    shapes.push(SketchShape::Words((-0.35, 0.42), "d cos θ".to_owned(), Ink::Accent));
+    shapes.push(SketchShape::Words((0.5, -0.22), "d".to_owned(), Ink::Dark));
     let arc = (0..=20).map(|i| f64::from(i) / 20.0 * angle).map(|a| (5.0 + 0.6 * a.cos(), 0.6 * a.sin()));
-    shapes.push(SketchShape::line(arc, Ink::Dark));
-    shapes.push(SketchShape::words((5.75, 0.45), "θ", Ink::Dark));
+    shapes.push(SketchShape::Line(arc.collect(), Ink::Dark));
+    shapes.push(SketchShape::Words((5.75, 0.45), "θ".to_owned(), Ink::Dark));
     let panel = SheetPanel::sketch("A plane wave reaches one element after the other", -1.0..7.2, -0.5..3.0, shapes);
     Ok(Sheet::of(1, (760, 360), vec![panel]))
 }
@@ -120,14 +120,14 @@ pub fn near_paths(source: &SceneSource) -> Result<Sheet, FigureError> {
     let half = source.radar.aperture_metres() / 2.0;
     let at = (0.9, 2.2);
     let elements: Vec<f64> = (0..9).map(|i| half * (f64::from(i) / 4.0 - 1.0)).collect();
-    let array = || elements.iter().map(|x| SketchShape::dot((*x, 0.0), 6, Ink::Dark));
+    let array = || elements.iter().map(|x| SketchShape::Dot((*x, 0.0), 6, Ink::Dark));
     let mut assumed: Vec<SketchShape> =
-        elements.iter().map(|x| SketchShape::line([(*x, 0.0), (x + at.0, at.1)], Ink::Second)).collect();
+        elements.iter().map(|x| SketchShape::Line(vec![(*x, 0.0), (x + at.0, at.1)], Ink::Second)).collect();
     assumed.extend(array());
     let mut true_paths: Vec<SketchShape> =
-        elements.iter().map(|x| SketchShape::line([(*x, 0.0), at], Ink::Accent)).collect();
+        elements.iter().map(|x| SketchShape::Line(vec![(*x, 0.0), at], Ink::Accent)).collect();
     true_paths.extend(array());
-    true_paths.push(SketchShape::dot(at, 8, Ink::Accent));
+    true_paths.push(SketchShape::Dot(at, 8, Ink::Accent));
     let panels = vec![
         SheetPanel::sketch("Assumed: one direction for all elements", -1.3..2.1, -0.2..2.5, assumed),
         SheetPanel::sketch("True: a reflector at (0.9, 2.2) m before a 2 m array", -1.3..2.1, -0.2..2.5, true_paths),

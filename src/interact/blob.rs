@@ -10,7 +10,6 @@ pub const BLOB_RADIUS_POINTS: f64 = 12.0;
 /// A blob that was hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlobHit {
-    /// Index of the object.
     pub object: usize,
     /// Place of the object's reflector that makes the blob.
     pub place: Place,

@@ -4,7 +4,7 @@ use super::Place;
 use super::grip_kind::{Grip, GripPlace};
 use crate::scene::body::{MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
 use crate::scene::shape::direction;
-use crate::scene::{Block, Object, Polygon, Wall};
+use crate::scene::{Block, Object, Wall};
 
 /// The grips of a body but for the body itself. The turning grip stands `beyond_metres` away from it.
 pub(super) fn grips(object: &Object, beyond_metres: f64) -> Vec<GripPlace> {
@@ -17,7 +17,7 @@ pub(super) fn grips(object: &Object, beyond_metres: f64) -> Vec<GripPlace> {
         Object::Box(b) => (corners(&b.corners_metres()), Some((b.angle_degrees, b.length_metres / 2.0))),
         Object::Post(p) => (vec![at(Grip::Radius, [p.x_metres + p.radius_metres, p.y_metres])], None),
         Object::Polygon(p) => {
-            let (_, reach) = object.body().map_or(([0.0; 2], 0.0), |body| body.shape().around());
+            let (_, reach) = object.body().map_or(([0.0; 2], 0.0), |body| body.shape.around());
             (corners(&p.corners_metres), Some((90.0, reach)))
         }
         Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => (Vec::new(), None),
@@ -49,7 +49,12 @@ pub(super) fn move_grip(object: &mut Object, grip: Grip, to: Place) {
                 *angle_degrees = angle;
             }
         }
-        (Object::Polygon(p), Grip::Rotate) => turn(p, to),
+        // The side that faced ahead faces `to`.
+        (polygon @ Object::Polygon(_), Grip::Rotate) => {
+            if let Some(angle) = angle_to(polygon.centre_metres(), to) {
+                polygon.turn(angle - 90.0);
+            }
+        }
         _ => {}
     }
 }
@@ -87,21 +92,10 @@ fn move_corner(block: &mut Block, corner: usize, to: Place) {
     block.y_metres = stays[1] + l * along[1] + w * along[0];
 }
 
-/// Turns a polygon about its middle so that the side that faced ahead faces `to`.
-fn turn(polygon: &mut Polygon, to: Place) {
-    let [x, y] = polygon.centre_metres();
-    let Some(angle) = angle_to([x, y], to) else { return };
-    let [cos, sin] = direction(angle - 90.0);
-    for corner in &mut polygon.corners_metres {
-        let (dx, dy) = (corner[0] - x, corner[1] - y);
-        *corner = [x + dx * cos - dy * sin, y + dx * sin + dy * cos];
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Post;
+    use crate::scene::{Polygon, Post};
 
     fn is_at(a: [f64; 2], b: [f64; 2]) -> bool {
         (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12

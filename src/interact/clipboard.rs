@@ -6,15 +6,12 @@ use crate::scene::{Object, Scene, SceneError};
 /// A reason for which text can't be pasted.
 #[derive(Debug, thiserror::Error)]
 pub enum PasteError {
-    /// The text is not a scene.
     #[error(
         "the clipboard holds no objects: {0}; expected TOML such as [[object]] kind = \"point\" x_metres = 0.0 y_metres = 10.0"
     )]
     Toml(String),
-    /// The text is a scene without objects.
     #[error("the clipboard holds a scene without objects")]
     Empty,
-    /// A number can't be used.
     #[error("the clipboard's {0}")]
     Scene(#[from] SceneError),
 }

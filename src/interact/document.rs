@@ -6,7 +6,7 @@ use crate::platform::fs;
 use crate::radar::Radar;
 use crate::recording::{self, Recording, RecordingError, presets};
 use crate::scene::Scene;
-use crate::scene::file::{self, FileLoss, SceneFile, SceneFileError, SceneFormat};
+use crate::scene::file::{self, SceneFile, SceneFileError, SceneFormat};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -92,11 +92,6 @@ impl Document {
         Document::new(content.clone(), None, Some(content))
     }
 
-    /// A scene that was just made: untitled, and nowhere on disk.
-    pub fn made(file: SceneFile) -> Self {
-        Document::new(Content::of(file), None, None)
-    }
-
     /// Reads the document at `path`.
     /// # Errors
     /// [`SceneFileError`] names the file, the line or key, and what was expected.
@@ -133,9 +128,11 @@ impl Document {
         }
     }
 
-    pub(super) fn losses(&self, format: SceneFormat) -> Vec<FileLoss> {
+    pub(super) fn losses(&self, format: SceneFormat) -> Vec<String> {
         let mut losses = format.losses(&self.to_file());
-        losses.extend((format == SceneFormat::Npz && self.measured.is_some()).then_some(FileLoss::Recording));
+        if format == SceneFormat::Npz && self.measured.is_some() {
+            losses.push("the recording that it is laid over".to_owned());
+        }
         losses
     }
 
@@ -155,7 +152,7 @@ impl Document {
         Document::new(content.clone(), Some(path.into()), Some(content))
     }
 
-    /// A document at `path` from an autosave's copy, which differs from the file.
+    /// A document that is nowhere on disk, or an autosave's copy of the one at `path`, which differs from the file.
     pub fn unsaved(path: Option<&Path>, file: SceneFile) -> Self {
         Document::new(Content::of(file), path.map(Arc::from), None)
     }
@@ -339,7 +336,6 @@ mod tests {
         for (document, title) in [
             (Document::default(), "untitled"),
             (Document::shipped(file()), "untitled"),
-            (Document::made(file()), "untitled •"),
             (Document::opened(path, file()), "a.toml"),
             (Document::unsaved(Some(path), file()), "a.toml •"),
             (Document::unsaved(None, file()), "untitled •"),

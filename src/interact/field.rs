@@ -9,53 +9,37 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coordinates {
-    /// x and y, metres.
     #[default]
     Cartesian,
     /// Range, and direction in degrees from straight ahead or as cos(theta).
     Polar,
 }
 
-/// A number of an object. The place is [`Object::anchor_metres`].
+/// A number of an object, in metres, degrees, metres a second, or millimetres for a roughness. The place is [`Object::anchor_metres`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Field {
-    /// Along the array's axis, metres.
     X,
-    /// Ahead of the array, metres.
     Y,
-    /// Distance from the array's middle, metres.
     Range,
     /// Cosine of the angle between the array's axis and the direction from its middle.
     CosTheta,
     /// The direction in degrees: 0 straight ahead, positive to the right, beyond -90 and 90 behind.
     AngleDegrees,
-    /// Distance between a line's neighbouring reflectors, metres.
     Spacing,
     /// Direction of a line, degrees: 0 straight ahead, 90 along the array to the right.
     Direction,
-    /// Standard deviation of a cluster along x, metres.
     SpreadX,
-    /// Standard deviation of a cluster along y, metres.
     SpreadY,
-    /// Length of a wall or a box, metres.
     Length,
-    /// Width of a box, metres.
     Width,
     /// Direction of the length of a wall or a box, degrees from +x, counter-clockwise.
     Angle,
-    /// Radius of a post, metres.
     Radius,
-    /// Height deviation of a body's surface, millimetres.
     Roughness,
-    /// Number of reflectors of a line or a cluster.
     Count,
-    /// Seed of a cluster, or of a rough surface.
     Seed,
-    /// Reflectivity sigma of each reflector; the reflection coefficient of a body.
     Reflectivity,
-    /// Velocity along the array's axis, metres a second.
     VelocityX,
-    /// Velocity away from the array, metres a second.
     VelocityY,
     /// The reflectivity as radar cross section, dBsm ([`crate::radar::budget`]).
     CrossSection,
@@ -67,9 +51,7 @@ const MIN_DBSM: f64 = -300.0;
 /// A change of a field's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FieldChange {
-    /// A new value.
     To(f64),
-    /// A step that is added to the value.
     By(f64),
 }
 
@@ -83,14 +65,11 @@ impl FieldChange {
     }
 }
 
-/// A field that several objects have, and its value in them.
+/// A field that several objects have, its value in the first of them, and whether it is the same in all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SharedField {
-    /// The field.
     pub field: Field,
-    /// Its value in the first of the objects.
     pub first: f64,
-    /// Whether all others have the same.
     pub is_same: bool,
 }
 
@@ -130,13 +109,8 @@ impl Field {
             (Field::X, _) => x,
             (Field::Y, _) => y,
             (Field::Range, _) => range,
-            (Field::CosTheta, _) => {
-                if range > 0.0 {
-                    x / range
-                } else {
-                    0.0
-                }
-            }
+            (Field::CosTheta, _) if range > 0.0 => x / range,
+            (Field::CosTheta, _) => 0.0,
             (Field::AngleDegrees, _) => x.atan2(y).to_degrees(),
             (Field::Reflectivity, _) => object.reflectivity(),
             (Field::VelocityX, _) => object.velocity_metres_per_second()[0],
@@ -157,8 +131,8 @@ impl Field {
             (Field::Angle, Object::Wall(w)) => w.angle_degrees,
             (Field::Angle, Object::Box(b)) => b.angle_degrees,
             (Field::Radius, Object::Post(p)) => p.radius_metres,
-            (Field::Roughness, body) => body.body()?.surface().roughness_millimetres,
-            (Field::Seed, body) => body.body()?.surface().seed as f64,
+            (Field::Roughness, body) => body.body()?.roughness_millimetres,
+            (Field::Seed, body) => body.body()?.seed as f64,
             _ => return None,
         })
     }

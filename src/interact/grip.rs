@@ -127,38 +127,24 @@ fn count_over(length: f64, spacing: f64) -> Option<usize> {
     (spacing.abs() > 0.0 && steps.is_finite()).then(|| (steps.max(0.0) as usize + 1).min(MAX_LINE_COUNT))
 }
 
-pub(super) fn extent(object: &Object) -> (Place, Place) {
+/// Two opposite corners of the rectangle around an object.
+fn corners(object: &Object) -> [[f64; 2]; 2] {
     match object {
-        Object::Point(p) => (Place::new(p.x_metres, p.y_metres), Place::new(p.x_metres, p.y_metres)),
-        Object::Line(l) => around(Place::new(l.x_metres, l.y_start_metres), l.end_metres().into()),
-        Object::Gaussian(g) => (
-            Place::new(g.x_metres - g.x_std_metres, g.y_metres - g.y_std_metres),
-            Place::new(g.x_metres + g.x_std_metres, g.y_metres + g.y_std_metres),
-        ),
-        Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
-            let centre = object.centre_metres();
-            let (low, high) = object.body().map_or((centre, centre), |body| body.shape().extent());
-            (low.into(), high.into())
+        Object::Line(l) => [[l.x_metres, l.y_start_metres], l.end_metres()],
+        Object::Gaussian(g) => {
+            let (x, y) = (g.x_std_metres, g.y_std_metres);
+            [[g.x_metres - x, g.y_metres - y], [g.x_metres + x, g.y_metres + y]]
         }
+        other => other.body().map_or([other.centre_metres(); 2], |body| body.shape.extent().into()),
     }
 }
 
-fn around(a: Place, b: Place) -> (Place, Place) {
-    (
-        Place::new(a.x_metres.min(b.x_metres), a.y_metres.min(b.y_metres)),
-        Place::new(a.x_metres.max(b.x_metres), a.y_metres.max(b.y_metres)),
-    )
-}
-
 pub(super) fn bounds(scene: &Scene) -> Option<(Place, Place)> {
-    let finite = |p: &Place| p.x_metres.is_finite() && p.y_metres.is_finite();
-    let corners = scene.objects.iter().flat_map(|o| {
-        let (low, high) = extent(o);
-        [low, high].into_iter().filter(finite)
-    });
-    corners.fold(None, |bounds, p| {
-        let (low, high) = bounds.unwrap_or((p, p));
-        Some((around(low, p).0, around(high, p).1))
+    let corners = scene.objects.iter().flat_map(corners).filter(|[x, y]| x.is_finite() && y.is_finite());
+    corners.fold(None, |bounds, [x, y]| {
+        let (low, high) = bounds.unwrap_or((Place::new(x, y), Place::new(x, y)));
+        let low = Place::new(low.x_metres.min(x), low.y_metres.min(y));
+        Some((low, Place::new(high.x_metres.max(x), high.y_metres.max(y))))
     })
 }
 

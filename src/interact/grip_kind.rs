@@ -5,25 +5,19 @@ use super::Place;
 /// Part of an object that can be grabbed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Grip {
-    /// The object as a whole.
     Body,
     /// The end of a line that is nearest to the array.
     NearEnd,
-    /// The other end.
     FarEnd,
-    /// The spacing of a line.
     Spacing,
     /// The direction of a line.
     Turn,
-    /// The standard deviation of a cluster along x.
     SpreadX,
-    /// The standard deviation of a cluster along y.
     SpreadY,
     /// An end of a wall or a corner of an outline, by its number.
     Corner(usize),
     /// The direction of a body.
     Rotate,
-    /// The radius of a post.
     Radius,
 }
 
@@ -52,8 +46,6 @@ impl Grip {
 /// A grip and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GripPlace {
-    /// The grip.
     pub grip: Grip,
-    /// Its place.
     pub place: Place,
 }

@@ -3,6 +3,7 @@
 use super::grip::grips;
 use super::grip_kind::Grip;
 use super::{Place, Selection};
+use crate::scene::shape::from_stretch;
 use crate::scene::{Object, Scene};
 
 /// Smallest radius of a target, in points of the view.
@@ -11,9 +12,7 @@ pub const TARGET_RADIUS_POINTS: f64 = 9.0;
 /// A grip under the pointer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// Index of the object.
     pub object: usize,
-    /// The grip of the object.
     pub grip: Grip,
     /// Place of the grip: a drag keeps the distance between pointer and grip.
     pub place: Place,
@@ -47,11 +46,7 @@ fn body_distance(object: &Object, at: Place) -> f64 {
     match object {
         Object::Point(_) => centre.distance_metres(at),
         Object::Line(l) => {
-            let [a, b] = [Place::new(l.x_metres, l.y_start_metres), l.end_metres().into()];
-            let (dx, dy) = (b.x_metres - a.x_metres, b.y_metres - a.y_metres);
-            let along = ((at.x_metres - a.x_metres) * dx + (at.y_metres - a.y_metres) * dy) / (dx * dx + dy * dy);
-            let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
-            Place::new(a.x_metres + along * dx, a.y_metres + along * dy).distance_metres(at)
+            from_stretch([at.x_metres, at.y_metres], [[l.x_metres, l.y_start_metres], l.end_metres()])
         }
         Object::Gaussian(g) => {
             let out_x = ((at.x_metres - g.x_metres).abs() - g.x_std_metres).max(0.0);
@@ -61,7 +56,7 @@ fn body_distance(object: &Object, at: Place) -> f64 {
             out_x.hypot(out_y) + 1e-3 * inside
         }
         Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
-            let Some(shape) = object.body().map(|body| body.shape()) else { return f64::INFINITY };
+            let Some(shape) = object.body().map(|body| body.shape) else { return f64::INFINITY };
             let (_, radius) = shape.around();
             // As within a cluster: a small object that lies on a large one can be grabbed.
             shape.distance_metres([at.x_metres, at.y_metres]) + 1e-3 * centre.distance_metres(at) / radius.max(1e-9)

@@ -32,12 +32,10 @@ pub use history::History;
 pub use selection::{Selection, SelectionMode};
 pub use snap::Snap;
 
-/// A place of the scene in metres.
+/// A place of the scene: x along the array's axis, y ahead of the array.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Along the array's axis.
     pub x_metres: f64,
-    /// Ahead of the array.
     pub y_metres: f64,
 }
 

@@ -5,11 +5,9 @@ use std::collections::BTreeSet;
 /// The effect of newly picked objects on those already selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SelectionMode {
-    /// The picked objects replace the selected ones.
     Replace,
     /// The picked objects join the selected ones; a picked object that was selected leaves.
     Toggle,
-    /// The picked objects join the selected ones.
     Add,
     /// Everything from the object picked before to the last picked one replaces the selected ones.
     Range,
@@ -73,15 +71,9 @@ impl Selection {
     pub fn neighbour(&self, count: usize, forward: bool) -> Option<usize> {
         let last = count.checked_sub(1)?;
         Some(match (self.latest, forward) {
-            (None, true) => 0,
-            (None, false) | (Some(0), false) => last,
-            (Some(i), true) => {
-                if i < last {
-                    i + 1
-                } else {
-                    0
-                }
-            }
+            (Some(i), true) if i < last => i + 1,
+            (_, true) => 0,
+            (None | Some(0), false) => last,
             (Some(i), false) => (i - 1).min(last),
         })
     }

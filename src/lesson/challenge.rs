@@ -13,7 +13,6 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Challenge {
-    /// The task, in words for the learner.
     pub ask: String,
     /// Requirements, all of which must hold.
     #[serde(rename = "require")]
@@ -41,12 +40,9 @@ pub struct Solution {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Requirement {
-    /// The measured quantity.
     pub measure: Measure,
-    /// Lower bound.
     #[serde(default)]
     pub at_least: Option<f64>,
-    /// Upper bound.
     #[serde(default)]
     pub at_most: Option<f64>,
 }
@@ -54,7 +50,6 @@ pub struct Requirement {
 /// A quantity measured on the maps or read from the radar.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum Measure {
     /// Lambda of an object's blob.
     Lambda {
@@ -66,13 +61,11 @@ pub enum Measure {
         map: MapName,
         objects: [ObjectNumber; 2],
     },
-    /// SE of the output.
     SquaredError,
     /// SE of the learner's whole-array map against that of the hidden objects.
     Unexplained,
     /// `Unexplained` over the SE of the method's output on both ends of the hidden objects: below 1 the learner is nearer than the method.
     UnexplainedOverMethod,
-    /// Number of objects.
     Objects,
     /// Distance between two objects, metres.
     Distance {
@@ -88,7 +81,6 @@ pub enum Measure {
         map: MapName,
         above: f32,
     },
-    /// A quantity of the radar or of an object.
     Quantity {
         quantity: Quantity,
         #[serde(default)]
@@ -161,8 +153,7 @@ impl Requirement {
 impl Measure {
     /// The value for the learner's scene; `hidden` is the stage of [`Challenge::hidden_scene`].
     pub(super) fn value(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<f64, String> {
-        let object =
-            |number: &ObjectNumber| number.index(stage.scene.objects.len()).map(|index| &stage.scene.objects[index]);
+        let object = |number: &ObjectNumber| number.of(&stage.scene);
         let truth = || hidden.ok_or_else(|| "nothing is hidden".to_owned());
         Ok(match self {
             Measure::Lambda { map, object: number } => f64::from(stage.blob(stage.map(*map)?, object(number)?).1),

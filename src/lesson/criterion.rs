@@ -12,7 +12,6 @@ pub struct Measured {
     pub wanted: String,
     /// The present value, with its unit.
     pub found: String,
-    /// Whether the requirement holds.
     pub holds: bool,
 }
 

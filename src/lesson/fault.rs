@@ -1,5 +1,14 @@
 //! Mistakes in a lesson's step, with their lines.
 
+/// A fault in a lesson's text, with its line.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {message}")]
+pub struct LessonTextError {
+    /// Line, from 1.
+    pub line: usize,
+    pub message: String,
+}
+
 /// A mistake in a step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
@@ -21,8 +30,13 @@ impl Fault {
         Fault { key, number, message: message.into() }
     }
 
+    /// The error of a lesson's text for a fault of step `step` (from 0).
+    pub(super) fn in_step(self, text: &str, step: usize) -> LessonTextError {
+        LessonTextError { line: self.line(text, step), message: format!("step {}: {}", step + 1, self.message) }
+    }
+
     /// The line in a lesson's text, from 1, for a fault of step `step` (from 0): that of the step where no line begins with the key.
-    pub(super) fn line(&self, text: &str, step: usize) -> usize {
+    fn line(&self, text: &str, step: usize) -> usize {
         let is_step = |line: &&str| line.trim_start().starts_with("[[step]]");
         let lines = || text.lines().zip(1usize..);
         let Some((_, first)) = lines().filter(|(line, _)| is_step(line)).nth(step) else { return 1 };

@@ -1,7 +1,7 @@
 //! Lesson files: TOML that a teacher writes without Rust. `docs/lessons.md` describes the format with a worked example.
 
 use super::challenge::Challenge;
-use super::fault::Fault;
+use super::fault::{Fault, LessonTextError};
 use super::question::Question;
 use super::stage::StepView;
 use crate::files::read_bounded;
@@ -22,13 +22,10 @@ pub const MAX_LESSON_BYTES: u64 = 1 << 20;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lesson {
-    /// Version of the format, [`FORMAT`].
     pub format: u32,
-    /// Title.
     pub title: String,
     /// The lesson's aim: the learner's new knowledge, one sentence.
     pub about: String,
-    /// Steps, at least one.
     #[serde(rename = "step")]
     pub steps: Vec<Step>,
 }
@@ -37,46 +34,29 @@ pub struct Lesson {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Step {
-    /// The step's text, read first.
     pub text: String,
     /// Name of a scene that comes with the program, in place of `object`s.
     #[serde(default)]
     pub preset: Option<String>,
-    /// The scene's objects.
     #[serde(default, rename = "object")]
     pub objects: Vec<Object>,
     /// The radar; keys that are left out are table 3.1's.
     #[serde(default)]
     pub radar: Radar,
-    /// Settings of the view.
     #[serde(default)]
     pub view: StepView,
-    /// The prediction, made before the maps are shown.
     #[serde(default)]
     pub predict: Option<Question>,
-    /// A task for the learner after the maps are shown.
     #[serde(default)]
     pub challenge: Option<Challenge>,
 }
 
-/// A fault in a lesson's text, with its line.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {message}")]
-pub struct LessonTextError {
-    /// Line, from 1.
-    pub line: usize,
-    /// The fault, its key, and the expected value.
-    pub message: String,
-}
-
 /// An error of opening a lesson.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum LessonError {
     #[error("{}: {source}", path.display())]
     Io {
         path: PathBuf,
-        /// The error of the file system.
         source: std::io::Error,
     },
     #[error("{}: larger than {MAX_LESSON_BYTES} bytes, which no lesson is", path.display())]
@@ -103,10 +83,7 @@ impl Lesson {
             return Err(whole("there is no [[step]]".to_owned()));
         }
         for (index, step) in lesson.steps.iter().enumerate() {
-            step.check().map_err(|fault| LessonTextError {
-                line: fault.line(text, index),
-                message: format!("step {}: {}", index + 1, fault.message),
-            })?;
+            step.check().map_err(|fault| fault.in_step(text, index))?;
         }
         Ok(lesson)
     }

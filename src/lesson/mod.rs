@@ -24,7 +24,8 @@ mod uses;
 
 pub use challenge::Challenge;
 pub use criterion::Measured;
-pub use file::{Lesson, LessonError, LessonTextError, Step};
+pub use fault::LessonTextError;
+pub use file::{Lesson, LessonError, Step};
 pub use progress::Progress;
 pub use question::{Guess, Judgement, Question, Truth};
 pub use stage::{Cell, MapName, Stage, StepView};

@@ -1,5 +1,6 @@
 //! Numbers of objects in lesson files, from 1.
 
+use crate::scene::{Object, Scene};
 use serde::{Deserialize, Serialize};
 
 /// Index of an object in a file, counted from 1.
@@ -14,5 +15,10 @@ impl ObjectNumber {
             number if (1..=objects).contains(&number) => Ok(number - 1),
             number => Err(format!("object {number} is asked for; the scene has objects 1 to {objects}")),
         }
+    }
+
+    /// The object of a scene, where it has it.
+    pub fn of(self, scene: &Scene) -> Result<&Object, String> {
+        self.index(scene.objects.len()).map(|index| &scene.objects[index])
     }
 }

@@ -8,7 +8,6 @@ use std::collections::BTreeMap;
 pub struct StepRecord {
     /// Whether the first prediction was right; `None` before it is made.
     pub first_guess_right: Option<bool>,
-    /// Whether the challenge was met.
     pub challenge_met: bool,
 }
 

@@ -14,7 +14,6 @@ pub enum Quantity {
     RangeBinMetres,
     /// Samples times the range bin, metres.
     MaximumRangeMetres,
-    /// Length of the whole array, metres.
     ApertureMetres,
     /// Least range of the whole array's far field ([`Radar::far_field_metres`]), metres.
     FarFieldMetres,
@@ -40,37 +39,28 @@ pub enum Quantity {
 impl Quantity {
     /// Its name in sentences.
     pub fn name(self) -> &'static str {
-        match self {
-            Quantity::RangeBinMetres => "a range bin",
-            Quantity::MaximumRangeMetres => "a maximum range",
-            Quantity::ApertureMetres => "an aperture",
-            Quantity::FarFieldMetres => "a far-field distance",
-            Quantity::EndBeamColumns => "a beam of an end",
-            Quantity::GratingLobeCos => "a distance to the grating lobe",
-            Quantity::ApparentRangeMetres => "an apparent range",
-            Quantity::SnrDecibels => "an SNR by the whole array",
-            Quantity::EndsDifferenceBins => "a difference between the ends",
-            Quantity::UnambiguousVelocityMetresPerSecond => "an unambiguous velocity",
-            Quantity::VelocityColumnMetresPerSecond => "a column of velocity",
-            Quantity::ApparentVelocityMetresPerSecond => "an apparent radial velocity",
-        }
+        self.words().0
     }
 
     /// The unit of its value.
     pub fn unit(self) -> &'static str {
+        self.words().1
+    }
+
+    fn words(self) -> (&'static str, &'static str) {
         match self {
-            Quantity::RangeBinMetres
-            | Quantity::MaximumRangeMetres
-            | Quantity::ApertureMetres
-            | Quantity::FarFieldMetres
-            | Quantity::ApparentRangeMetres => "m",
-            Quantity::EndBeamColumns => "columns",
-            Quantity::GratingLobeCos => "in cos θ",
-            Quantity::SnrDecibels => "dB",
-            Quantity::EndsDifferenceBins => "range bins",
-            Quantity::UnambiguousVelocityMetresPerSecond
-            | Quantity::VelocityColumnMetresPerSecond
-            | Quantity::ApparentVelocityMetresPerSecond => "m/s",
+            Quantity::RangeBinMetres => ("a range bin", "m"),
+            Quantity::MaximumRangeMetres => ("a maximum range", "m"),
+            Quantity::ApertureMetres => ("an aperture", "m"),
+            Quantity::FarFieldMetres => ("a far-field distance", "m"),
+            Quantity::EndBeamColumns => ("a beam of an end", "columns"),
+            Quantity::GratingLobeCos => ("a distance to the grating lobe", "in cos θ"),
+            Quantity::ApparentRangeMetres => ("an apparent range", "m"),
+            Quantity::SnrDecibels => ("an SNR by the whole array", "dB"),
+            Quantity::EndsDifferenceBins => ("a difference between the ends", "range bins"),
+            Quantity::UnambiguousVelocityMetresPerSecond => ("an unambiguous velocity", "m/s"),
+            Quantity::VelocityColumnMetresPerSecond => ("a column of velocity", "m/s"),
+            Quantity::ApparentVelocityMetresPerSecond => ("an apparent radial velocity", "m/s"),
         }
     }
 
@@ -81,7 +71,7 @@ impl Quantity {
         let thing = || -> Result<&Object, String> {
             let number =
                 object.ok_or_else(|| "this quantity belongs to an object; expected object = NUMBER".to_owned())?;
-            Ok(&scene.objects[number.index(scene.objects.len())?])
+            number.of(scene)
         };
         let centre = || thing().map(Object::centre_metres);
         Ok(match self {

@@ -11,20 +11,15 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Question {
-    /// The question.
     pub ask: String,
-    /// The form of the answer, and the truth.
     pub answer: Answer,
-    /// Reply to a right guess, one sentence.
     pub right: String,
-    /// Reply to a wrong guess, one sentence.
     pub wrong: String,
 }
 
 /// The kind of answer. Its truth comes from the simulation, except for choices.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum Answer {
     /// A click at the place of a peak in a map.
     Click {
@@ -32,22 +27,17 @@ pub enum Answer {
         /// The object whose blob is meant; without one, the brightest cell of the map.
         #[serde(default)]
         object: Option<ObjectNumber>,
-        /// Columns a right guess may be off.
         within_columns: f64,
-        /// Range bins a right guess may be off.
         within_bins: f64,
     },
     Number {
         quantity: Quantity,
         #[serde(default)]
         object: Option<ObjectNumber>,
-        /// Its unit, beside the field.
         unit: String,
-        /// Most percent that a right guess may be off.
         within_percent: f64,
     },
     Choice {
-        /// The options.
         options: Vec<String>,
         /// The right one, from 1.
         right: usize,
@@ -64,7 +54,6 @@ pub enum Answer {
 
 /// A learner's answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum Guess {
     Place(Cell),
     Number(f64),
@@ -75,7 +64,6 @@ pub enum Guess {
 
 /// The truth that a guess is compared with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum Truth {
     Place(Cell),
     Number(f64),
@@ -90,13 +78,10 @@ pub enum Truth {
 /// The verdict on a guess.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
-    /// Whether it is close enough.
     pub is_right: bool,
     /// The distance from the truth, in the question's own terms.
     pub distance: String,
-    /// The question's sentence on it.
     pub sentence: String,
-    /// The exact answer.
     pub truth: Truth,
 }
 
@@ -141,13 +126,11 @@ impl Question {
     /// # Errors
     /// A sentence when the method has no output or an object is missing.
     pub fn truth(&self, stage: &Stage) -> Result<Truth, String> {
-        let object =
-            |number: &ObjectNumber| number.index(stage.scene.objects.len()).map(|index| &stage.scene.objects[index]);
         Ok(match &self.answer {
             Answer::Click { map, object: number, .. } => {
                 let map = stage.map(*map)?;
                 Truth::Place(match number {
-                    Some(number) => stage.blob(map, object(number)?).0,
+                    Some(number) => stage.blob(map, number.of(&stage.scene)?).0,
                     None => stage.brightest(map),
                 })
             }
@@ -159,7 +142,7 @@ impl Question {
                 let shown = stage.map(*map)?;
                 let mut high = 1.0f32;
                 for number in keep {
-                    high = high.min(stage.blob(shown, object(number)?).1);
+                    high = high.min(stage.blob(shown, number.of(&stage.scene)?).1);
                 }
                 let target = stage.map(MapName::Target)?;
                 let passes = |eta: f32| detection_rates(target, shown, eta).1 <= *false_alarm_at_most;

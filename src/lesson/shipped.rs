@@ -1,6 +1,7 @@
 //! The lessons that come with the program: the files of `assets/lessons`, embedded.
 
-use super::file::{Lesson, LessonTextError};
+use super::fault::LessonTextError;
+use super::file::Lesson;
 use std::sync::OnceLock;
 
 /// A lesson that comes with the program.
@@ -8,7 +9,6 @@ use std::sync::OnceLock;
 pub struct Shipped {
     /// Name of its file in `assets/lessons`, without `.toml`.
     pub id: &'static str,
-    /// The file's text.
     pub toml: &'static str,
 }
 

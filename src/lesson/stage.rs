@@ -13,17 +13,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StepView {
-    /// Noise of the scene.
     pub floor: Floor,
-    /// Seed of the floor's noise.
     pub seed: u64,
-    /// Normalisation of the maps.
     pub normalisation: Normalisation,
     /// Whether all maps have one scale of brightness.
     pub one_scale: bool,
-    /// The method whose output is shown.
     pub method: String,
-    /// The detector in the place of thresholds, if one is in use.
     pub cfar: Option<Cfar>,
 }
 
@@ -53,22 +48,18 @@ pub enum MapName {
     Input1,
     /// The whole array's.
     Target,
-    /// The method's.
     Output,
 }
 
 /// A cell of a map; fractions lie between cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
-    /// Range bin.
     pub bin: f64,
-    /// Column.
     pub column: f64,
 }
 
 /// A scene simulated for checking.
 #[derive(Debug, Clone)]
-#[allow(missing_docs)] // Names and messages say it.
 pub struct Stage {
     pub radar: Radar,
     pub scene: Scene,

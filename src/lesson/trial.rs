@@ -2,8 +2,8 @@
 
 use super::challenge::Challenge;
 use super::criterion::Measured;
-use super::fault::Fault;
-use super::file::{Lesson, LessonTextError, Step};
+use super::fault::{Fault, LessonTextError};
+use super::file::{Lesson, Step};
 use super::question::{Question, Truth};
 use super::stage::Stage;
 use crate::scene::Scene;
@@ -15,10 +15,7 @@ impl Lesson {
     /// [`LessonTextError`] names the line, the step and the fault.
     pub fn try_out(&self, text: &str) -> Result<(), LessonTextError> {
         for (index, step) in self.steps.iter().enumerate() {
-            step.try_out().map_err(|fault| LessonTextError {
-                line: fault.line(text, index),
-                message: format!("step {}: {}", index + 1, fault.message),
-            })?;
+            step.try_out().map_err(|fault| fault.in_step(text, index))?;
         }
         Ok(())
     }

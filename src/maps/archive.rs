@@ -6,7 +6,7 @@ use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use crate::radar::{Antennas, AntennasError, CHIRP_SECONDS, Carrier, End, LinkBudget, Radar, WindowFunction};
 use crate::scene::{Scene, npz};
 use crate::signal::{BeatSignal, LayoutSamples, TwoEnds};
-use ndarray::{Array1, Axis, Ix0, arr0};
+use ndarray::{Array1, Axis, Ix0, Ix1, arr0};
 use std::path::Path;
 
 /// Version of the archive's keys. Version 1 (before there was a key for it) had neither axes nor constants. Version 2 has no transmitters apart from
@@ -62,10 +62,7 @@ pub fn write_maps(
     let full = map_of(radar, &scene.disturbances.elements, signal, Aperture::Full).log_magnitude();
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
-        add_samples_and_maps(out, radar, &signal.two_ends(radar), Some(&full))?;
-        add_heard(out, heard)?;
-        add_output(out, output)?;
-        add_axes(out, radar)
+        add_recorded(out, radar, &signal.two_ends(radar), Some(&full), heard, output)
     })?;
     Ok(full)
 }
@@ -81,12 +78,7 @@ pub fn write_recorded_maps(
     heard: Option<&LayoutSamples>,
     output: Option<&RangeAngleMap>,
 ) -> Result<(), NpzError> {
-    write_npz(path, |out| {
-        add_samples_and_maps(out, radar, ends, full)?;
-        add_heard(out, heard)?;
-        add_output(out, output)?;
-        add_axes(out, radar)
-    })
+    write_npz(path, |out| add_recorded(out, radar, ends, full, heard, output))
 }
 
 /// Writes the maps of a recording's frames: `polar_full` (f64 `[frames, samples, elements]`), with the axes of [`write_maps`]. `next` makes
@@ -121,7 +113,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
     let carrier = [Carrier::OneWay, Carrier::TwoWay].into_iter().find(|c| c.turns_per_wavelength() == turns);
     let mut count = |key: &str| Ok::<_, NpzError>(number(archive, key)? as usize);
     let (elements, end_elements, samples) = (count("elements")?, count("end_elements")?, count("samples")?);
-    let chirp_seconds = archive.has("chirp_seconds").then(|| number(archive, "chirp_seconds")).transpose()?;
+    let chirp_seconds = optional(archive, "chirp_seconds")?;
     let radar = Radar {
         transmit_power_watts: number(archive, "transmit_power_watts")?,
         bandwidth_hz: number(archive, "bandwidth_hz")?,
@@ -134,13 +126,13 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
         carrier: carrier.ok_or_else(|| expected("carrier_turns_per_wavelength", turns, "-1 or 2".to_owned()))?,
         window: WindowFunction::default(),
         antennas: read_antennas(archive)?,
-        focus_off_line: archive.has(FOCUS_KEY) && number(archive, FOCUS_KEY)? != 0.0,
+        focus_off_line: optional(archive, FOCUS_KEY)?.is_some_and(|focused| focused != 0.0),
         budget: read_budget(archive)?,
         ..Radar::default()
     };
     check_columns(archive, &radar)?;
     radar.validate().map_err(|e| NpzError::Damaged { key: e.field().to_owned(), reason: e.to_string() })?;
-    let weights = archive.reals::<ndarray::Ix1>("element_window")?;
+    let weights = archive.reals::<Ix1>("element_window")?;
     let like = |window: &WindowFunction| window.weights(elements) == weights.to_vec();
     let window = WindowFunction::ALL.into_iter().find(like).ok_or_else(|| NpzError::Damaged {
         key: "element_window".to_owned(),
@@ -152,7 +144,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
 /// Refuses maps whose columns were turned: their samples and `polar_partial_mag_phase` would be of another order than the radar's.
 fn check_columns(archive: &mut Npz, radar: &Radar) -> Result<(), NpzError> {
     let own = f64::from(u8::from(!radar.columns_fall()));
-    match archive.has(COLUMNS_KEY).then(|| number(archive, COLUMNS_KEY)).transpose()? {
+    match optional(archive, COLUMNS_KEY)? {
         Some(found) if found != own => {
             let turns = radar.carrier.turns_per_wavelength();
             Err(expected(COLUMNS_KEY, found, format!("{own}, as carrier_turns_per_wavelength is {turns}")))
@@ -165,13 +157,13 @@ fn read_budget(archive: &mut Npz) -> Result<Option<LinkBudget>, NpzError> {
     if !archive.has(BUDGET_KEYS[0]) {
         return Ok(None);
     }
-    let width = archive.has(WIDTH_KEY).then(|| number(archive, WIDTH_KEY)).transpose()?;
+    let half_power_width_degrees = optional(archive, WIDTH_KEY)?;
     let mut of = |key: &str| number(archive, key);
     Ok(Some(LinkBudget {
         transmit_power_dbm: of(BUDGET_KEYS[0])?,
         antenna_gain_dbi: of(BUDGET_KEYS[1])?,
         noise_figure_db: of(BUDGET_KEYS[2])?,
-        half_power_width_degrees: width,
+        half_power_width_degrees,
     }))
 }
 
@@ -179,17 +171,25 @@ fn read_antennas(archive: &mut Npz) -> Result<Option<Antennas>, NpzError> {
     if !archive.has(ANTENNA_KEYS[0]) {
         return Ok(None);
     }
-    let mut places = |key: &str| Ok::<_, NpzError>(archive.reals::<ndarray::Ix1>(key)?.to_vec());
-    let (transmitters, receivers) = (places(ANTENNA_KEYS[0])?, places(ANTENNA_KEYS[1])?);
-    let damaged = |e: AntennasError| NpzError::Damaged { key: ANTENNA_KEYS[0].to_owned(), reason: e.to_string() };
-    let antennas = Antennas::new(&transmitters, &receivers).map_err(damaged)?;
+    let damaged = |key: &'static str| {
+        move |e: AntennasError| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() }
+    };
+    let [transmitters, receivers] = places(archive, ANTENNA_KEYS)?;
+    let antennas = Antennas::new(&transmitters, &receivers).map_err(damaged(ANTENNA_KEYS[0]))?;
     if !archive.has(OFF_LINE_KEYS[0]) {
         return Ok(Some(antennas));
     }
-    let mut places = |key: &str| Ok::<_, NpzError>(archive.reals::<ndarray::Ix1>(key)?.to_vec());
-    let (transmitters, receivers) = (places(OFF_LINE_KEYS[0])?, places(OFF_LINE_KEYS[1])?);
-    let damaged = |e: AntennasError| NpzError::Damaged { key: OFF_LINE_KEYS[0].to_owned(), reason: e.to_string() };
-    antennas.off_line(&transmitters, &receivers).map(Some).map_err(damaged)
+    let [transmitters, receivers] = places(archive, OFF_LINE_KEYS)?;
+    antennas.off_line(&transmitters, &receivers).map(Some).map_err(damaged(OFF_LINE_KEYS[0]))
+}
+
+fn places(archive: &mut Npz, keys: [&str; 2]) -> Result<[Vec<f64>; 2], NpzError> {
+    Ok([archive.reals::<Ix1>(keys[0])?.to_vec(), archive.reals::<Ix1>(keys[1])?.to_vec()])
+}
+
+/// The number `key` of an archive that may lack it.
+fn optional(archive: &mut Npz, key: &str) -> Result<Option<f64>, NpzError> {
+    archive.has(key).then(|| number(archive, key)).transpose()
 }
 
 fn number(archive: &mut Npz, key: &str) -> Result<f64, NpzError> {
@@ -214,13 +214,9 @@ fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
     let version = if radar.is_monostatic() { MONOSTATIC_VERSION } else { FORMAT_VERSION };
     out.add(VERSION_KEY, &arr0(version))?;
     if let Some(antennas) = &radar.antennas {
-        for (key, places) in
-            ANTENNA_KEYS.into_iter().zip([antennas.transmitter_x_metres(), antennas.receiver_x_metres()])
-        {
-            out.add(key, &Array1::from(places.to_vec()))?;
-        }
-        let off_line = [antennas.transmitter_y_metres(), antennas.receiver_y_metres()];
-        for (key, places) in OFF_LINE_KEYS.into_iter().zip(off_line).filter(|_| !antennas.is_on_line()) {
+        let along = ANTENNA_KEYS.into_iter().zip([antennas.transmitter_x_metres(), antennas.receiver_x_metres()]);
+        let ahead = OFF_LINE_KEYS.into_iter().zip([antennas.transmitter_y_metres(), antennas.receiver_y_metres()]);
+        for (key, places) in along.chain(ahead.filter(|_| !antennas.is_on_line())) {
             out.add(key, &Array1::from(places.to_vec()))?;
         }
     }
@@ -258,21 +254,13 @@ fn add_axes(out: &mut NpzOutput, radar: &Radar) -> Result<(), NpzError> {
     Ok(())
 }
 
-fn add_output(out: &mut NpzOutput, output: Option<&RangeAngleMap>) -> Result<(), NpzError> {
-    output.map_or(Ok(()), |output| out.add("output", &output.lambda.view().insert_axis(Axis(0))))
-}
-
-fn add_heard(out: &mut NpzOutput, heard: Option<&LayoutSamples>) -> Result<(), NpzError> {
-    let Some(LayoutSamples { layout, samples }) = heard else { return Ok(()) };
-    out.add("heard", samples)?;
-    out.add("layout", &layout.iter().map(|number| *number as i64).collect::<Array1<i64>>())
-}
-
-fn add_samples_and_maps(
+fn add_recorded(
     out: &mut NpzOutput,
     radar: &Radar,
     ends: &TwoEnds,
     full: Option<&LogMap>,
+    heard: Option<&LayoutSamples>,
+    output: Option<&RangeAngleMap>,
 ) -> Result<(), NpzError> {
     let [first, last] = End::BOTH.map(|end| channels_map(radar, ends.end(end).view()));
     for (key, end) in [("sub0", End::First), ("sub1", End::Last)] {
@@ -281,7 +269,15 @@ fn add_samples_and_maps(
     if let Some(full) = full {
         out.add("polar_full", &full.decades().view().insert_axis(Axis(0)))?;
     }
-    out.add("polar_partial_mag_phase", &network_input::mag_phase(&first, &last))
+    out.add("polar_partial_mag_phase", &network_input::mag_phase(&first, &last))?;
+    if let Some(LayoutSamples { layout, samples }) = heard {
+        out.add("heard", samples)?;
+        out.add("layout", &layout.iter().map(|number| *number as i64).collect::<Array1<i64>>())?;
+    }
+    if let Some(output) = output {
+        out.add("output", &output.lambda.view().insert_axis(Axis(0)))?;
+    }
+    add_axes(out, radar)
 }
 
 #[cfg(test)]

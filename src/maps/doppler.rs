@@ -11,7 +11,7 @@ use super::transform::channels_range_transform;
 use crate::files::npz::{NpzError, write_npz};
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError, npz};
-use crate::signal::chirps::{ChirpSamples, simulate_chirps, simulate_chirps_for};
+use crate::signal::chirps::{ChirpSamples, simulate_chirps_for};
 use crate::signal::simd::Simd;
 use crate::signal::{Floor, Unfinished};
 use crate::task::Task;
@@ -33,7 +33,7 @@ pub struct RangeDopplerMap {
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn range_doppler(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<RangeDopplerMap, SceneError> {
-    Ok(RangeDopplerMap::of(radar, simulate_chirps(radar, scene, floor, seed)?))
+    range_doppler_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
 }
 
 /// [`range_doppler`], unless `task` is cancelled before it is done.
@@ -78,7 +78,6 @@ impl RangeDopplerMap {
         map
     }
 
-    /// Decades of amplitude of every cell.
     pub fn log_magnitude(&self) -> LogMap {
         let guard = guard(self.power.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max).sqrt());
         LogMap::new(self.power.mapv(|power| (power.sqrt() + guard).log10()))

@@ -17,7 +17,6 @@ pub enum Normalisation {
     DynamicRange(Decibels),
 }
 
-/// A normalisation's name that could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown normalisation \"{0}\"; expected min-max or db=RANGE with RANGE between 1 and 400")]
 pub struct NormalisationError(String);
@@ -82,7 +81,6 @@ impl LambdaScale {
 /// Lambda over range and angle, `[range bins, columns]`, every cell in [0, 1].
 #[derive(Debug, Clone, PartialEq)]
 pub struct RangeAngleMap {
-    /// The cells.
     pub lambda: Array2<f32>,
 }
 
@@ -111,7 +109,6 @@ impl RangeAngleMap {
 }
 
 impl Mask {
-    /// Number of cells above the threshold.
     pub fn count(&self) -> usize {
         self.cells.iter().filter(|&&c| c).count()
     }

@@ -26,7 +26,7 @@ pub use transform::{
     range_transform, range_transform_in_place, windowed_range_transform,
 };
 
-use crate::radar::{BuiltArray, End, Radar};
+use crate::radar::{BuiltArray, Radar};
 use crate::signal::BeatSignal;
 
 /// Log-magnitude maps of both ends and of the whole array.
@@ -43,29 +43,18 @@ pub struct LogMaps {
 impl LogMaps {
     /// All three maps of a beat signal that `elements` of `radar` heard, focused where the radar asks for it ([`focus`]).
     pub fn heard_by(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal) -> LogMaps {
-        if !radar.focus_off_line {
-            return LogMaps::plain(radar, signal);
-        }
-        let map = |aperture| focus::map_of(radar, elements, signal, aperture).log_magnitude();
-        LogMaps {
-            first: map(Aperture::End(End::First)),
-            last: map(Aperture::End(End::Last)),
-            full: map(Aperture::Full),
-        }
+        // Plain maps share their range profiles; each focused map has its own.
+        let profiles = (!radar.focus_off_line).then(|| range_transform(radar, signal));
+        let map = |aperture| match &profiles {
+            Some(profiles) => angle_transform(radar, profiles, aperture).log_magnitude(),
+            None => focus::map_of(radar, elements, signal, aperture).log_magnitude(),
+        };
+        let [first, last, full] = Aperture::ALL.map(map);
+        LogMaps { first, last, full }
     }
 
     /// All three maps of a beat signal, for elements off the array's line by the antennas of `radar` alone.
     pub fn of_signal(radar: &Radar, signal: &BeatSignal) -> LogMaps {
         LogMaps::heard_by(radar, &BuiltArray::default(), signal)
-    }
-
-    fn plain(radar: &Radar, signal: &BeatSignal) -> LogMaps {
-        let profiles = range_transform(radar, signal);
-        let map = |aperture| angle_transform(radar, &profiles, aperture).log_magnitude();
-        LogMaps {
-            first: map(Aperture::End(End::First)),
-            last: map(Aperture::End(End::Last)),
-            full: map(Aperture::Full),
-        }
     }
 }

@@ -12,14 +12,15 @@ use std::ops::Range;
 /// The elements that a map is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Aperture {
-    /// Every element.
     Full,
-    /// The elements of one end.
     End(End),
 }
 
 impl Aperture {
-    pub(super) fn channels(self, radar: &Radar) -> Range<usize> {
+    /// The first end, the last end, and the whole array.
+    pub const ALL: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
+
+    pub(crate) fn channels(self, radar: &Radar) -> Range<usize> {
         match self {
             Aperture::Full => 0..radar.elements,
             Aperture::End(end) => radar.end_range(end),
@@ -30,14 +31,12 @@ impl Aperture {
 /// Windowed range transform of every channel: complex, `[channels, range bins]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RangeProfiles {
-    /// The profiles, one row a channel.
     pub profiles: Array2<Complex64>,
 }
 
 /// Complex range-angle map, `[range bins, columns]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComplexMap {
-    /// The cells.
     pub cells: Array2<Complex64>,
 }
 

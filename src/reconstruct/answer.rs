@@ -25,7 +25,6 @@ pub struct Request {
     pub may_follow: bool,
     /// Samples of another layout than the two ends, for methods that use them ([`Reconstructor::hears`](super::Reconstructor::hears)).
     pub heard: Option<Arc<LayoutSamples>>,
-    /// Progress of the reconstruction, and its cancellation.
     pub task: Task,
 }
 

@@ -2,17 +2,14 @@
 
 use std::fmt;
 
-/// One attempt to explain the samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attempt {
     /// Name of the rung of the ladder ([`LADDER`](super::search::LADDER)) that made it, [`FOLLOWING`](super::search::FOLLOWING) where the search
     /// began with the last answer, or [`CALIBRATION`](super::search::CALIBRATION) where elements were off.
     pub rung: &'static str,
-    /// The proposed objects.
     pub tried: Tried,
     /// Decades by which the remaining energy falls where the attempt is kept, or would have fallen.
     pub gain_decades: f64,
-    /// The verdict on the attempt.
     pub verdict: Verdict,
     /// Work since the attempt before, in units of about ten microseconds.
     pub work: usize,
@@ -21,23 +18,15 @@ pub struct Attempt {
 /// The proposal of an attempt. Places are (x, y), metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tried {
-    /// Nothing was proposed.
     Nothing,
-    /// One reflector.
     Point {
-        /// Place of the reflector.
         at_metres: [f64; 2],
     },
-    /// Reflectors at equal steps.
     Line {
-        /// Place of the first reflector.
         from_metres: [f64; 2],
-        /// Place of the last reflector.
         to_metres: [f64; 2],
-        /// Number of reflectors.
         count: usize,
     },
-    /// Gains of the ends' elements.
     Gains {
         /// Root of the mean square of their differences from their mean, decibels.
         decibels: f64,
@@ -46,7 +35,6 @@ pub enum Tried {
     },
     /// Several objects that are kept or refused together.
     Together {
-        /// Number of objects.
         count: usize,
     },
 }
@@ -62,16 +50,13 @@ impl Tried {
     }
 }
 
-/// The verdict on an attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
     /// The attempt is part of the answer when its rung is done.
     Kept,
-    /// The attempt is not part of the answer, with the reason.
     Refused(Refusal),
 }
 
-/// The reason why an attempt was refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
     /// No candidate was found, or none was worth an attempt.

@@ -35,7 +35,6 @@ impl<'a> Beam<'a> {
         cosine(best.0)
     }
 
-    /// The power of the beam at a place.
     pub fn power_at(&self, range_metres: f64, cos_theta: f64) -> f64 {
         self.power(self.bin(range_metres), range_metres, cos_theta)
     }

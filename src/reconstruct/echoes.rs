@@ -9,7 +9,7 @@ use crate::radar::{BuiltArray, Radar};
 use crate::scene::Reflector;
 use crate::signal::path::PairBlocks;
 use crate::signal::phase::EchoModel;
-use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
+use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Simd};
 use crate::signal::split::{CHUNK, Factors, STRIDE, add_products, fill_factors};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::Axis;
@@ -49,15 +49,7 @@ pub(super) fn of_echoes(
         found.iter().map(|f| Reflector { reflectivity: f.gain.norm(), ..f.reflector }).collect();
     let confidences = confidences(radar, ends, &reflectors, noise_variance);
     let (lambda, least) = lambda_of_power(radar, power, noise_variance, request);
-    Reconstruction {
-        lambda,
-        reflectors,
-        confidences,
-        eta: None,
-        least_eta: Some(least),
-        doubt: None,
-        trace: Vec::new(),
-    }
+    Reconstruction { reflectors, confidences, least_eta: Some(least), ..Reconstruction::of_map(lambda) }
 }
 
 struct Sum<'a> {
@@ -77,9 +69,8 @@ impl Kernel for Sum<'_> {
         for chunk in self.found.chunks(CHUNK) {
             for (f, Gained { reflector, gain }) in factors.iter_mut().zip(chunk) {
                 fill_factors::<f64, W, FMA>(self.model, self.pairs, reflector, &mut f.rows, &mut f.columns);
-                let gain = ComplexLanes { re: Lanes::splat(gain.re), im: Lanes::splat(gain.im) };
                 for row in &mut f.rows {
-                    *row = row.times::<FMA>(gain);
+                    *row = row.times::<FMA>(ComplexLanes::splat(*gain));
                 }
             }
             let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());

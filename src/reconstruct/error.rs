@@ -2,9 +2,7 @@
 
 use crate::task::Cancelled;
 
-/// The reason why a reconstruction has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
 pub enum ReconstructError {
     #[error("cancelled")]
     Cancelled,

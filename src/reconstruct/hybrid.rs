@@ -12,20 +12,21 @@ use crate::radar::{Decibels, Radar};
 use crate::signal::TwoEnds;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The method's knowledge beside the samples, [`About::told`].
-const TOLD_TO_HYBRID: &str = "the same as nomp; and by its network, the training scenes of live";
-
 /// [`super::search::Nomp`], and a network for scenes that the search can't explain, or not in time.
 #[derive(Clone)]
 pub struct Hybrid {
     network: Arc<dyn Reconstructor>,
     settings: Settings,
+    /// The last answer of a method that starts from it where it may. Answers that it followed agree with those from scratch within the floor, and
+    /// depend on what came before in their last digits: figures that are printed come from answers from scratch.
+    last: Option<Arc<Mutex<LastFound>>>,
 }
 
+type LastFound = Option<(Radar, Arc<Found>)>;
+
 impl Hybrid {
-    /// The hybrid of the search and `network`.
     pub fn new(network: Arc<dyn Reconstructor>) -> Self {
-        Hybrid { network, settings: Settings::default() }
+        Hybrid { network, settings: Settings::default(), last: None }
     }
 
     /// The hybrid with other limits of the search.
@@ -67,15 +68,6 @@ impl Hybrid {
         let eta = own_threshold(&lambda, network.doubt.map(|doubt| shown.doubt(doubt)).as_ref());
         Ok(Reconstruction { eta: Some(eta), ..found.as_drawn(lambda, Some(least_eta)) })
     }
-
-    fn about_itself() -> About {
-        About {
-            name: "hybrid",
-            description: "draws the exact map of the objects it finds; in cells that they don't explain it believes a network more",
-            told: TOLD_TO_HYBRID,
-            eta: super::search::ETA,
-        }
-    }
 }
 
 impl Reconstructor for Hybrid {
@@ -84,7 +76,12 @@ impl Reconstructor for Hybrid {
     }
 
     fn about(&self) -> About {
-        Hybrid::about_itself()
+        About {
+            name: "hybrid",
+            description: "draws the exact map of the objects it finds; in cells that they don't explain it believes a network more",
+            told: "the same as nomp; and by its network, the training scenes of live",
+            eta: super::search::ETA,
+        }
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -100,7 +97,17 @@ impl Reconstructor for Hybrid {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let found = find(radar, ends, request, &self.settings)?;
+        let Some(memory) = &self.last else {
+            return self.judged(&find(radar, ends, request, &self.settings)?, radar, ends, request);
+        };
+        // The lock is held for a copy only: a thread that waits for it may be the one that the computation waits for.
+        let last = memory.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let found = match last.filter(|(of, _)| request.may_follow && of == radar) {
+            Some((_, last)) => find_from(&last, radar, ends, request, &self.settings)?,
+            None => find(radar, ends, request, &self.settings)?,
+        };
+        let found = Arc::new(found);
+        *memory.lock().unwrap_or_else(PoisonError::into_inner) = Some((radar.clone(), found.clone()));
         self.judged(&found, radar, ends, request)
     }
 
@@ -109,7 +116,7 @@ impl Reconstructor for Hybrid {
     }
 
     fn following(&self) -> Option<Arc<dyn Reconstructor>> {
-        Some(Arc::new(Following { hybrid: self.clone(), last: Mutex::new(None) }))
+        Some(Arc::new(Hybrid { last: Some(Arc::default()), ..self.clone() }))
     }
 }
 
@@ -150,48 +157,6 @@ impl Shown {
     fn doubt(self, mut doubt: RangeAngleMap) -> RangeAngleMap {
         doubt.lambda.par_mapv_inplace(|v| (v / self.part).min(1.0));
         doubt
-    }
-}
-
-/// A [`Hybrid`] that keeps its last answer, and starts from it where it may. Answers that it followed agree with those of the hybrid
-/// within the floor, and depend on what came before in their last digits: figures that are printed come from answers from scratch.
-struct Following {
-    hybrid: Hybrid,
-    last: Mutex<Option<(Radar, Arc<Found>)>>,
-}
-
-impl Reconstructor for Following {
-    fn about(&self) -> About {
-        Hybrid::about_itself()
-    }
-
-    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        self.hybrid.check_radar(radar)
-    }
-
-    fn reads_eta(&self) -> bool {
-        self.hybrid.reads_eta()
-    }
-
-    fn knows_pairs(&self) -> bool {
-        self.hybrid.knows_pairs()
-    }
-
-    fn weights(&self, radar: &Radar) -> Option<Weights> {
-        self.hybrid.weights(radar)
-    }
-
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        // The lock is held for a copy only: a thread that waits for it may be the one that the computation waits for.
-        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let settings = &self.hybrid.settings;
-        let found = match last.filter(|(of, _)| request.may_follow && of == radar) {
-            Some((_, last)) => find_from(&last, radar, ends, request, settings)?,
-            None => find(radar, ends, request, settings)?,
-        };
-        let found = Arc::new(found);
-        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some((radar.clone(), found.clone()));
-        self.hybrid.judged(&found, radar, ends, request)
     }
 }
 

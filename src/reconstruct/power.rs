@@ -50,15 +50,7 @@ const EULER: f64 = 0.577_215_664_901_532_9;
 
 pub(super) fn of_power(radar: &Radar, power: Array2<f64>, noise_variance: f64, request: &Request) -> Reconstruction {
     let (lambda, least) = lambda_of_power(radar, power, noise_variance, request);
-    Reconstruction {
-        lambda,
-        reflectors: Vec::new(),
-        confidences: Vec::new(),
-        eta: None,
-        least_eta: Some(least),
-        doubt: None,
-        trace: Vec::new(),
-    }
+    Reconstruction { least_eta: Some(least), ..Reconstruction::of_map(lambda) }
 }
 
 #[cfg(test)]

@@ -15,7 +15,6 @@ use std::sync::Arc;
 /// Name and description of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct About {
-    /// Short name for the command line and tables.
     pub name: &'static str,
     /// One sentence for tooltips and help.
     pub description: &'static str,
@@ -40,7 +39,6 @@ pub struct Weights {
 /// The way in which a method uses the samples of other elements than the two ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hears {
-    /// The method uses the two ends alone.
     Ends,
     /// The method takes elements without samples for missing ones: the ends are the halves of the array, silent but for the elements of the layout.
     Halves,
@@ -52,10 +50,8 @@ pub enum Hears {
 ///
 /// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
 pub trait Reconstructor: Send + Sync {
-    /// Name and description of the method.
     fn about(&self) -> About;
 
-    /// The family of the method.
     fn family(&self) -> Family {
         Family::Classical
     }

@@ -2,29 +2,21 @@
 //!
 //! The ends of table 3.1 stand a metre to the left and right of the centre: the ranges of one reflector from them differ by up to 26 bins.
 
-use crate::radar::{Pair, Radar};
+use crate::radar::{Pair, Polar, Radar};
 
 /// Distance in far fields at which a wave counts as plane: its front is curved by less than 1e-5 wavelengths over the array.
 pub(super) const FAR_AWAY: f64 = 1e4;
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PolarView {
-    /// Distance in metres.
-    pub range_metres: f64,
-    /// Cosine of the angle to the array's axis.
-    pub cos_theta: f64,
-}
-
 /// The reflector at (`range_metres`, `cos_theta`) of the centre, in polar coordinates around `from_x_metres` on the array's axis.
-pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -> PolarView {
+pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -> Polar {
     let x = range_metres * cos_theta.clamp(-1.0, 1.0);
     let square = range_metres * range_metres - 2.0 * x * from_x_metres + from_x_metres * from_x_metres;
     let range = square.max(1e-12).sqrt();
-    PolarView { range_metres: range, cos_theta: ((x - from_x_metres) / range).clamp(-1.0, 1.0) }
+    Polar { range_metres: range, cos_theta: ((x - from_x_metres) / range).clamp(-1.0, 1.0) }
 }
 
 /// The reflector at (`range_metres`, `cos_theta`) of the centre, in polar coordinates around an antenna at `place_metres`, (x, y).
-fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> PolarView {
+fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> Polar {
     let [from_x_metres, from_y_metres] = place_metres;
     if from_y_metres == 0.0 {
         return seen_from(from_x_metres, range_metres, cos_theta);
@@ -32,19 +24,19 @@ fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> PolarVi
     let cos = cos_theta.clamp(-1.0, 1.0);
     let (x, y) = (range_metres * cos - from_x_metres, range_metres * (1.0 - cos * cos).sqrt() - from_y_metres);
     let range = x.hypot(y).max(1e-6);
-    PolarView { range_metres: range, cos_theta: (x / range).clamp(-1.0, 1.0) }
+    Polar { range_metres: range, cos_theta: (x / range).clamp(-1.0, 1.0) }
 }
 
 /// The reflector at (`range_metres`, `cos_theta`) of the centre, for a pair of antennas: half the way there and back, and the mean of both
 /// cosines, which is the range's derivative where both antennas move.
-pub(super) fn seen_by(pair: Pair, range_metres: f64, cos_theta: f64) -> PolarView {
+pub(super) fn seen_by(pair: Pair, range_metres: f64, cos_theta: f64) -> Polar {
     let [transmitter, receiver] = pair.places_metres();
     let there = seen_at(transmitter, range_metres, cos_theta);
     if pair.is_one() {
         return there;
     }
     let back = seen_at(receiver, range_metres, cos_theta);
-    PolarView {
+    Polar {
         range_metres: (there.range_metres + back.range_metres) / 2.0,
         cos_theta: (there.cos_theta + back.cos_theta) / 2.0,
     }
@@ -61,9 +53,7 @@ pub(super) fn row_ranges_metres(radar: &Radar) -> Vec<f64> {
 /// A direction and the column of the whole array's map that shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Direction {
-    /// Cosine of the angle to the array's axis.
     pub cos_theta: f64,
-    /// Column of the map.
     pub column: usize,
 }
 

@@ -11,7 +11,6 @@ use std::sync::Arc;
 /// An object, and the bodies that may shadow it. Equal values have equal echoes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeenObject {
-    /// The object.
     pub object: Object,
     /// Bodies between it and the array, or nearly so; none for most objects.
     pub hidden_by: Arc<[Arc<Object>]>,
@@ -35,7 +34,7 @@ impl Bodies {
     fn of(radar: &Radar, scene: &Scene) -> Self {
         let array = Array::of(radar, &scene.disturbances.elements);
         let screen = |(index, object): (usize, &Object)| {
-            let screen = array.screen(&object.body()?.shape());
+            let screen = array.screen(&object.body()?.shape);
             Some((index, Arc::new(object.clone()), screen))
         };
         let bodies = scene.objects.iter().enumerate().filter_map(screen);
@@ -138,7 +137,6 @@ impl Echoing {
         Sources::from(self).len()
     }
 
-    /// Whether nothing echoes.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -190,12 +188,10 @@ impl<'a, const N: usize> From<&'a [Reflector; N]> for Sources<'a> {
 }
 
 impl Sources<'_> {
-    /// Most echoes of all at one element.
     pub fn len(&self) -> usize {
         self.points.len() + self.scatterers.iter().map(Scatterer::echo_count).sum::<usize>()
     }
 
-    /// Whether nothing echoes.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty() && self.scatterers.is_empty()
     }

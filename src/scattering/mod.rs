@@ -49,9 +49,7 @@ pub const REFERENCE_LENGTH_METRES: f64 = 1.0;
 /// Places of transmitter and receiver, (x, y) in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AntennaPlaces {
-    /// The transmitter.
     pub transmitter_metres: [f64; 2],
-    /// The receiver.
     pub receiver_metres: [f64; 2],
 }
 
@@ -72,7 +70,6 @@ impl AntennaPlaces {
 /// The wave in the middle of the chirp, where amplitudes are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wave {
-    /// Transmit power, watts.
     pub power_watts: f64,
     /// Phase of the whole way for each metre of range: twice the physical wave number.
     pub radians_per_metre: f64,
@@ -83,7 +80,6 @@ pub struct Wave {
 }
 
 impl Wave {
-    /// The wave of `radar`.
     pub fn of(radar: &Radar) -> Self {
         let turns = radar.middle_turns_per_metre();
         Wave {
@@ -95,10 +91,8 @@ impl Wave {
     }
 }
 
-/// The kind of an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EchoKind {
-    /// The echo of a point.
     Point,
     /// The mirror reflection of a face.
     Glint,
@@ -113,7 +107,6 @@ pub enum EchoKind {
 }
 
 impl EchoKind {
-    /// Its name in sentences.
     pub fn name(self) -> &'static str {
         match self {
             EchoKind::Point => "point",
@@ -137,7 +130,6 @@ pub struct PathEcho {
     pub place_metres: [f64; 2],
     /// Cosine of the angle of incidence there.
     pub cos_incidence: f64,
-    /// Kind of the echo.
     pub kind: EchoKind,
     /// Whether it is reflected as by a mirror, so that its way goes on straight behind the face.
     pub is_mirrored: bool,
@@ -155,7 +147,6 @@ impl PathEcho {
         }
     }
 
-    /// Whether there is such an echo.
     pub fn is_heard(&self) -> bool {
         self.amplitude != Complex64::default()
     }

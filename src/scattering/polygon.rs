@@ -31,7 +31,6 @@ impl Outline {
         }
     }
 
-    /// Its faces.
     pub fn faces(&self) -> &[Face] {
         &self.faces
     }

@@ -35,22 +35,21 @@ enum Source {
 impl Scatterer {
     /// `object` before `radar`, hidden by the bodies among `hidden_by`.
     pub fn new<'a>(radar: &Radar, object: &Object, hidden_by: impl IntoIterator<Item = &'a Object>) -> Self {
-        let obstacles = hidden_by.into_iter().filter_map(Object::body).flat_map(|body| obstacles(&body)).collect();
+        let obstacles = hidden_by.into_iter().filter_map(Object::body).flat_map(obstacles).collect();
         let wave = Wave::of(radar);
         let Some(body) = object.body() else {
             let source = Source::Points(object.reflectors());
             let (rough, mirror) = (Vec::new(), None);
             return Scatterer { wave, source, deviation_metres: 0.0, rough, obstacles, mirror, is_refined: true };
         };
-        let surface = body.surface();
-        let source = match body.shape() {
-            Shape::Wall(ends) => Source::Wall(Face::new(ends, true, surface.reflectivity)),
-            Shape::Outline(corners) => Source::Outline(Outline::new(&corners, surface.reflectivity)),
+        let source = match body.shape {
+            Shape::Wall(ends) => Source::Wall(Face::new(ends, true, body.reflectivity)),
+            Shape::Outline(corners) => Source::Outline(Outline::new(&corners, body.reflectivity)),
             Shape::Circle { centre_metres, radius_metres } => {
-                Source::Post(Circle::new(centre_metres, radius_metres, surface.reflectivity))
+                Source::Post(Circle::new(centre_metres, radius_metres, body.reflectivity))
             }
         };
-        let deviation_metres = surface.roughness_millimetres * 1e-3;
+        let deviation_metres = body.roughness_millimetres * 1e-3;
         let faces: &[Face] = match &source {
             Source::Wall(face) => std::slice::from_ref(face),
             Source::Outline(outline) => outline.faces(),
@@ -60,7 +59,7 @@ impl Scatterer {
         let length: f64 = faces.iter().map(|f| f.length_metres).sum();
         let spacing = (length / MAX_DIFFUSE as f64).max(DIFFUSE_SPACING_METRES);
         let rough = faces.iter().zip(0..).map(|(face, number)| {
-            RoughFace::new(*face, deviation_metres, diffuse_points(face.length_metres, spacing), surface.seed, number)
+            RoughFace::new(*face, deviation_metres, diffuse_points(face.length_metres, spacing), body.seed, number)
         });
         let rough = rough.collect();
         Scatterer { wave, source, deviation_metres, rough, obstacles, mirror: None, is_refined: true }
@@ -191,8 +190,8 @@ fn point(wave: &Wave, antennas: &AntennaPlaces, point: &Reflector) -> PathEcho {
     }
 }
 
-fn obstacles(body: &Body<'_>) -> Vec<Obstacle> {
-    match body.shape() {
+fn obstacles(body: Body) -> Vec<Obstacle> {
+    match body.shape {
         Shape::Wall(ends) => vec![Obstacle::corners(&ends)],
         Shape::Circle { centre_metres, radius_metres } => vec![Obstacle::circle(centre_metres, radius_metres)],
         Shape::Outline(corners) => convex_parts(&corners).iter().map(|part| Obstacle::corners(part)).collect(),

@@ -59,7 +59,6 @@ impl Array {
         self.corners.into_iter().flat_map(far).fold(0.0, f64::max)
     }
 
-    /// A body as an obstacle.
     pub fn screen(&self, shape: &Shape) -> Screen {
         let (corners, radius) = corners_of(shape);
         let corners = hull(corners);
@@ -67,9 +66,8 @@ impl Array {
         Screen { corners, radius, farthest }
     }
 
-    /// All ways to an object.
     pub fn ways_to(&self, object: &Object) -> Ways {
-        let (places, radius, legs) = match object.body().map(|body| body.shape()) {
+        let (places, radius, legs) = match object.body().map(|body| body.shape) {
             // Faces are mirrors: their ways go on behind them, as long as they came.
             Some(shape @ (Shape::Wall(_) | Shape::Outline(_))) => (corners_of(&shape).0, 0.0, 2.0),
             Some(circle) => {
@@ -190,7 +188,7 @@ mod tests {
         let radar = Radar { elements: 64, ..Radar::default() };
         let mut elements = BuiltArray { elements: vec![ElementError::default(); 64] };
         let point = Object::Point(Point::new(0.0, 12.0));
-        let post = Object::Post(Post::new(0.55, 1.0, 0.1)).body().unwrap().shape();
+        let post = Object::Post(Post::new(0.55, 1.0, 0.1)).body().unwrap().shape;
         let may_hide = |elements: &BuiltArray| {
             let array = Array::of(&radar, elements);
             array.ways_to(&point).may_pass(&array.screen(&post))
@@ -209,7 +207,7 @@ mod tests {
         let wall = Object::Wall(Wall::new(-8.0, 20.0, 16.0, 75.0));
         let may = |x: f64| {
             let car = Object::Box(Block::new([x, 9.0], [4.5, 1.8], 90.0));
-            array.ways_to(&wall).may_pass(&array.screen(&car.body().unwrap().shape()))
+            array.ways_to(&wall).may_pass(&array.screen(&car.body().unwrap().shape))
         };
         assert!(may(-4.0) && may(-1.8));
         assert!(!may(2.8), "the circle around the wall reaches to x = 0");

@@ -1,20 +1,17 @@
 //! Bodies: walls, boxes, posts and polygons. They shine where they face the radar and hide what stands behind them.
 
-use super::common::moving;
+use super::common::{is_default, moving};
 use super::shape::{Shape, direction, doubled_area, inner_corners};
 use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
 
-/// Most corners of a polygon.
 pub const MAX_CORNERS: usize = 256;
 
 /// Smallest radius of a post, metres: a thinner one is no mirror for waves of 8 mm, and a point describes it better.
 pub const MIN_RADIUS_METRES: f64 = 0.01;
 
-/// Smallest length and width of a body, metres.
 pub const MIN_SIZE_METRES: f64 = 1e-3;
 
-/// Largest size of a body, metres.
 pub const MAX_SIZE_METRES: f64 = 1e4;
 
 /// Largest height deviation of a rough surface, millimetres.
@@ -37,10 +34,10 @@ macro_rules! body {
                 #[serde(default = "one")]
                 pub reflectivity: f64,
                 /// Standard deviation of the surface's height, millimetres: 0 is smooth.
-                #[serde(default, skip_serializing_if = "is_zero")]
+                #[serde(default, skip_serializing_if = "is_default")]
                 pub roughness_millimetres: f64,
                 /// Seed of the surface's random heights.
-                #[serde(default, skip_serializing_if = "is_first")]
+                #[serde(default, skip_serializing_if = "is_default")]
                 pub seed: u64,
             }
         }
@@ -50,14 +47,11 @@ macro_rules! body {
 body! {
     /// A straight wall without thickness; both its sides reflect.
     pub struct Wall {
-        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
-        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
-        /// Length from end to end, metres.
         pub length_metres: f64,
         /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub angle_degrees: f64,
     }
 }
@@ -65,28 +59,21 @@ body! {
 body! {
     /// A rectangle: a car is 4.5 m by 1.8 m.
     pub struct Block {
-        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
-        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
-        /// Its length, metres.
         pub length_metres: f64,
         /// Its width, across the length, metres.
         pub width_metres: f64,
         /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub angle_degrees: f64,
     }
 }
 
 body! {
-    /// A round post.
     pub struct Post {
-        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
-        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
-        /// Its radius, metres.
         pub radius_metres: f64,
     }
 }
@@ -104,43 +91,10 @@ pub(super) fn one() -> f64 {
     1.0
 }
 
-/// The surface of a body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Surface {
-    /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
-    pub reflectivity: f64,
-    /// Standard deviation of the surface's height, millimetres: 0 is smooth.
-    pub roughness_millimetres: f64,
-    /// Seed of the random heights.
-    pub seed: u64,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-pub(super) fn is_zero(number: &f64) -> bool {
-    *number == 0.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-fn is_first(seed: &u64) -> bool {
-    *seed == 0
-}
-
 impl Wall {
     /// A smooth wall of metal around (`x_metres`, `y_metres`).
     pub fn new(x_metres: f64, y_metres: f64, length_metres: f64, angle_degrees: f64) -> Self {
-        let (reflectivity, roughness_millimetres, seed) = (1.0, 0.0, 0);
-        Wall {
-            x_metres,
-            y_metres,
-            length_metres,
-            angle_degrees,
-            reflectivity,
-            roughness_millimetres,
-            seed,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        Wall { x_metres, y_metres, length_metres, angle_degrees, reflectivity: 1.0, ..Wall::default() }
     }
 
     /// Its two ends, (x, y) in metres: the far end of its length last.
@@ -153,20 +107,7 @@ impl Wall {
 impl Block {
     /// A smooth box of metal around (`x_metres`, `y_metres`), `length_metres` by `width_metres`.
     pub fn new([x_metres, y_metres]: [f64; 2], [length_metres, width_metres]: [f64; 2], angle_degrees: f64) -> Self {
-        let (reflectivity, roughness_millimetres, seed) = (1.0, 0.0, 0);
-        Block {
-            x_metres,
-            y_metres,
-            length_metres,
-            width_metres,
-            angle_degrees,
-            reflectivity,
-            roughness_millimetres,
-            seed,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        Block { x_metres, y_metres, length_metres, width_metres, angle_degrees, reflectivity: 1.0, ..Block::default() }
     }
 
     /// Its corners counter-clockwise, (x, y) in metres, the first one at the start of its length on the right.
@@ -183,32 +124,14 @@ impl Block {
 impl Post {
     /// A smooth post of metal.
     pub fn new(x_metres: f64, y_metres: f64, radius_metres: f64) -> Self {
-        Post {
-            x_metres,
-            y_metres,
-            radius_metres,
-            reflectivity: 1.0,
-            roughness_millimetres: 0.0,
-            seed: 0,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        Post { x_metres, y_metres, radius_metres, reflectivity: 1.0, ..Post::default() }
     }
 }
 
 impl Polygon {
     /// A smooth polygon of metal.
     pub fn new(corners_metres: Vec<[f64; 2]>) -> Self {
-        Polygon {
-            corners_metres,
-            reflectivity: 1.0,
-            roughness_millimetres: 0.0,
-            seed: 0,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        Polygon { corners_metres, reflectivity: 1.0, ..Polygon::default() }
     }
 
     /// Its corners counter-clockwise, (x, y) in metres.
@@ -227,48 +150,23 @@ impl Polygon {
     }
 }
 
-/// An object that is a body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Body<'a> {
-    /// See [`Wall`].
-    Wall(&'a Wall),
-    /// See [`Block`].
-    Box(&'a Block),
-    /// See [`Post`].
-    Post(&'a Post),
-    /// See [`Polygon`].
-    Polygon(&'a Polygon),
+/// An object that is a body: its outline and its surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    pub shape: Shape,
+    pub reflectivity: f64,
+    pub roughness_millimetres: f64,
+    pub seed: u64,
 }
 
-impl Body<'_> {
-    /// The body's surface.
-    pub fn surface(&self) -> Surface {
-        let (reflectivity, roughness_millimetres, seed) = match self {
-            Body::Wall(w) => (w.reflectivity, w.roughness_millimetres, w.seed),
-            Body::Box(b) => (b.reflectivity, b.roughness_millimetres, b.seed),
-            Body::Post(p) => (p.reflectivity, p.roughness_millimetres, p.seed),
-            Body::Polygon(p) => (p.reflectivity, p.roughness_millimetres, p.seed),
-        };
-        Surface { reflectivity, roughness_millimetres, seed }
-    }
-
-    /// Its outline.
-    pub fn shape(&self) -> Shape {
-        match self {
-            Body::Wall(w) => Shape::Wall(w.ends_metres()),
-            Body::Box(b) => Shape::Outline(b.corners_metres().to_vec()),
-            Body::Post(p) => Shape::Circle { centre_metres: [p.x_metres, p.y_metres], radius_metres: p.radius_metres },
-            Body::Polygon(p) => Shape::Outline(p.outline_metres()),
-        }
-    }
-
+impl Body {
     /// Points that the body's roughness scatters from; 0 for a smooth body and for posts.
     pub fn diffuse_count(&self) -> usize {
-        if self.surface().roughness_millimetres == 0.0 {
+        if self.roughness_millimetres == 0.0 {
             return 0;
         }
         let length = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
-        let faces = self.shape().faces();
+        let faces = self.shape.faces();
         let spacing = (faces.iter().map(|f| length(*f)).sum::<f64>() / MAX_DIFFUSE as f64).max(DIFFUSE_SPACING_METRES);
         faces.iter().map(|f| diffuse_points(length(*f), spacing)).sum()
     }
@@ -276,30 +174,28 @@ impl Body<'_> {
     /// Most echoes that it gives one element.
     pub fn echo_count(&self) -> usize {
         self.diffuse_count()
-            + match self {
-                Body::Wall(_) => 3,
-                Body::Box(_) => 8,
-                Body::Post(_) => 1,
+            + match &self.shape {
+                Shape::Wall(_) => 3,
+                Shape::Circle { .. } => 1,
                 // Each inner corner has six more.
-                Body::Polygon(p) => 2 * p.corners_metres.len() + 6 * inner_corners(&p.outline_metres()).len(),
+                Shape::Outline(corners) => 2 * corners.len() + 6 * inner_corners(corners).len(),
             }
     }
 
     /// Places that echo to an antenna at `from_metres`, with no other body in between: feet of perpendiculars on the faces, ends of the faces that
     /// are seen, a post's nearest point. (x, y) in metres.
     pub fn echo_places_metres(&self, from_metres: [f64; 2]) -> Vec<[f64; 2]> {
-        let shape = self.shape();
-        if let Shape::Circle { centre_metres: c, radius_metres } = shape {
+        if let Shape::Circle { centre_metres: c, radius_metres } = self.shape {
             let away = (from_metres[0] - c[0]).hypot(from_metres[1] - c[1]);
             let on = |i: usize| c[i] + (from_metres[i] - c[i]) * radius_metres / away;
             return if away > radius_metres { vec![[on(0), on(1)]] } else { Vec::new() };
         }
         let mut places = Vec::new();
-        for [a, b] in shape.faces() {
+        for [a, b] in self.shape.faces() {
             let along = [b[0] - a[0], b[1] - a[1]];
             let to = [from_metres[0] - a[0], from_metres[1] - a[1]];
             let height = to[0] * along[1] - to[1] * along[0];
-            if height == 0.0 || (height < 0.0 && !matches!(shape, Shape::Wall(_))) {
+            if height == 0.0 || (height < 0.0 && !matches!(self.shape, Shape::Wall(_))) {
                 continue;
             }
             let part = (to[0] * along[0] + to[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
@@ -314,8 +210,7 @@ impl Body<'_> {
     }
 
     pub(super) fn covered_element(&self, radar: &Radar) -> Option<usize> {
-        let shape = self.shape();
-        let (low, high) = shape.extent();
+        let (low, high) = self.shape.extent();
         let near = super::MIN_ELEMENT_DISTANCE_METRES;
         let [hind, fore] = radar.antenna_depth_metres();
         if low[1] > fore + near || high[1] < hind - near {
@@ -323,7 +218,7 @@ impl Body<'_> {
         }
         (0..radar.elements).find(|n| {
             let covers =
-                |[x, y]: [f64; 2]| x >= low[0] - near && x <= high[0] + near && shape.distance_metres([x, y]) < near;
+                |[x, y]: [f64; 2]| x >= low[0] - near && x <= high[0] + near && self.shape.distance_metres([x, y]) < near;
             radar.pair(*n).places_metres().into_iter().any(covers)
         })
     }
@@ -337,6 +232,7 @@ pub fn diffuse_points(length_metres: f64, spacing_metres: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Object;
 
     #[test]
     fn a_box_has_its_corners_counter_clockwise() {
@@ -364,11 +260,12 @@ mod tests {
 
     #[test]
     fn a_body_echoes_from_the_foot_of_the_perpendicular() {
-        let wall = Wall::new(1.0, 10.0, 4.0, 0.0);
-        assert_eq!(Body::Wall(&wall).echo_places_metres([0.0, 0.0]), [[-1.0, 10.0], [0.0, 10.0], [3.0, 10.0]]);
-        assert_eq!(Body::Wall(&wall).echo_places_metres([5.0, 20.0]).len(), 2, "behind it and beside it");
-        let car = Block::new([3.0, 10.0], [2.0, 2.0], 0.0);
-        assert_eq!(Body::Box(&car).echo_places_metres([0.0, 0.0]), [[2.0, 9.0], [4.0, 9.0], [2.0, 11.0]]);
-        assert_eq!(Body::Post(&Post::new(0.0, 10.0, 1.0)).echo_places_metres([0.0, 0.0]), [[0.0, 9.0]]);
+        let places = |object: &Object, from| object.body().unwrap().echo_places_metres(from);
+        let wall = Object::Wall(Wall::new(1.0, 10.0, 4.0, 0.0));
+        assert_eq!(places(&wall, [0.0, 0.0]), [[-1.0, 10.0], [0.0, 10.0], [3.0, 10.0]]);
+        assert_eq!(places(&wall, [5.0, 20.0]).len(), 2, "behind it and beside it");
+        let car = Object::Box(Block::new([3.0, 10.0], [2.0, 2.0], 0.0));
+        assert_eq!(places(&car, [0.0, 0.0]), [[2.0, 9.0], [4.0, 9.0], [2.0, 11.0]]);
+        assert_eq!(places(&Object::Post(Post::new(0.0, 10.0, 1.0)), [0.0, 0.0]), [[0.0, 9.0]]);
     }
 }

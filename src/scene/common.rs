@@ -4,18 +4,16 @@
 macro_rules! moving {
     ($(#[$about:meta])* pub struct $name:ident { $($fields:tt)* }) => {
         $(#[$about])*
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct $name {
             /// Name of the object, empty for none; at most [`MAX_NAME_CHARACTERS`](super::MAX_NAME_CHARACTERS).
             #[serde(default, skip_serializing_if = "String::is_empty")]
             pub name: String,
             $($fields)*
-            /// Velocity along the array's axis, metres a second.
-            #[serde(default, skip_serializing_if = "is_zero")]
+            #[serde(default, skip_serializing_if = "is_default")]
             pub velocity_x_metres_per_second: f64,
-            /// Velocity away from the array, metres a second.
-            #[serde(default, skip_serializing_if = "is_zero")]
+            #[serde(default, skip_serializing_if = "is_default")]
             pub velocity_y_metres_per_second: f64,
         }
     };
@@ -37,3 +35,8 @@ macro_rules! of_each {
     };
 }
 pub(super) use of_each;
+
+/// Whether a value is that of a file that leaves it out.
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -5,17 +5,13 @@ use crate::radar::{BuiltArray, ElementError, Radar};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// All disturbances of a scene; none by default.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Disturbances {
-    /// Elements as they are built.
     #[serde(skip_serializing_if = "BuiltArray::is_ideal")]
     pub elements: BuiltArray,
-    /// Another radar that sends at the same time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interferer: Option<Interferer>,
-    /// A plane that mirrors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mirror: Option<Mirror>,
 }
@@ -27,15 +23,12 @@ pub struct Disturbances {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Interferer {
-    /// Position along the array's axis, metres.
     pub x_metres: f64,
-    /// Position ahead of the array, metres.
     pub y_metres: f64,
     /// Strength of its amplitude: at the array it is the radar's power times this over the distance in metres.
     pub strength: f64,
     /// Time at which its frequency crosses ours, as a part of our chirp: 0 at the first sample, 1 after the last.
     pub crossing: f64,
-    /// Duration, as a fraction of our chirp.
     pub duration: f64,
 }
 
@@ -126,7 +119,6 @@ impl Mirror {
 }
 
 impl Disturbances {
-    /// Whether there are no disturbances.
     pub fn is_none(&self) -> bool {
         self.elements.is_ideal() && self.interferer.is_none() && self.mirror.is_none()
     }

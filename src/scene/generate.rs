@@ -121,17 +121,6 @@ impl Generator {
             Kind::Noise => Vec::new(),
             Kind::Points(count) => (0..count).map(|_| self.point(rng)).collect(),
             Kind::Mixed(count) => (0..count).map(|_| self.point_or_line(rng)).collect(),
-            Kind::Clusters
-            | Kind::Walls
-            | Kind::Spacings
-            | Kind::Corner
-            | Kind::Crowd
-            | Kind::Dynamic
-            | Kind::Near
-            | Kind::Fences
-            | Kind::Rain => {
-                PlacementField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
-            }
             Kind::Bodies | Kind::Street | Kind::Rails | Kind::Occlusion | Kind::Rough => {
                 things::objects(kind, self.max_range, rng)
             }
@@ -139,6 +128,7 @@ impl Generator {
             Kind::Beyond(kind) => {
                 BeyondField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng)
             }
+            _ => PlacementField { max_range_metres: self.max_range, bin_metres: self.bin }.objects(kind, rng),
         };
         let name = format!("{kind:?} {number}, seed {}", self.seed);
         Scene { name, noise_seed: self.noise_seed(kind, number), objects, ..Scene::default() }
@@ -287,7 +277,7 @@ mod tests {
         }
         let rough = scenes(Kind::Rough).into_iter().flatten();
         let deviations: Vec<f64> = rough
-            .filter_map(|o| Some(o.body()?.surface().roughness_millimetres))
+            .filter_map(|o| Some(o.body()?.roughness_millimetres))
             .filter(|deviation| *deviation > 0.0)
             .collect();
         assert!(deviations.len() >= 40 && deviations.iter().all(|d| (0.2..=1.5).contains(d)), "{deviations:?}");

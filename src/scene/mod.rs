@@ -14,7 +14,9 @@ pub mod presets;
 pub mod shape;
 mod turn;
 
-pub use body::{Block, Body, Polygon, Post, Surface, Wall};
+pub(crate) use common::is_default;
+
+pub use body::{Block, Body, Polygon, Post, Wall};
 pub use disturbances::{Disturbances, Interferer, Mirror};
 pub use motion::MAX_SPEED_METRES_PER_SECOND;
 pub use object::{GaussianCluster, Line, MAX_NAME_CHARACTERS, Object, Point};
@@ -45,12 +47,11 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub notes: String,
     /// Picks the noise of the floor beneath the scene, where there is noise. TOML holds it up to 2^63.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub noise_seed: u64,
     /// Whether bodies hide what stands behind them.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub shadows: bool,
-    /// Element errors, interference and mirrors.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
     /// The objects, in the order they were added.
@@ -74,11 +75,6 @@ fn is_true(value: &bool) -> bool {
     *value
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-fn is_zero(seed: &u64) -> bool {
-    *seed == 0
-}
-
 /// Smallest distance of a reflector from an element, metres. Nearer, the 1/R^2 law is unbounded.
 pub const MIN_ELEMENT_DISTANCE_METRES: f64 = 1e-6;
 
@@ -87,7 +83,6 @@ pub const MAX_REFLECTORS: usize = 200_000;
 
 /// A reason for which a scene can't be simulated. Messages count objects from 1, as the app does.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
 pub enum SceneError {
     #[error("object {} ({kind}): {field} is {value}; expected {expected}", object + 1)]
     Value { object: usize, kind: &'static str, field: &'static str, value: f64, expected: &'static str },
@@ -118,7 +113,6 @@ impl Scene {
         Scene { objects, ..Scene::default() }
     }
 
-    /// Every reflector of every object, in order.
     pub fn reflectors(&self) -> Vec<Reflector> {
         self.objects.iter().flat_map(Object::reflectors).collect()
     }
@@ -148,7 +142,6 @@ impl Scene {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.echo_count()))
     }
 
-    /// Whether there is a body among the objects.
     pub fn has_bodies(&self) -> bool {
         self.objects.iter().any(|o| o.body().is_some())
     }
@@ -209,7 +202,7 @@ fn within_limit(count: usize, what: &'static str) -> Result<(), SceneError> {
 }
 
 /// The element that a reflector comes too close to, if any.
-fn touched_element(radar: &Radar, r: &Reflector) -> Option<usize> {
+pub(crate) fn touched_element(radar: &Radar, r: &Reflector) -> Option<usize> {
     let [hind, fore] = radar.antenna_depth_metres();
     if (r.y_metres - r.y_metres.clamp(hind, fore)).abs() >= MIN_ELEMENT_DISTANCE_METRES {
         return None;

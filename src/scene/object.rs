@@ -1,8 +1,9 @@
 //! The objects of a scene: points, lines of points, Gaussian clusters of points, and bodies.
 
 use super::Reflector;
-use super::body::{Block, Body, Polygon, Post, Wall, is_zero, one};
-use super::common::{moving, of_each};
+use super::body::{Block, Body, Polygon, Post, Wall, one};
+use super::shape::Shape;
+use super::common::{is_default, moving, of_each};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -15,30 +16,19 @@ pub const MAX_NAME_CHARACTERS: usize = 40;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Object {
-    /// One reflector.
     Point(Point),
-    /// Reflectors one behind the other, on a straight line.
     Line(Line),
-    /// Reflectors scattered around a centre (thesis figure 5-5).
     Gaussian(GaussianCluster),
-    /// A straight wall.
     Wall(Wall),
-    /// A rectangle, such as a car.
     Box(Block),
-    /// A round post.
     Post(Post),
-    /// A closed outline of straight faces.
     Polygon(Polygon),
 }
 
 moving! {
-    /// One reflector.
     pub struct Point {
-        /// Position along the array's axis, metres.
         pub x_metres: f64,
-        /// Position ahead of the array, metres.
         pub y_metres: f64,
-        /// Reflectivity sigma.
         #[serde(default = "one")]
         pub reflectivity: f64,
     }
@@ -47,18 +37,13 @@ moving! {
 moving! {
     /// Reflectors at equal spacing on a straight line: the thesis' vertical line (section 3.2), or one at any slant.
     pub struct Line {
-        /// x of the first reflector, along the array's axis, metres.
         pub x_metres: f64,
-        /// y of the first reflector, metres.
         pub y_start_metres: f64,
-        /// Distance between neighbouring reflectors, metres.
         pub spacing_metres: f64,
         /// Direction of the line from its first reflector: 0 along +x, 90 (the default) straight ahead (+y).
         #[serde(default = "straight_ahead", skip_serializing_if = "is_straight_ahead")]
         pub direction_degrees: f64,
-        /// Number of reflectors.
         pub count: usize,
-        /// Reflectivity sigma of each reflector.
         #[serde(default = "one")]
         pub reflectivity: f64,
     }
@@ -67,20 +52,13 @@ moving! {
 moving! {
     /// Reflectors drawn from a normal distribution around a centre; the same seed gives the same cluster.
     pub struct GaussianCluster {
-        /// Centre along the array's axis, metres.
         pub x_metres: f64,
-        /// Centre ahead of the array, metres.
         pub y_metres: f64,
-        /// Standard deviation along x, metres.
         pub x_std_metres: f64,
-        /// Standard deviation along y, metres.
         pub y_std_metres: f64,
-        /// Number of reflectors.
         pub count: usize,
-        /// Seed of the offsets from the centre.
         #[serde(default)]
         pub seed: u64,
-        /// Reflectivity sigma of each reflector.
         #[serde(default = "one")]
         pub reflectivity: f64,
     }
@@ -98,18 +76,8 @@ fn is_straight_ahead(direction_degrees: &f64) -> bool {
 impl Line {
     /// A line straight ahead from (`x_metres`, `y_start_metres`), of reflectivity 1.
     pub fn vertical(x_metres: f64, y_start_metres: f64, spacing_metres: f64, count: usize) -> Self {
-        let direction_degrees = straight_ahead();
-        Line {
-            x_metres,
-            y_start_metres,
-            spacing_metres,
-            direction_degrees,
-            count,
-            reflectivity: 1.0,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        let (direction_degrees, reflectivity) = (straight_ahead(), 1.0);
+        Line { x_metres, y_start_metres, spacing_metres, direction_degrees, count, reflectivity, ..Line::default() }
     }
 
     /// Step from one reflector to the next, (x, y) in metres. Exactly (0, spacing) straight ahead.
@@ -134,32 +102,15 @@ impl Line {
 impl GaussianCluster {
     /// A cluster of reflectivity 1 and seed 0 around a centre, with standard deviations along x and y.
     pub fn new([x_metres, y_metres]: [f64; 2], [x_std_metres, y_std_metres]: [f64; 2], count: usize) -> Self {
-        GaussianCluster {
-            x_metres,
-            y_metres,
-            x_std_metres,
-            y_std_metres,
-            count,
-            seed: 0,
-            reflectivity: 1.0,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        let reflectivity = 1.0;
+        GaussianCluster { x_metres, y_metres, x_std_metres, y_std_metres, count, reflectivity, ..Self::default() }
     }
 }
 
 impl Point {
     /// A point of reflectivity 1.
     pub fn new(x_metres: f64, y_metres: f64) -> Self {
-        Point {
-            x_metres,
-            y_metres,
-            reflectivity: 1.0,
-            name: String::new(),
-            velocity_x_metres_per_second: 0.0,
-            velocity_y_metres_per_second: 0.0,
-        }
+        Point { x_metres, y_metres, reflectivity: 1.0, ..Point::default() }
     }
 }
 
@@ -190,7 +141,6 @@ impl Object {
         if self.name().is_empty() { format!("{} {}", self.noun(), index + 1) } else { self.name().to_owned() }
     }
 
-    /// Its name; empty where it has none.
     pub fn name(&self) -> &str {
         of_each!(self, one => &one.name)
     }
@@ -202,14 +152,18 @@ impl Object {
     }
 
     /// The object as a body; `None` for objects made of points.
-    pub fn body(&self) -> Option<Body<'_>> {
-        match self {
-            Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => None,
-            Object::Wall(w) => Some(Body::Wall(w)),
-            Object::Box(b) => Some(Body::Box(b)),
-            Object::Post(p) => Some(Body::Post(p)),
-            Object::Polygon(p) => Some(Body::Polygon(p)),
-        }
+    pub fn body(&self) -> Option<Body> {
+        let (shape, roughness_millimetres, seed) = match self {
+            Object::Point(_) | Object::Line(_) | Object::Gaussian(_) => return None,
+            Object::Wall(w) => (Shape::Wall(w.ends_metres()), w.roughness_millimetres, w.seed),
+            Object::Box(b) => (Shape::Outline(b.corners_metres().to_vec()), b.roughness_millimetres, b.seed),
+            Object::Post(p) => {
+                let circle = Shape::Circle { centre_metres: [p.x_metres, p.y_metres], radius_metres: p.radius_metres };
+                (circle, p.roughness_millimetres, p.seed)
+            }
+            Object::Polygon(p) => (Shape::Outline(p.outline_metres()), p.roughness_millimetres, p.seed),
+        };
+        Some(Body { shape, reflectivity: self.reflectivity(), roughness_millimetres, seed })
     }
 
     /// Number of reflectors; bodies have none.
@@ -315,7 +269,6 @@ impl Object {
         [*x, *y] = place_metres;
     }
 
-    /// Moves the whole object.
     pub fn translate(&mut self, dx_metres: f64, dy_metres: f64) {
         if let Object::Polygon(p) = self {
             p.corners_metres.iter_mut().for_each(|c| *c = [c[0] + dx_metres, c[1] + dy_metres]);

@@ -115,7 +115,7 @@ impl Object {
             Object::Polygon(p) => check.outline(&p.corners_metres)?,
         }
         check.reflectivity(self.reflectivity())?;
-        let rough = self.body().map_or(0.0, |body| body.surface().roughness_millimetres);
+        let rough = self.body().map_or(0.0, |body| body.roughness_millimetres);
         check.value("roughness_millimetres", rough, (0.0..=MAX_ROUGHNESS_MILLIMETRES).contains(&rough), "0 to 100 mm")
     }
 }

@@ -7,7 +7,6 @@ use super::file::{SceneFile, SceneTextError, from_toml};
 pub struct Preset {
     /// Name of its file in `assets/scenes`, without `.toml`.
     pub id: &'static str,
-    /// The file's text.
     pub toml: &'static str,
 }
 
@@ -72,7 +71,6 @@ impl Preset {
         self.failing_method().is_some()
     }
 
-    /// The preset called `id`.
     pub fn by_id(id: &str) -> Option<&'static Preset> {
         ALL.iter().find(|p| p.id == id)
     }

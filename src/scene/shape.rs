@@ -1,5 +1,7 @@
 //! Outlines of bodies, and the plane geometry that they need.
 
+use std::f64::consts::TAU;
+
 pub(super) fn out_of_reach(metres: f64) -> bool {
     metres.abs() > 1e12
 }
@@ -11,11 +13,8 @@ pub enum Shape {
     Wall([[f64; 2]; 2]),
     /// Corners of a closed outline, counter-clockwise with y up, (x, y) in metres.
     Outline(Vec<[f64; 2]>),
-    /// A circle.
     Circle {
-        /// Its middle, (x, y) in metres.
         centre_metres: [f64; 2],
-        /// Its radius, metres.
         radius_metres: f64,
     },
 }
@@ -62,6 +61,19 @@ impl Shape {
             }
             Shape::Circle { .. } => Vec::new(),
         }
+    }
+
+    /// The line along its outline, (x, y) in metres, closed but for a wall's; 48 chords for a circle.
+    pub fn line_around(&self) -> Vec<(f64, f64)> {
+        let closed = match self {
+            Shape::Wall([a, b]) => return vec![(a[0], a[1]), (b[0], b[1])],
+            Shape::Circle { centre_metres: [x, y], radius_metres: r } => {
+                let at = |i: i32| (TAU * f64::from(i) / 48.0).sin_cos();
+                return (0..=48).map(at).map(|(sin, cos)| (x + r * cos, y + r * sin)).collect();
+            }
+            Shape::Outline(corners) => corners,
+        };
+        closed.iter().chain(closed.first()).map(|c| (c[0], c[1])).collect()
     }
 
     /// A circle around it: its middle, (x, y) in metres, and its radius in metres.

@@ -63,8 +63,8 @@ mod tests {
                 let ([x, y], [u, v]) = (before.centre_metres(), after.centre_metres());
                 assert!((x - u).hypot(y - v) < 1e-12, "the middle stays");
                 after.turn(-degrees);
-                let off = before.body().unwrap().shape().faces().into_iter().flatten().flatten();
-                let back = after.body().unwrap().shape().faces().into_iter().flatten().flatten();
+                let off = before.body().unwrap().shape.faces().into_iter().flatten().flatten();
+                let back = after.body().unwrap().shape.faces().into_iter().flatten().flatten();
                 assert!(off.zip(back).all(|(a, b): (f64, f64)| (a - b).abs() < 1e-12), "{after:?}");
             }
         }

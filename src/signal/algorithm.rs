@@ -21,7 +21,6 @@ pub enum Algorithm {
 }
 
 impl Algorithm {
-    /// Every algorithm.
     pub const ALL: [Algorithm; 5] =
         [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded, Algorithm::ClosedForm];
 
@@ -30,7 +29,6 @@ impl Algorithm {
         !matches!(self, Algorithm::Direct | Algorithm::Exact)
     }
 
-    /// Name in reports and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Algorithm::Direct => "direct",
@@ -48,7 +46,6 @@ impl fmt::Display for Algorithm {
     }
 }
 
-/// An algorithm's name that is not known.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown algorithm \"{0}\"; expected direct, exact, split, gridded or closed-form")]
 pub struct UnknownAlgorithm(String);
@@ -65,9 +62,7 @@ impl FromStr for Algorithm {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
-    /// Single.
     F32,
-    /// Double.
     F64,
 }
 

@@ -1,8 +1,9 @@
 //! The signal at an array with element errors.
 
-use super::floor::Floor;
+use super::floor::{self, Floor};
 use super::interference::add_interference;
-use super::over_floor::simulate_echoes;
+use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
+use super::run::samples_of;
 use super::samples::BeatSignal;
 use super::unfinished::Unfinished;
 use crate::radar::{BuiltArray, Radar};
@@ -25,7 +26,7 @@ pub fn simulate_built(
     simulate_built_for(&Task::default(), radar, scene, array, floor, seed).map_err(Unfinished::of_scene)
 }
 
-/// [`simulate_built`], unless `task` is cancelled before it is done.
+/// [`simulate_built`], unless `task` is cancelled before it is done. Noise comes after interference, gains and phases.
 pub(super) fn simulate_built_for(
     task: &Task,
     radar: &Radar,
@@ -36,9 +37,14 @@ pub(super) fn simulate_built_for(
 ) -> Result<BeatSignal, Unfinished> {
     scene.validate(radar)?;
     array.validate(radar).map_err(SceneError::from)?;
-    let heard = |signal: &mut BeatSignal| hear(radar, scene, array, signal);
-    let mut signal = simulate_echoes(radar, array, &Echoing::of(radar, scene), floor, seed, heard, task);
+    let echoing = Echoing::of(radar, scene);
+    let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
+    let mut signal = BeatSignal { samples: samples_of(radar, array, (&echoing).into(), &plan, 0..radar.elements, task) };
+    hear(radar, scene, array, &mut signal);
     task.check()?;
+    if let Some(variance) = floor::noise_variance(radar, &echoing, floor) {
+        floor::add_noise(&mut signal, &variance, seed);
+    }
     for (n, mut samples) in signal.samples.outer_iter_mut().enumerate() {
         if array.element(n).dead {
             samples.fill(Complex64::default());
@@ -47,7 +53,16 @@ pub(super) fn simulate_built_for(
     Ok(signal)
 }
 
-/// Adds the scene's interferer at the elements of `array`, then applies gain and phase of each element. Noise comes afterwards.
+/// Samples are for any use and kept in f64. Their errors must not show under any normalisation; over a loud floor none may exceed 1e-12.
+pub(super) fn tolerance(floor: Floor) -> f64 {
+    match floor {
+        Floor::Exact => BEST_TOLERANCE,
+        Floor::Snr(snr) if snr.0 <= 40.0 => 1e-12,
+        Floor::Thesis | Floor::Snr(_) | Floor::Level(_) | Floor::Thermal => FLOOR_TOLERANCE,
+    }
+}
+
+/// Adds the scene's interferer at the elements of `array`, then applies gain and phase of each element.
 pub(super) fn hear(radar: &Radar, scene: &Scene, array: &BuiltArray, signal: &mut BeatSignal) {
     if let Some(interferer) = &scene.disturbances.interferer {
         add_interference(radar, array, interferer, signal);
@@ -116,7 +131,7 @@ mod tests {
         assert_eq!(explicit.objects.len(), 5, "three ghosts of the point before the wall, none of that behind it");
         assert_eq!(simulate(&radar, &explicit, Floor::Exact, 3).unwrap(), mirrored);
         scene.disturbances.elements.elements[5].dead = true;
-        let ends = crate::signal::simulate_ends(&radar, &scene, Floor::Thesis, 3).unwrap();
+        let ends = crate::signal::simulate_ends_for(&Task::default(), &radar, &scene, Floor::Thesis, 3).unwrap();
         assert_eq!(ends, simulate(&radar, &scene, Floor::Thesis, 3).unwrap().two_ends(&radar));
         assert_eq!(ends.first.row(5).iter().map(|v| v.norm()).sum::<f64>(), 0.0);
     }

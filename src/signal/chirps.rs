@@ -6,11 +6,10 @@
 //! of the chirp. Echoes of a body that appear or vanish between two chirps stand still in between.
 //!
 //! Objects at rest are evaluated once, by the algorithms of a single chirp. Without moving objects the first chirp has the bits of
-//! [`simulate_ends`](super::simulate_ends). Each chirp has its own noise. An interferer is the same in every chirp.
+//! [`simulate_ends_for`](super::simulate_ends_for). Each chirp has its own noise. An interferer is the same in every chirp.
 
-use super::built::hear;
+use super::built::{hear, tolerance};
 use super::floor::{self, Floor};
-use super::over_floor::tolerance;
 use super::path::Path;
 use super::phase::{Echo, EchoModel};
 use super::plan::{Plan, amplitude_bound};
@@ -61,16 +60,9 @@ pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
     [0..count, radar.elements - count..radar.elements]
 }
 
-/// Samples of every chirp of `radar` over the named floor; `seed` picks its noise.
+/// Samples of every chirp of `radar` over the named floor, unless `task` is cancelled before they are done; `seed` picks its noise.
 /// # Errors
-/// [`SceneError`] when the scene can't be simulated, at the first chirp or at the last.
-pub fn simulate_chirps(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<ChirpSamples, SceneError> {
-    simulate_chirps_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
-}
-
-/// [`simulate_chirps`], unless `task` is cancelled before it is done.
-/// # Errors
-/// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
+/// [`Unfinished`] when the scene can't be simulated, at the first chirp or at the last, and soon after the task was cancelled.
 pub fn simulate_chirps_for(
     task: &Task,
     radar: &Radar,

@@ -13,10 +13,10 @@
 //! expanded together. Side lobes fall as `1 / (pi d^3)` of the peak: 12 bins either side for 1e-3, 110 for 1e-6.
 
 use super::heard::HeardEchoes;
-use super::path::{PairBlocks, Path, range_span_metres};
-use super::phase::{EchoLanes, EchoModel};
+use super::path::{Path, range_span_metres};
+use super::phase::EchoLanes;
 use super::rows::Rows;
-use super::simd::{ComplexLanes, Lanes, Real, phasor};
+use super::simd::{ComplexLanes, Lanes, Real, horner, phasor};
 use crate::radar::{Radar, WindowFunction};
 use crate::scene::Reflector;
 use num_complex::Complex;
@@ -80,9 +80,7 @@ impl<T: Real> ClosedForm<T> {
     pub(super) fn touch_paths<const W: usize>(&self, radar: &Radar, paths: &[Path<W>], quiet: f64, rows: &mut Rows) {
         for path in paths {
             let Some(reach) = self.reach_of(&path.amplitude, quiet) else { continue };
-            let ranges = path.range_metres.hi.0;
-            let span = ranges.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), r| (a.min(*r), b.max(*r)));
-            self.touch(radar, span, reach, rows);
+            self.touch(radar, path.range_metres.hi.bounds(), reach, rows);
         }
     }
 
@@ -112,14 +110,12 @@ impl<T: Real> ClosedForm<T> {
     #[inline(always)]
     pub(super) fn add_block<const W: usize, const FMA: bool>(
         &self,
-        model: &EchoModel,
-        pairs: PairBlocks<W>,
-        heard: HeardEchoes<'_, W>,
+        heard: &HeardEchoes<'_, W>,
         quiet: f64,
         cells: &mut [ComplexLanes<T, W>],
     ) {
         for i in 0..heard.len() {
-            let echo = heard.echo::<FMA>(model, pairs, i);
+            let echo = heard.echo::<FMA>(i);
             if let Some(reach) = self.reach_of(&echo.amplitude, quiet) {
                 self.add::<W, FMA>(&echo, reach as isize, cells);
             }
@@ -135,10 +131,7 @@ impl<T: Real> ClosedForm<T> {
     ) {
         let of = Lanes::<f64, W>::splat;
         let bins = self.samples as f64;
-        // Range in bins, on the same side of the wrap as the first lane's, from the bin nearest to that.
-        let position = echo.beat_turns * of(bins);
-        let wraps = ((position - of(position.0[0])) * of(1.0 / bins)).nearest();
-        let position = position - wraps * of(bins);
+        let position = echo.position_in(bins);
         let middle = position.0[0].round();
         let offset = (position - of(middle)) + echo.beat_turns_low * of(bins);
 
@@ -149,8 +142,7 @@ impl<T: Real> ClosedForm<T> {
         let still = ComplexLanes { re: carrier.im, im: -carrier.re }.scaled(Lanes::splat(T::of(0.25 / sin_edge)));
         let turning = still.times::<FMA>(phasor::<T, W, FMA>(offset * of((bins - 1.0) / bins)));
 
-        let lowest = offset.0.iter().fold(f64::INFINITY, |m, v| m.min(*v));
-        let highest = offset.0.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v));
+        let (lowest, highest) = offset.bounds();
         let (first, last) = (lowest.floor() as isize - reach, highest.ceil() as isize + reach);
         let (first, last) = match last - first < self.samples as isize {
             true => (first, last),
@@ -161,7 +153,7 @@ impl<T: Real> ClosedForm<T> {
         let mut turn = first.rem_euclid(self.samples as isize) as usize;
         for j in first..=last {
             let w = self.turns[turn];
-            let turned = turning.times::<FMA>(ComplexLanes { re: Lanes::splat(w.re), im: Lanes::splat(w.im) });
+            let turned = turning.times::<FMA>(ComplexLanes::splat(w));
             let distance = narrow - Lanes::splat(T::of(j as f64));
             let mut value = (turned - still).scaled(far::<T, W, FMA>(distance, bins, sin_edge));
             if (j as f64) > lowest - PEAK_BINS && (j as f64) < highest + PEAK_BINS {
@@ -227,15 +219,8 @@ fn far<T: Real, const W: usize, const FMA: bool>(distance: Lanes<T, W>, bins: f6
     let splat = |v: f64| Lanes::<T, W>::splat(T::of(v));
     let turns = distance * splat(0.5 / bins);
     let square = turns * turns;
-    let horner = |terms: &[f64]| {
-        let mut value = splat(terms[terms.len() - 1]);
-        for term in terms[..terms.len() - 1].iter().rev() {
-            value = value.mul_add::<FMA>(square, splat(*term));
-        }
-        value
-    };
-    let cos = horner(T::COS);
-    let q = turns * horner(T::SIN) * splat(1.0 / sin_edge);
+    let cos = horner::<T, W, FMA>(T::COS, square);
+    let q = turns * horner::<T, W, FMA>(T::SIN, square) * splat(1.0 / sin_edge);
     let below = q - q * q * q;
     cos.zip(below, |a, b| a / b)
 }

@@ -10,7 +10,6 @@ pub(super) struct Double<V> {
 }
 
 impl Double<f64> {
-    /// `1 / a`.
     pub fn reciprocal(a: f64) -> Self {
         let hi = 1.0 / a;
         Double { hi, lo: (-hi).mul_add(a, 1.0) / a }

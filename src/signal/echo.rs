@@ -69,8 +69,12 @@ impl ArrayEcho {
                 }
             })
             .collect();
-        let power: f64 = series.iter().map(|s| s.start.norm_sqr()).sum();
-        ArrayEcho { reflector, series, samples: radar.samples, norm: (power * radar.samples as f64).sqrt() }
+        ArrayEcho { reflector, series, samples: radar.samples, norm: 0.0 }.with_norm()
+    }
+
+    fn with_norm(self) -> Self {
+        let power: f64 = self.series.iter().map(|s| s.start.norm_sqr()).sum();
+        ArrayEcho { norm: (power * self.samples as f64).sqrt(), ..self }
     }
 
     /// The echo at those elements alone for which `hears` is true; `hears` has one entry an element.
@@ -78,8 +82,7 @@ impl ArrayEcho {
         for (series, _) in self.series.iter_mut().zip(hears).filter(|(_, hears)| !**hears) {
             series.start = Complex64::default();
         }
-        let power: f64 = self.series.iter().map(|s| s.start.norm_sqr()).sum();
-        ArrayEcho { norm: (power * self.samples as f64).sqrt(), ..self }
+        self.with_norm()
     }
 
     /// Root of the sum of squares of its samples.
@@ -156,8 +159,7 @@ fn polynomial<const FMA: bool>(z: Complex64, y: &[Complex64]) -> Complex64 {
     let mut powers = [Complex64::from(1.0); SUMS];
     powers[1] = z;
     (2..SUMS).for_each(|i| powers[i] = powers[i / 2] * powers[i.div_ceil(2)]);
-    let stride = powers[SUMS / 2] * powers[SUMS / 2];
-    let stride = ComplexLanes { re: Lanes::splat(stride.re), im: Lanes::splat(stride.im) };
+    let stride = ComplexLanes::splat(powers[SUMS / 2] * powers[SUMS / 2]);
     let mut sums = [ComplexLanes::<f64, W>::zero(); GROUPS];
     let whole = y.chunks_exact(SUMS);
     let rest = whole.remainder();

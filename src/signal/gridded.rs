@@ -6,8 +6,7 @@
 
 use super::heard::HeardEchoes;
 use super::lane_fft::LaneFft;
-use super::path::PairBlocks;
-use super::phase::{EchoLanes, EchoModel};
+use super::phase::EchoLanes;
 use super::simd::{ComplexLanes, Lanes, Real, phasor};
 use crate::radar::Radar;
 use std::f64::consts::{PI, TAU};
@@ -96,7 +95,6 @@ pub struct GriddedScratch<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> GriddedScratch<T, W> {
-    /// Working memory for chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
         GriddedScratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }
@@ -134,9 +132,7 @@ const UNCORRECTED_TERMS: usize = 16;
 #[inline(always)]
 pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
     plan: &Gridding<T>,
-    model: &EchoModel,
-    pairs: PairBlocks<W>,
-    heard: HeardEchoes<'_, W>,
+    heard: &HeardEchoes<'_, W>,
     scratch: &mut GriddedScratch<T, W>,
     out: &mut [ComplexLanes<T, W>],
 ) {
@@ -147,7 +143,7 @@ pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
     }
     if T::EPSILON > f64::EPSILON && heard.len() > UNCORRECTED_TERMS {
         for i in 0..heard.len() {
-            spread::<T, W, FMA, true>(plan, &heard.echo::<FMA>(model, pairs, i), grid, spare);
+            spread::<T, W, FMA, true>(plan, &heard.echo::<FMA>(i), grid, spare);
         }
         grid.iter_mut().zip(spare.iter()).for_each(|(cell, lost)| *cell = *cell + *lost);
     } else {
@@ -159,7 +155,7 @@ pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
                 }
             }
             for i in begin..heard.len().min(begin + SUMMED_AT_ONCE) {
-                spread::<T, W, FMA, false>(plan, &heard.echo::<FMA>(model, pairs, i), grid, &mut []);
+                spread::<T, W, FMA, false>(plan, &heard.echo::<FMA>(i), grid, &mut []);
             }
         }
         if heard.len() > SUMMED_AT_ONCE {
@@ -229,19 +225,13 @@ fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
     let amplitude = echo.amplitude.round_to();
     let value = ComplexLanes { re: p.re * amplitude, im: -(p.im * amplitude) };
 
-    // Grid position, on the same side of the wrap as the first lane's.
-    let position = echo.beat_turns * of(cells);
-    let first = of(position.0[0]);
-    let wraps = ((position - first) * of(1.0 / cells)).nearest();
-    let position = position - wraps * of(cells);
-    let edge = position - of(plan.width as f64 / 2.0);
+    let edge = echo.position_in(cells) - of(plan.width as f64 / 2.0);
     let left = (edge + of(0.5)).nearest();
     // In [-1, 1] up to rounding; `left` lies within half a cell of `edge + 1/2`.
     let t: Lanes<T, W> = ((left - edge - echo.beat_turns_low * of(cells)) * of(2.0) - of(1.0)).round_to();
     let values = kernel_values::<T, W, FMA>(plan, t);
 
-    let lowest = left.0.iter().fold(f64::INFINITY, |m, v| m.min(*v));
-    let highest = left.0.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v));
+    let (lowest, highest) = left.bounds();
     // Neighbouring elements nearly always share their left cell; where not, each group of lanes is spread by itself.
     let mut start = lowest;
     while start <= highest {

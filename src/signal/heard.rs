@@ -6,17 +6,18 @@ use crate::radar::Pair;
 use crate::scattering::{PathEcho, Sources};
 use crate::scene::Reflector;
 
-/// Echoes at a block of pairs, in a fixed order.
-#[derive(Clone, Copy)]
+/// Echoes at a block of pairs, in a fixed order: the points first, then the paths.
 pub(super) struct HeardEchoes<'a, const W: usize> {
+    model: &'a EchoModel,
+    pairs: PairBlocks<W>,
     points: &'a [Reflector],
-    paths: &'a [Path<W>],
+    pub paths: Vec<Path<W>>,
 }
 
 impl<'a, const W: usize> HeardEchoes<'a, W> {
-    /// The points first, then the paths.
-    pub fn new(points: &'a [Reflector], paths: &'a [Path<W>]) -> Self {
-        HeardEchoes { points, paths }
+    /// The echoes of `sources` at the pairs of lanes 0, 1 and so on.
+    pub fn new(model: &'a EchoModel, sources: Sources<'a>, pair: impl Fn(usize) -> Pair) -> Self {
+        HeardEchoes { model, paths: paths(sources, &pair), pairs: PairBlocks::new(pair), points: sources.points }
     }
 
     #[inline(always)]
@@ -24,18 +25,17 @@ impl<'a, const W: usize> HeardEchoes<'a, W> {
         self.points.len() + self.paths.len()
     }
 
-    /// Echo `index` at `pairs`.
     #[inline(always)]
-    pub fn echo<const FMA: bool>(&self, model: &EchoModel, pairs: PairBlocks<W>, index: usize) -> EchoLanes<W> {
+    pub fn echo<const FMA: bool>(&self, index: usize) -> EchoLanes<W> {
         match self.points.get(index) {
-            Some(point) => model.echo_lanes::<W, FMA>(pairs, point),
-            None => model.heard::<W, FMA>(self.paths[index - self.points.len()]),
+            Some(point) => self.model.echo_lanes::<W, FMA>(self.pairs, point),
+            None => self.model.heard::<W, FMA>(self.paths[index - self.points.len()]),
         }
     }
 }
 
 /// The paths of the scatterers among `sources` to the pairs of lanes 0, 1 and so on, without those hidden from all of them.
-pub(super) fn paths<const W: usize>(sources: Sources<'_>, pair: impl Fn(usize) -> Pair) -> Vec<Path<W>> {
+fn paths<const W: usize>(sources: Sources<'_>, pair: impl Fn(usize) -> Pair) -> Vec<Path<W>> {
     if sources.scatterers.is_empty() {
         return Vec::new();
     }

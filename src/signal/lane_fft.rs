@@ -1,7 +1,7 @@
 //! Fourier transforms of many channels at once, one lane an element: without shuffles, and in the transposed order of maps. Powers of two go
 //! through Stockham's radix-4 algorithm, other lengths through rustfft, lane by lane.
 
-use super::simd::{ComplexLanes, Lanes, Real, Simd};
+use super::simd::{ComplexLanes, Real, Simd};
 use num_complex::Complex;
 use rustfft::Fft;
 use std::f64::consts::TAU;
@@ -22,7 +22,6 @@ enum Method<T: Real> {
 }
 
 impl<T: Real> LaneFft<T> {
-    /// Plans transforms of `len` points.
     pub fn new(len: usize) -> Self {
         if !len.is_power_of_two() {
             return LaneFft { len, method: Method::Rustfft(Simd::chosen().forward_fft(len)) };
@@ -94,9 +93,9 @@ fn stockham<T: Real, const W: usize, const FMA: bool>(
                 let (other_sum, t) = (b + d, b - d);
                 let turned = ComplexLanes { re: -t.im, im: t.re };
                 y0[q] = sum + other_sum;
-                y1[q] = (difference - turned).times::<FMA>(splat(*w1));
-                y2[q] = (sum - other_sum).times::<FMA>(splat(*w2));
-                y3[q] = (difference + turned).times::<FMA>(splat(*w3));
+                y1[q] = (difference - turned).times::<FMA>(ComplexLanes::splat(*w1));
+                y2[q] = (sum - other_sum).times::<FMA>(ComplexLanes::splat(*w2));
+                y3[q] = (difference + turned).times::<FMA>(ComplexLanes::splat(*w3));
             }
         }
         stride *= 4;
@@ -114,11 +113,6 @@ fn stockham<T: Real, const W: usize, const FMA: bool>(
     if passes % 2 == 1 {
         to.copy_from_slice(from);
     }
-}
-
-#[inline(always)]
-fn splat<T: Real, const W: usize>(v: Complex<T>) -> ComplexLanes<T, W> {
-    ComplexLanes { re: Lanes::splat(v.re), im: Lanes::splat(v.im) }
 }
 
 #[cfg(test)]

@@ -18,10 +18,10 @@ use std::f64::consts::TAU;
 /// Pairs of antennas, one a lane.
 #[derive(Debug, Clone, Copy)]
 pub struct PairBlocks<const W: usize> {
-    transmitter_x_metres: Lanes<f64, W>,
-    receiver_x_metres: Lanes<f64, W>,
-    /// y of transmitters and receivers; `None` where all stand on the array's line.
-    y_metres: Option<[Lanes<f64, W>; 2]>,
+    /// x of transmitters and of receivers.
+    x_metres: [Lanes<f64, W>; 2],
+    /// y of transmitters and of receivers; `None` where all stand on the array's line.
+    y_metres: [Option<Lanes<f64, W>>; 2],
     is_monostatic: bool,
 }
 
@@ -30,11 +30,11 @@ impl<const W: usize> PairBlocks<W> {
     #[inline(always)]
     pub fn new(pair: impl Fn(usize) -> Pair) -> Self {
         let pairs: [Pair; W] = std::array::from_fn(pair);
+        let is_on_line = pairs.iter().all(Pair::is_on_line);
+        let y_metres = [pairs.map(|p| p.transmitter_y_metres), pairs.map(|p| p.receiver_y_metres)];
         PairBlocks {
-            transmitter_x_metres: Lanes(pairs.map(|p| p.transmitter_x_metres)),
-            receiver_x_metres: Lanes(pairs.map(|p| p.receiver_x_metres)),
-            y_metres: (!pairs.iter().all(Pair::is_on_line))
-                .then(|| [Lanes(pairs.map(|p| p.transmitter_y_metres)), Lanes(pairs.map(|p| p.receiver_y_metres))]),
+            x_metres: [Lanes(pairs.map(|p| p.transmitter_x_metres)), Lanes(pairs.map(|p| p.receiver_x_metres))],
+            y_metres: y_metres.map(|y| (!is_on_line).then_some(Lanes(y))),
             is_monostatic: pairs.iter().all(Pair::is_one),
         }
     }
@@ -44,8 +44,7 @@ impl<const W: usize> PairBlocks<W> {
 impl<const W: usize> From<Lanes<f64, W>> for PairBlocks<W> {
     #[inline(always)]
     fn from(element_x_metres: Lanes<f64, W>) -> Self {
-        let (transmitter_x_metres, receiver_x_metres) = (element_x_metres, element_x_metres);
-        PairBlocks { transmitter_x_metres, receiver_x_metres, y_metres: None, is_monostatic: true }
+        PairBlocks { x_metres: [element_x_metres; 2], y_metres: [None; 2], is_monostatic: true }
     }
 }
 
@@ -57,15 +56,11 @@ impl<const W: usize> PairBlocks<W> {
             let (dx, dy) = (x_metres - antenna_x, antenna_y.map_or(y_metres, |y| y_metres - y));
             (dx * dx + dy * dy).sqrt()
         };
-        let [out, home] = self.ahead();
-        let there = leg(self.transmitter_x_metres, out);
-        if self.is_monostatic { there } else { (there + leg(self.receiver_x_metres, home)) * Lanes::splat(0.5) }
-    }
-
-    /// y of transmitters and receivers, each `None` on the array's line.
-    #[inline(always)]
-    fn ahead(&self) -> [Option<Lanes<f64, W>>; 2] {
-        self.y_metres.map_or([None, None], |[transmitters, receivers]| [Some(transmitters), Some(receivers)])
+        let there = leg(self.x_metres[0], self.y_metres[0]);
+        if self.is_monostatic {
+            return there;
+        }
+        (there + leg(self.x_metres[1], self.y_metres[1])) * Lanes::splat(0.5)
     }
 }
 
@@ -103,14 +98,14 @@ impl<const W: usize> Path<W> {
         r: &Reflector,
     ) -> Self {
         let scale = power_watts * r.reflectivity;
-        let ahead = pairs.ahead();
-        let there = leg::<W, FMA>(pairs.transmitter_x_metres, ahead[0], r);
+        let ahead = pairs.y_metres;
+        let there = leg::<W, FMA>(pairs.x_metres[0], ahead[0], r);
         if pairs.is_monostatic {
             let amplitude = there.hi.map(|d| scale / (d * d));
             let amplitude = through(pattern, amplitude, [there.hi, there.hi], ahead, r);
             return Path { range_metres: there, amplitude, turns: None };
         }
-        let back = leg::<W, FMA>(pairs.receiver_x_metres, ahead[1], r);
+        let back = leg::<W, FMA>(pairs.x_metres[1], ahead[1], r);
         let amplitude = there.hi.zip(back.hi, |t, r| scale / (t * r));
         let amplitude = through(pattern, amplitude, [there.hi, back.hi], ahead, r);
         Path { range_metres: Double::mean(there, back), amplitude, turns: None }
@@ -164,7 +159,7 @@ pub(super) fn plain_path<const W: usize>(
 ) -> (Lanes<f64, W>, Lanes<f64, W>) {
     let scale = radar.transmit_power_watts * r.reflectivity;
     let pattern = radar.pattern();
-    let ahead = pairs.ahead();
+    let ahead = pairs.y_metres;
     let square = |antenna_x_metres: Lanes<f64, W>, ahead: Option<Lanes<f64, W>>| {
         let dx = antenna_x_metres - Lanes::splat(r.x_metres);
         let y2 = match ahead {
@@ -173,12 +168,12 @@ pub(super) fn plain_path<const W: usize>(
         };
         dx * dx + y2
     };
-    let there = square(pairs.transmitter_x_metres, ahead[0]);
+    let there = square(pairs.x_metres[0], ahead[0]);
     if pairs.is_monostatic {
         let range = there.sqrt();
         return (range, through(pattern, there.map(|s| scale / s), [range, range], ahead, r));
     }
-    let (there, back) = (there.sqrt(), square(pairs.receiver_x_metres, ahead[1]).sqrt());
+    let (there, back) = (there.sqrt(), square(pairs.x_metres[1], ahead[1]).sqrt());
     let amplitude = there.zip(back, |t, r| scale / (t * r));
     ((there + back) * Lanes::splat(0.5), through(pattern, amplitude, [there, back], ahead, r))
 }

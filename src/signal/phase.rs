@@ -40,7 +40,6 @@ impl Echo {
         (lanes.beat_turns_at::<false>(n1 as f64) + lanes.carrier_turns).0[0]
     }
 
-    /// Sample `n1`.
     pub fn sample(&self, n1: usize) -> Complex64 {
         Complex64::from_polar(self.amplitude, TAU * self.turns_at(n1))
     }
@@ -48,7 +47,6 @@ impl Echo {
 
 /// One echo at `W` pairs of antennas; fields as in [`Echo`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)] // Names and messages say it.
 pub struct EchoLanes<const W: usize> {
     pub amplitude: Lanes<f64, W>,
     pub distance_metres: Lanes<f64, W>,
@@ -59,7 +57,6 @@ pub struct EchoLanes<const W: usize> {
 }
 
 impl EchoLanes<1> {
-    /// The only lane.
     pub fn first(&self) -> Echo {
         Echo {
             amplitude: self.amplitude.0[0],
@@ -79,6 +76,15 @@ impl<const W: usize> EchoLanes<W> {
         let p = product::<W, FMA>(n1, self.beat_turns);
         (p.hi - p.hi.nearest()) + (p.lo + n1 * self.beat_turns_low)
     }
+
+    /// Range in cells, of which there are this many in a turn of the beat, on the same side of the wrap as that of the first lane.
+    #[inline(always)]
+    pub(super) fn position_in(&self, cells: f64) -> Lanes<f64, W> {
+        let of = Lanes::<f64, W>::splat;
+        let position = self.beat_turns * of(cells);
+        let wraps = ((position - of(position.0[0])) * of(1.0 / cells)).nearest();
+        position - wraps * of(cells)
+    }
 }
 
 /// The forward model of an echo's samples, with the constants of one radar.
@@ -93,7 +99,6 @@ pub struct EchoModel {
 }
 
 impl EchoModel {
-    /// Prepares the constants of `radar`.
     pub fn new(radar: &Radar) -> Self {
         EchoModel {
             power_watts: radar.transmit_power_watts,

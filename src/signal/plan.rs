@@ -12,13 +12,10 @@ use serde::Serialize;
 /// Algorithm, precision, tolerance and instructions of a simulation. Fields may be changed before it runs ([`super::beat_signal`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Plan {
-    /// The algorithm.
     pub algorithm: Algorithm,
-    /// The precision.
     pub precision: Precision,
     /// Error allowed in a sample, relative to the sum of the reflectors' amplitudes.
     pub tolerance: f64,
-    /// The instructions to use.
     pub simd: Simd,
 }
 
@@ -72,7 +69,6 @@ impl Plan {
         }
     }
 
-    /// The plan with another algorithm.
     pub fn with_algorithm(self, algorithm: Algorithm) -> Plan {
         Plan { algorithm, ..self }
     }
@@ -81,7 +77,6 @@ impl Plan {
 /// The size of a sum over reflectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sum {
-    /// The algorithm.
     pub algorithm: Algorithm,
     /// Reflectors.
     pub reflectors: usize,

@@ -1,8 +1,7 @@
 //! Samples of a scene over a floor.
 
-use super::built::simulate_built_for;
+use super::built::{simulate_built_for, tolerance};
 use super::floor::{self, Floor};
-use super::over_floor::{simulate_echoes, tolerance};
 use super::plan::{Plan, amplitude_bound};
 use super::run::samples_of;
 use super::samples::{BeatSignal, TwoEnds};
@@ -33,23 +32,10 @@ pub fn simulate_for(
     floor: Floor,
     seed: u64,
 ) -> Result<BeatSignal, Unfinished> {
-    if !scene.disturbances.is_none_to(radar) {
-        return simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed);
-    }
-    scene.validate(radar)?;
-    let signal = simulate_echoes(radar, &BuiltArray::default(), &Echoing::of(radar, scene), floor, seed, |_| {}, task);
-    task.check()?;
-    Ok(signal)
+    simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed)
 }
 
-/// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them.
-/// # Errors
-/// [`SceneError`] when the scene can't be simulated.
-pub fn simulate_ends(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<TwoEnds, SceneError> {
-    simulate_ends_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
-}
-
-/// [`simulate_ends`], unless `task` is cancelled before it is done.
+/// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them, unless `task` is cancelled before they are done.
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
 pub fn simulate_ends_for(
@@ -103,7 +89,7 @@ mod tests {
         for (radar, scene) in cases {
             for floor in [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0)), Floor::Snr(Decibels(60.0))] {
                 let whole = simulate(&radar, &scene, floor, 3).unwrap().two_ends(&radar);
-                assert_eq!(simulate_ends(&radar, &scene, floor, 3).unwrap(), whole, "{scene:?} over {floor}");
+                assert_eq!(simulate_ends_for(&Task::default(), &radar, &scene, floor, 3).unwrap(), whole, "{scene:?} over {floor}");
             }
         }
     }

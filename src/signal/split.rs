@@ -48,7 +48,6 @@ impl<T: Real, const W: usize> Factors<T, W> {
         Product { rows: &self.rows, columns: &self.columns }
     }
 
-    /// Memory for the phasors of chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
         Factors { rows: vec![zero; rows_of(samples)], columns: [zero; STRIDE] }
@@ -63,7 +62,6 @@ pub struct SplitScratch<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> SplitScratch<T, W> {
-    /// Working memory for chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let factors = vec![Factors::new(samples); CHUNK];
         let padded = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
@@ -73,9 +71,7 @@ impl<T: Real, const W: usize> SplitScratch<T, W> {
 
 #[inline(always)]
 pub(super) fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
-    model: &EchoModel,
-    pairs: PairBlocks<W>,
-    heard: HeardEchoes<'_, W>,
+    heard: &HeardEchoes<'_, W>,
     samples: usize,
     scratch: &'s mut SplitScratch<T, W>,
 ) -> &'s mut [ComplexLanes<T, W>] {
@@ -84,7 +80,7 @@ pub(super) fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
     for begin in (0..heard.len()).step_by(CHUNK) {
         let count = CHUNK.min(heard.len() - begin);
         for (i, f) in factors.iter_mut().enumerate().take(count) {
-            let echo = heard.echo::<FMA>(model, pairs, begin + i);
+            let echo = heard.echo::<FMA>(begin + i);
             fill_with::<T, W, FMA>(&echo, &mut f.rows, &mut f.columns);
         }
         let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());

@@ -5,17 +5,15 @@ use super::algorithm::Algorithm;
 use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
-use super::heard::{self, HeardEchoes};
+use super::heard::HeardEchoes;
 use super::lane_fft::LaneFft;
-use super::path::{PairBlocks, Path};
 use super::phase::EchoModel;
 use super::plan::{BEST_TOLERANCE, Plan};
 use super::rows::Rows;
 use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
 use super::split;
-use crate::radar::{BuiltArray, Pair, Radar};
+use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Sources;
-use crate::scene::Reflector;
 use crate::task::Task;
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
@@ -26,7 +24,6 @@ use std::ops::Range;
 /// are meaningless.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockProfiles<T, const W: usize> {
-    /// Range bins of every element.
     pub bins: usize,
     /// The profiles, block after block.
     pub cells: Vec<ComplexLanes<T, W>>,
@@ -35,7 +32,6 @@ pub struct BlockProfiles<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> BlockProfiles<T, W> {
-    /// Silence.
     pub fn silence(radar: &Radar) -> Self {
         let bins = radar.samples;
         BlockProfiles {
@@ -46,7 +42,6 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
         }
     }
 
-    /// Makes the profiles silent again.
     pub fn clear(&mut self) {
         let bins = self.bins;
         let runs = std::mem::replace(&mut self.touched, Rows::none(bins)).runs();
@@ -102,25 +97,20 @@ enum Scratch<T, const W: usize> {
 
 struct Block<'a, 'b, T: Real, const W: usize> {
     synthesis: &'a Synthesis<T, W>,
-    first_element: usize,
-    points: &'a [Reflector],
-    paths: &'a [Path<W>],
+    heard: &'a HeardEchoes<'a, W>,
     scratch: &'b mut Scratch<T, W>,
 }
 
 impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     #[inline(always)]
     fn samples<const FMA: bool>(self) -> &'b mut [ComplexLanes<T, W>] {
-        let s = self.synthesis;
-        let pairs = PairBlocks::new(s.pair_of(self.first_element));
-        let samples = s.radar.samples;
-        let heard = HeardEchoes::new(self.points, self.paths);
-        match (self.scratch, &s.method) {
+        let Block { synthesis, heard, scratch } = self;
+        match (scratch, &synthesis.method) {
             (Scratch::Gridded(scratch, out), Method::Gridded(gridding)) => {
-                gridded::block_signal::<T, W, FMA>(gridding, &s.model, pairs, heard, scratch, out);
+                gridded::block_signal::<T, W, FMA>(gridding, heard, scratch, out);
                 out
             }
-            (Scratch::Split(scratch), _) => split::block_signal::<T, W, FMA>(&s.model, pairs, heard, samples, scratch),
+            (Scratch::Split(scratch), _) => split::block_signal::<T, W, FMA>(heard, synthesis.radar.samples, scratch),
             (Scratch::Gridded(_, out), _) => out,
         }
     }
@@ -165,11 +155,8 @@ impl<T: Real, const W: usize> Kernel for ToProfiles<'_, '_, T, W> {
 }
 
 struct AddProfiles<'a, 'b, T: Real, const W: usize> {
-    synthesis: &'a Synthesis<T, W>,
     plan: &'a ClosedForm<T>,
-    first_element: usize,
-    points: &'a [Reflector],
-    paths: &'a [Path<W>],
+    heard: &'a HeardEchoes<'a, W>,
     quiet: f64,
     cells: &'b mut [ComplexLanes<T, W>],
 }
@@ -178,10 +165,7 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
     type Output = ();
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        let s = self.synthesis;
-        let pairs = PairBlocks::new(s.pair_of(self.first_element));
-        let heard = HeardEchoes::new(self.points, self.paths);
-        self.plan.add_block::<W, FMA>(&s.model, pairs, heard, self.quiet, self.cells);
+        self.plan.add_block::<W, FMA>(self.heard, self.quiet, self.cells);
     }
 }
 
@@ -212,11 +196,10 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         Synthesis { array: array.clone(), ..self }
     }
 
-    fn pair_of(&self, first_element: usize) -> impl Fn(usize) -> Pair {
-        move |lane| self.array.pair(&self.radar, first_element + lane)
+    fn heard<'a>(&'a self, sources: Sources<'a>, first_element: usize) -> HeardEchoes<'a, W> {
+        HeardEchoes::new(&self.model, sources, |lane| self.array.pair(&self.radar, first_element + lane))
     }
 
-    /// The plan of the synthesis.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
@@ -248,11 +231,9 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         out.axis_chunks_iter_mut(Axis(0), W).into_par_iter().enumerate().for_each_init(
             || self.scratch(),
             |scratch, (block, mut rows)| {
-                let first_element = elements.start + block * W;
                 if let (Some(rows), false) = (rows.as_slice_mut(), task.is_cancelled()) {
-                    let paths = heard::paths(sources, self.pair_of(first_element));
-                    let (points, paths) = (sources.points, paths.as_slice());
-                    self.simd().run(ToRows(Block { synthesis: self, first_element, points, paths, scratch }, rows));
+                    let heard = &self.heard(sources, elements.start + block * W);
+                    self.simd().run(ToRows(Block { synthesis: self, heard, scratch }, rows));
                 }
             },
         );
@@ -287,11 +268,9 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                 if task.is_cancelled() {
                     return rows;
                 }
-                let first_element = block * W;
-                let paths = &heard::paths(sources, self.pair_of(first_element));
-                plan.touch_paths(&self.radar, paths, quiet, &mut rows);
-                let points = sources.points;
-                self.simd().run(AddProfiles { synthesis: self, plan, first_element, points, paths, quiet, cells });
+                let heard = &self.heard(sources, block * W);
+                plan.touch_paths(&self.radar, &heard.paths, quiet, &mut rows);
+                self.simd().run(AddProfiles { plan, heard, quiet, cells });
                 rows
             };
             let either = |mut rows: Rows, others: Rows| {
@@ -310,10 +289,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                 if task.is_cancelled() {
                     return;
                 }
-                let first_element = block * W;
-                let paths = heard::paths(sources, self.pair_of(first_element));
-                let (points, paths) = (sources.points, paths.as_slice());
-                let block = Block { synthesis: self, first_element, points, paths, scratch };
+                let block = Block { synthesis: self, heard: &self.heard(sources, block * W), scratch };
                 self.simd().run(ToProfiles(self, Some(block), cells, spare));
             },
         );

@@ -5,7 +5,6 @@ use crate::task::Cancelled;
 
 /// A reason for which there are no samples.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum Unfinished {
     #[error(transparent)]
     Scene(#[from] SceneError),

@@ -25,16 +25,12 @@ pub type Generation = u64;
 pub enum Reply<T> {
     /// The work is finished.
     Done {
-        /// Number of the request.
         generation: Generation,
         /// Result of the work.
         result: T,
-        /// Duration of the work.
         elapsed: Duration,
     },
-    /// The work panicked. The worker was started afresh and waits for the next request.
     Panicked {
-        /// Number of the request.
         generation: Generation,
         /// Message of the panic.
         message: String,
@@ -167,7 +163,6 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         generation
     }
 
-    /// Cancels the running request and drops the waiting one. The cancelled work still replies.
     pub fn cancel(&self) {
         let mut slot = self.shared.lock();
         slot.pending = None;
@@ -176,7 +171,6 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         }
     }
 
-    /// Cancels the running request if it began longer ago than `patience`; returns whether it did. A waiting one stays.
     pub fn cancel_older_than(&self, patience: Duration) -> bool {
         match &self.shared.lock().running {
             Some(running) if running.began.elapsed() > patience => {
@@ -187,7 +181,6 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         }
     }
 
-    /// Whether a request waits or runs.
     pub fn is_busy(&self) -> bool {
         let slot = self.shared.lock();
         slot.pending.is_some() || slot.running.is_some()

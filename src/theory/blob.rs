@@ -2,7 +2,7 @@
 
 use super::response::{Response, ResponseRow};
 use super::squint::cell_seen_from;
-use super::{MapPlace, elements};
+use super::MapPlace;
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
@@ -18,7 +18,6 @@ pub const MIN_LOBE: Decibels = Decibels(-100.0);
 /// The blob of one reflector on the map of one aperture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blob {
-    /// The peak.
     pub peak: MapPlace,
     /// Magnitude of the peak, as on the complex map.
     pub magnitude: f64,
@@ -131,7 +130,7 @@ impl Blob {
 
 /// Bins from the nearest to the farthest element of `aperture`, not wrapped.
 fn bins_heard(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> (f64, f64) {
-    let elements = elements(radar, aperture);
+    let elements = aperture.channels(radar);
     let bin = |n| radar.bin_of_range(radar.pair(n).range_metres(reflector.x_metres, reflector.y_metres));
     elements.map(bin).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
 }
@@ -148,7 +147,7 @@ fn maximum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 /// The path of a reflector's blob as the array hears it from one element of `aperture` to the next: `points` cells, from the first
 /// element to the last.
 pub(super) fn path(radar: &Radar, reflector: &Reflector, aperture: Aperture, points: usize) -> Vec<MapPlace> {
-    let elements = elements(radar, aperture);
+    let elements = aperture.channels(radar);
     let (left, right) =
         (radar.element_x_metres(elements.start), radar.element_x_metres(elements.end.saturating_sub(1)));
     let at = |i: usize| left + (right - left) * i as f64 / points.saturating_sub(1).max(1) as f64;
@@ -199,7 +198,7 @@ pub(super) mod tests {
     /// Magnitudes of the simulated map with [`PARTS`] cells for each of its cells, from the simulated samples alone.
     fn simulated_finely(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Array2<f64> {
         let signal = exact::beat_signal(radar, &[*reflector]).samples;
-        let channels: Vec<usize> = elements(radar, aperture).collect();
+        let channels: Vec<usize> = aperture.channels(radar).collect();
         let (over_range, over_angle) = (radar.window.weights(radar.samples), radar.window.weights(channels.len()));
         let (range, angle) = (Spectrum::new(PARTS * radar.samples), Spectrum::new(PARTS * radar.elements));
         let profiles: Vec<Vec<Complex64>> =
@@ -227,7 +226,7 @@ pub(super) mod tests {
             let turn = |(n, w): (usize, f64)| w * Complex64::cis(-std::f64::consts::TAU * turns * n as f64);
             weights.into_iter().enumerate().map(turn).collect()
         };
-        let channels: Vec<usize> = elements(radar, aperture).collect();
+        let channels: Vec<usize> = aperture.channels(radar).collect();
         let middle = (radar.elements / 2) as f64;
         let over_range = turned(radar.window.weights(radar.samples), at.bin / radar.samples as f64);
         let over_angle = turned(radar.window.weights(channels.len()), (at.column - middle) / radar.elements as f64);

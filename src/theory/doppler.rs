@@ -6,7 +6,6 @@ use crate::scene::{Object, Scene};
 /// Place of an object's middle in a range-Doppler map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DopplerBlob {
-    /// Its radial velocity, metres a second.
     pub velocity_metres_per_second: f64,
     /// The velocity that the map shows, metres a second.
     pub apparent_velocity_metres_per_second: f64,

@@ -46,7 +46,6 @@ pub use streak::Streak;
 
 use crate::maps::Aperture;
 use crate::radar::Radar;
-use std::ops::Range;
 
 /// A place on a map, between its cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,13 +62,6 @@ impl MapPlace {
     pub fn offset_to(&self, other: &MapPlace, radar: &Radar) -> (f64, f64) {
         let short = |d: f64, len: usize| d - (d / len as f64).round() * len as f64;
         (short(other.bin - self.bin, radar.samples), short(other.column - self.column, radar.elements))
-    }
-}
-
-fn elements(radar: &Radar, aperture: Aperture) -> Range<usize> {
-    match aperture {
-        Aperture::Full => 0..radar.elements,
-        Aperture::End(end) => radar.end_range(end),
     }
 }
 

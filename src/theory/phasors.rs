@@ -26,10 +26,7 @@ impl Phasors {
         [bin, column]: [usize; 2],
         windowed: bool,
     ) -> Phasors {
-        let elements = match aperture {
-            Aperture::Full => 0..radar.elements,
-            Aperture::End(end) => radar.end_range(end),
-        };
+        let elements = aperture.channels(radar);
         let ranges = radar.window.weights(radar.samples);
         let over_samples: Vec<Complex64> =
             ranges.iter().enumerate().map(|(n, w)| turn(n * bin, radar.samples) * *w).collect();
@@ -58,7 +55,6 @@ impl Phasors {
         std::iter::once(Complex64::default()).chain(sums).collect()
     }
 
-    /// The sum of all contributions: the cell.
     pub fn sum(&self) -> Complex64 {
         self.contributions.iter().sum()
     }

@@ -3,7 +3,7 @@
 //! A sum over the elements of equation 3.3's windowed transform over range, which is the window's [`WindowPattern`] moved to the element's own
 //! distance; nothing is approximated, so near field, range migration and squint are all in it.
 
-use super::{WindowPattern, elements};
+use super::WindowPattern;
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -31,7 +31,7 @@ pub struct ResponseRow {
 impl Response {
     /// The response of `reflector` under `aperture`. The radar must be valid ([`Radar::validate`]).
     pub fn new(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Self {
-        let elements = elements(radar, aperture);
+        let elements = aperture.channels(radar);
         let window = radar.window.weights(elements.len());
         let scale = ((radar.samples * radar.elements) as f64).sqrt().recip();
         let model = EchoModel::new(radar);
@@ -47,7 +47,6 @@ impl Response {
         }
     }
 
-    /// The row at `bin`.
     pub fn row(&self, bin: f64) -> ResponseRow {
         let samples = self.samples as f64;
         let part = |(distance_bins, amplitude): &(f64, Complex64)| {
@@ -66,7 +65,6 @@ impl Response {
 }
 
 impl ResponseRow {
-    /// Magnitude at `column`.
     pub fn magnitude(&self, column: f64) -> f64 {
         let turns = (column - (self.columns / 2) as f64) / self.columns as f64;
         let sum: Complex64 =

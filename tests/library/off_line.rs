@@ -80,7 +80,7 @@ fn samples_are_a_direct_sum_for_where_the_antennas_stand() {
             }
         }
         let chirps = Radar { chirps: 2, ..radar.clone() };
-        let rows = simulate_chirps(&chirps, &scene, Floor::Exact, 0).unwrap().samples;
+        let rows = simulate_chirps_for(&Task::default(), &chirps, &scene, Floor::Exact, 0).unwrap().samples;
         for (row, n) in chirp_elements(&chirps).into_iter().flatten().enumerate() {
             let off = (rows[[1, row, 50]] - signal.samples[[n, 50]]).norm() / signal.peak();
             assert!(off < 1e-10, "chirp 1 of element {n}: {off:e}");

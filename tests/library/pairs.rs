@@ -31,7 +31,7 @@ fn gaps_are_alike_in_every_computation() {
     let [followed, settled] = [engine.update(&scene, &wanted).unwrap(), engine.settle(&scene, &wanted).unwrap()];
     assert_eq!(followed.full.unwrap().lambda.lambda, settled.full.unwrap().lambda.lambda);
     let chirps = Radar { chirps: 4, ..radar.clone() };
-    let rows = simulate_chirps(&chirps, &scene, Floor::Exact, 0).unwrap().samples;
+    let rows = simulate_chirps_for(&Task::default(), &chirps, &scene, Floor::Exact, 0).unwrap().samples;
     let silent = |row: usize| rows.slice(ndarray::s![.., row, ..]).iter().all(|v| v.norm_sqr() == 0.0);
     let elements: Vec<usize> = chirp_elements(&chirps).into_iter().flatten().collect();
     for (row, n) in elements.into_iter().enumerate() {

@@ -22,7 +22,7 @@ pub use apertura::recording::{Recording, file};
 pub use apertura::scene::file::SceneFile;
 pub use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 pub use apertura::scene::{Block, GaussianCluster, Line, Object, Point, Post, Reflector, Scene, Wall, presets};
-pub use apertura::signal::chirps::{chirp_elements, simulate_chirps};
+pub use apertura::signal::chirps::{chirp_elements, simulate_chirps_for};
 pub use apertura::signal::{BeatSignal, Floor, judge, simulate};
 pub use apertura::task::Task;
 pub use apertura::theory::Consequences;

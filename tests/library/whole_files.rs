@@ -96,11 +96,11 @@ fn child_autosaves() {
     let mut autosave = Autosave::claim(&folder.join("data")).unwrap();
     let restored = autosave.restore();
     let start = latest(&restored).unwrap_or(0);
-    let mut editor = Editor::start(restored, None, Document::made(numbered(start)));
+    let mut editor = Editor::start(restored, None, Document::unsaved(None, numbered(start)));
     std::fs::write(folder.join("begun"), "").unwrap();
     for number in start + 1.. {
         if number % 20 == 0 {
-            editor.open("open", Document::made(numbered(number)));
+            editor.open("open", Document::unsaved(None, numbered(number)));
         } else {
             editor.edit("edit", None, |scene, _| *scene = numbered(number).scene);
         }

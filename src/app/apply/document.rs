@@ -256,5 +256,5 @@ fn random_scene(state: &mut State, kind: Kind) {
         // No other floor has noise in an empty scene.
         state.settings.floor = Floor::Level(state.settings.level);
     }
-    state.set_document("random scene", Document::made(file));
+    state.set_document("random scene", Document::unsaved(None, file));
 }

@@ -57,7 +57,7 @@ fn write(state: &mut State, path: PathBuf) {
             state.notices.info(format!("Saved {}", path.display()));
         }
         Ok(Saved::Copy(losses)) => {
-            let lost = losses.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            let lost = losses.join(", ");
             let document = state.editor.document();
             let advice = match document.path().filter(|_| !document.is_modified()) {
                 Some(own) => format!("The scene itself is saved in {}.", own.display()),

@@ -99,7 +99,7 @@ pub fn open(state: &mut State, text: &str) {
         }
     }
     let before = state.setup();
-    state.set_document("shared scene", Document::made(file));
+    state.set_document("shared scene", Document::unsaved(None, file));
     look(state, view);
     let after = state.setup();
     // Leaving a lesson takes everything back, so no undo step is needed.

@@ -47,13 +47,12 @@ fn draw(ui: &mut Ui, question: &SaveQuestion) -> Option<SaveAnswer> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::file::FileLoss;
     use eframe::egui::Key;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     fn asked() -> Harness<'static, Vec<Command>> {
-        let losses = vec![FileLoss::Radar, FileLoss::Structure { objects: 1, points: 40 }];
+        let losses = ["its radar", "one line or cluster, which becomes 40 points"].map(str::to_owned).to_vec();
         let question = SaveQuestion { path: "/there/walls.npz".into(), doubt: Doubt::Losses(losses) };
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
             asked.extend(show(ui.ctx(), Some(&question)));

@@ -59,7 +59,7 @@ mod tests {
     fn left() -> [Document; 2] {
         [1u8, 2].map(|points| {
             let scene = Scene::of_points((0..points).map(|i| (f64::from(i), 9.0)));
-            Document::made(SceneFile { scene, ..SceneFile::default() })
+            Document::unsaved(None, SceneFile { scene, ..SceneFile::default() })
         })
     }
 

@@ -1,6 +1,5 @@
 //! A question before a scene is written to a file.
 
-use crate::scene::file::FileLoss;
 use std::path::PathBuf;
 
 /// A file to be written, and the doubt about it.
@@ -16,7 +15,7 @@ pub struct SaveQuestion {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Doubt {
     /// The file would lose these parts of the scene.
-    Losses(Vec<FileLoss>),
+    Losses(Vec<String>),
     /// Another program has changed the file.
     Changed,
 }

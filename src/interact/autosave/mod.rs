@@ -32,7 +32,6 @@ type Answer = Result<(), String>;
 /// The copies of one window.
 pub struct Autosave {
     store: AutosaveStore,
-    /// Sender of copies to the thread that writes their files.
     jobs: Option<Sender<StartPlan>>,
     answers: (Sender<Answer>, Receiver<Answer>),
     pending: usize,

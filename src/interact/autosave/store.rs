@@ -55,7 +55,6 @@ impl StartPlan {
 /// A document that another replaced on screen, and the file of its copy.
 #[derive(Debug)]
 struct Behind {
-    path: PathBuf,
     number: u64,
     document: Document,
 }
@@ -102,7 +101,7 @@ impl AutosaveStore {
         for number in self.behind_numbers() {
             let path = self.behind_path(number);
             match read(&path) {
-                Ok(document) => behind.push(Behind { path, number, document }),
+                Ok(document) => behind.push(Behind { number, document }),
                 Err(error) => restored.problems.push(set_aside(&path, &error)),
             }
         }
@@ -131,9 +130,8 @@ impl AutosaveStore {
                 continue;
             }
             let number = behind.iter().map(|b| b.number).chain(self.behind_numbers()).max().map_or(1, |n| n + 1);
-            let path = self.behind_path(number);
-            write(&path, document).map_err(|e| e.to_string())?;
-            behind.push(Behind { path, number, document: document.clone() });
+            write(&self.behind_path(number), document).map_err(|e| e.to_string())?;
+            behind.push(Behind { number, document: document.clone() });
         }
         let path = self.on_screen_path();
         match &plan.on_screen {
@@ -141,7 +139,7 @@ impl AutosaveStore {
             None => remove(&path)?,
         }
         while let Some(stale) = behind.iter().position(|b| !plan.left.iter().any(|d| b.document.untouched_since(d))) {
-            remove(&behind[stale].path)?;
+            remove(&self.behind_path(behind[stale].number))?;
             behind.remove(stale);
         }
         Ok(())

@@ -31,7 +31,7 @@ fn two_windows_keep_two_copies() {
     let mut first = Autosave::claim(folder.path()).unwrap();
     let mut second = Autosave::claim(folder.path()).unwrap();
     first.keep_now(&edited(street())).unwrap();
-    second.keep_now(&Editor::of(Document::made(SceneFile::default()))).unwrap();
+    second.keep_now(&Editor::of(Document::unsaved(None, SceneFile::default()))).unwrap();
     assert_eq!(names(folder.path()), ["autosave-2.toml", "autosave.toml"]);
     drop(second);
     let again = Autosave::claim(folder.path()).unwrap();

@@ -5,7 +5,7 @@ use crate::interact::field::{self, Coordinates, Field, FieldChange, SharedField}
 use crate::scene::{Object, Scene, SceneError};
 
 impl Editor {
-    fn selected(&self) -> impl Iterator<Item = &Object> + Clone {
+    pub(super) fn selected(&self) -> impl Iterator<Item = &Object> + Clone {
         let selection: Vec<usize> = self.selection.iter().collect();
         selection.into_iter().filter_map(|i| self.scene().objects.get(i))
     }

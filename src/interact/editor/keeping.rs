@@ -3,7 +3,7 @@
 use super::Editor;
 use crate::interact::Selection;
 use crate::interact::document::{self, Document, Restored};
-use crate::scene::file::{FileLoss, SceneFileError, SceneFormat};
+use crate::scene::file::{SceneFileError, SceneFormat};
 use std::path::Path;
 
 /// Most unsaved documents that are kept after another took their place; the oldest make room.
@@ -15,7 +15,7 @@ pub enum Saved {
     /// The file holds all of it and is its own from now on.
     Whole,
     /// The file holds a copy without the named losses; the document keeps its path, as unsaved as it was.
-    Copy(Vec<FileLoss>),
+    Copy(Vec<String>),
 }
 
 impl Editor {
@@ -47,7 +47,7 @@ impl Editor {
     /// The losses of writing the document to `path`; empty for none.
     /// # Errors
     /// [`SceneFileError::Extension`] for a name that says no format.
-    pub fn losses(&self, path: &Path) -> Result<Vec<FileLoss>, SceneFileError> {
+    pub fn losses(&self, path: &Path) -> Result<Vec<String>, SceneFileError> {
         Ok(self.document.losses(SceneFormat::of_path(path)?))
     }
 

@@ -153,7 +153,7 @@ impl Editor {
     }
 
     fn selected_objects(&self) -> Vec<Object> {
-        self.selection.iter().filter_map(|i| self.scene().objects.get(i)).cloned().collect()
+        self.selected().cloned().collect()
     }
 
     fn insert_copies(&mut self, label: &str, objects: Vec<Object>) -> Result<(), SceneError> {

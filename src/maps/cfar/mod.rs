@@ -33,29 +33,29 @@ const RANK: f64 = 0.75;
 /// The noise estimate from the training cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Statistic {
-    /// Their mean.
     CellAveraging,
     /// The cell of rank 3/4 among them.
     OrderedStatistics,
 }
 
 impl Statistic {
-    /// Both estimates.
     pub const ALL: [Statistic; 2] = [Statistic::CellAveraging, Statistic::OrderedStatistics];
 
     /// Name in sentences.
     pub fn name(self) -> &'static str {
-        match self {
-            Statistic::CellAveraging => "cell averaging",
-            Statistic::OrderedStatistics => "ordered statistics",
-        }
+        self.names()[0]
     }
 
     /// Name of a detector with this estimate, in captions.
     pub fn short_name(self) -> &'static str {
+        self.names()[1]
+    }
+
+    /// Names in sentences, in captions and in a detector's text.
+    fn names(self) -> [&'static str; 3] {
         match self {
-            Statistic::CellAveraging => "CA-CFAR",
-            Statistic::OrderedStatistics => "OS-CFAR",
+            Statistic::CellAveraging => ["cell averaging", "CA-CFAR", "ca"],
+            Statistic::OrderedStatistics => ["ordered statistics", "OS-CFAR", "os"],
         }
     }
 }
@@ -64,7 +64,6 @@ impl Statistic {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Cfar {
-    /// The noise estimate from the training cells.
     pub statistic: Statistic,
     /// Guard cells a side, `[range bins, columns]`.
     pub guard: [usize; 2],
@@ -82,7 +81,6 @@ impl Default for Cfar {
 
 /// A reason for which a detector can't work.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
 pub enum CfarError {
     #[error("the wanted false-alarm rate is {0}; expected a number between 0 and 1, without these")]
     Rate(f64),
@@ -104,7 +102,6 @@ pub enum CfarError {
 /// Noise estimate and threshold of one cell, in the map's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
-    /// Number of training cells.
     pub training: usize,
     /// The noise by the training cells.
     pub noise: f64,
@@ -115,7 +112,6 @@ pub struct Level {
 }
 
 impl Level {
-    /// Whether the cell is a detection.
     pub fn is_detected(&self) -> bool {
         self.power > self.threshold
     }

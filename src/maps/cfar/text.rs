@@ -10,11 +10,8 @@ impl FromStr for Cfar {
     fn from_str(text: &str) -> Result<Cfar, CfarError> {
         let wrong = || CfarError::Text(text.chars().take(80).collect());
         let mut parts = text.split(':');
-        let statistic = match parts.next() {
-            Some("ca") => Statistic::CellAveraging,
-            Some("os") => Statistic::OrderedStatistics,
-            _ => return Err(wrong()),
-        };
+        let statistic = parts.next().and_then(|name| Statistic::ALL.into_iter().find(|s| s.names()[2] == name));
+        let statistic = statistic.ok_or_else(wrong)?;
         let mut cfar = Cfar { statistic, ..Cfar::default() };
         let cells = |text: &str| -> Option<[usize; 2]> {
             let (bins, columns) = text.split_once('x')?;
@@ -35,10 +32,7 @@ impl FromStr for Cfar {
 
 impl fmt::Display for Cfar {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = match self.statistic {
-            Statistic::CellAveraging => "ca",
-            Statistic::OrderedStatistics => "os",
-        };
+        let name = self.statistic.names()[2];
         let ([g0, g1], [t0, t1]) = (self.guard, self.training);
         write!(f, "{name}:guard={g0}x{g1}:training={t0}x{t1}:rate={}", self.false_alarm)
     }

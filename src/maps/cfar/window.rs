@@ -25,7 +25,6 @@ impl Window {
         bin.saturating_sub(side)..(bin + side + 1).min(bins)
     }
 
-    /// Training cells around a cell of range bin `bin` of `bins`.
     pub fn cells(&self, bin: usize, bins: usize) -> usize {
         let [all, guarded] = [self.reach[0], self.guard[0]].map(|side| Self::rows(bin, side, bins).len());
         (all - guarded) * (2 * self.reach[1] + 1) + guarded * 2 * (self.reach[1] - self.guard[1])

@@ -1,7 +1,7 @@
 use super::*;
 use crate::radar::{Carrier, Convention, Decibels, SPEED_OF_LIGHT};
 use crate::scene::{Block, Object, Point, Wall};
-use crate::signal::{simulate_chirps, simulate_ends};
+use crate::signal::{simulate_chirps_for, simulate_ends_for};
 use std::f64::consts::TAU;
 
 fn radar() -> Radar {
@@ -43,7 +43,7 @@ fn samples_are_those_of_the_range_at_their_own_time() {
     let scene = scene(vec![moving(2.0, 11.0, [17.0, -23.0])]);
     for convention in Convention::ALL {
         let radar = Radar { chirp_interval_seconds: 30e-6, ..radar() }.in_convention(convention);
-        let samples = simulate_chirps(&radar, &scene, Floor::Exact, 0).unwrap().samples;
+        let samples = simulate_chirps_for(&Task::default(), &radar, &scene, Floor::Exact, 0).unwrap().samples;
         for (row, element) in [(0, 0), (3, 3), (4, 60), (7, 63)] {
             for (chirp, sample) in [(0, 0), (0, 127), (1, 64), (40, 3), (63, 127)] {
                 let (found, expected) =
@@ -64,8 +64,8 @@ fn at_rest_the_first_chirp_has_the_bits_of_a_single_one() {
     let objects = vec![Object::Point(Point::new(2.0, 11.0)), Object::Wall(Wall::new(0.0, 20.0, 3.0, 10.0))];
     let mut scene = scene(objects);
     for floor in [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0))] {
-        let ends = simulate_ends(&radar, &scene, floor, 7).unwrap();
-        let chirps = simulate_chirps(&radar, &scene, floor, 7).unwrap().samples;
+        let ends = simulate_ends_for(&Task::default(), &radar, &scene, floor, 7).unwrap();
+        let chirps = simulate_chirps_for(&Task::default(), &radar, &scene, floor, 7).unwrap().samples;
         let first = chirps.index_axis(Axis(0), 0);
         assert_eq!(first.slice(s![..4, ..]), ends.first.slice(s![..4, ..]));
         assert_eq!(first.slice(s![4.., ..]), ends.last.slice(s![-4.., ..]));
@@ -76,8 +76,8 @@ fn at_rest_the_first_chirp_has_the_bits_of_a_single_one() {
     scene.disturbances.elements.elements[3].dead = true;
     scene.disturbances.elements.elements[2].gain = Decibels(3.0);
     scene.disturbances.elements.elements[60].forward_millimetres = 0.7;
-    let ends = simulate_ends(&radar, &scene, Floor::Thesis, 7).unwrap();
-    let chirps = simulate_chirps(&radar, &scene, Floor::Thesis, 7).unwrap().samples;
+    let ends = simulate_ends_for(&Task::default(), &radar, &scene, Floor::Thesis, 7).unwrap();
+    let chirps = simulate_chirps_for(&Task::default(), &radar, &scene, Floor::Thesis, 7).unwrap().samples;
     assert_eq!(chirps.slice(s![0, 4.., ..]), ends.last.slice(s![-4.., ..]));
     assert_eq!(chirps.slice(s![0, ..4, ..]), ends.first.slice(s![..4, ..]));
 }
@@ -92,7 +92,7 @@ fn what_moves_is_heard_by_disturbed_elements_as_what_rests() {
         scene.disturbances.elements.elements[2].phase_degrees = 40.0;
         scene.disturbances.elements.elements[60].position_millimetres = 0.7;
         scene.disturbances.mirror = Some(crate::scene::Mirror::default());
-        simulate_chirps(&radar, &scene, Floor::Exact, 0).unwrap().samples
+        simulate_chirps_for(&Task::default(), &radar, &scene, Floor::Exact, 0).unwrap().samples
     };
     let (rests, creeps) = (of(0.0), of(1e-9));
     let peak = rests.iter().fold(0.0f64, |m, v| m.max(v.norm()));
@@ -106,11 +106,11 @@ fn a_moving_box_is_heard_as_boxes_at_rest_where_it_is() {
     let mut object = Object::Box(Block::new([1.0, 11.0], [4.0, 1.8], 80.0));
     *object.velocity_mut()[1] = 1e-3;
     let scene = scene(vec![object, Object::Point(Point::new(1.5, 20.0))]);
-    let samples = simulate_chirps(&radar, &scene, Floor::Exact, 0).unwrap().samples;
+    let samples = simulate_chirps_for(&Task::default(), &radar, &scene, Floor::Exact, 0).unwrap().samples;
     for chirp in 0..3 {
         let mut then = scene.at(chirp as f64 * 1e-3);
         *then.objects[0].velocity_mut()[1] = 0.0;
-        let ends = simulate_ends(&radar, &then, Floor::Exact, 0).unwrap();
+        let ends = simulate_ends_for(&Task::default(), &radar, &then, Floor::Exact, 0).unwrap();
         let peak = ends.first.iter().fold(0.0f64, |m, v| m.max(v.norm()));
         let found = samples.slice(s![chirp, ..4, ..]);
         // The way of 1 micrometre during the chirp turns the phase by 2e-3 at most.

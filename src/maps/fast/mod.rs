@@ -36,11 +36,8 @@ const ROUNDING_DECADES: f32 = 1e-5;
 /// `log10(|Y| + guard)`, `[range bins, columns]`, with its extremes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FastLogMap {
-    /// The cells.
     pub cells: Array2<f32>,
-    /// Smallest cell.
     pub min: f32,
-    /// Largest cell.
     pub max: f32,
     rows: Vec<(f32, f32)>,
 }
@@ -57,7 +54,6 @@ impl FastLogMap {
         }
     }
 
-    /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         // Cells that differ by the rounding of their logarithms alone are flat.
         let is_flat = self.max - self.min < ROUNDING_DECADES;
@@ -78,9 +74,7 @@ pub struct MapNoise<'a, T, const W: usize> {
 /// The input of maps: the sum of several profiles and a floor.
 #[derive(Debug, Clone, Copy)]
 pub struct MapSources<'a, T, const W: usize> {
-    /// Profiles to be added up.
     pub profiles: &'a [&'a BlockProfiles<T, W>],
-    /// The floor, if any.
     pub noise: Option<MapNoise<'a, T, W>>,
     /// Upper bound of the magnitude of a map's cells; it only sets the scale at which magnitudes are squared.
     pub bound: f64,
@@ -97,7 +91,6 @@ pub struct MapMaker<T: Real, const W: usize> {
 }
 
 impl<T: Real, const W: usize> MapMaker<T, W> {
-    /// Prepares the transforms of `radar`.
     pub fn new(radar: &Radar, simd: Simd) -> Self {
         let scale = (radar.elements as f64).sqrt().recip();
         MapMaker {

@@ -76,8 +76,7 @@ impl<T: Real, const W: usize> Pruned<T, W> {
         for (chunk, twiddles) in self.twiddles.iter().enumerate() {
             for (n, x) in inputs.iter().enumerate() {
                 // Indexed, not zipped: the loop over inputs must not look as if it could be done in vectors, or it is, with gathers.
-                let x = ComplexLanes { re: Lanes::splat(x.re), im: Lanes::splat(x.im) };
-                data[n] = twiddles[n].times::<FMA>(x);
+                data[n] = twiddles[n].times::<FMA>(ComplexLanes::splat(*x));
             }
             data[inputs.len()..self.points].fill(ComplexLanes::zero());
             self.small.process::<W, FMA>(&mut data[..self.points], &mut spare[..self.points]);

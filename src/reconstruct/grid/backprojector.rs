@@ -4,7 +4,6 @@
 //! padded spectrum of each block has the amplitude at any range and angle of its own. Every cell of the centre's grid looks up its range and
 //! angle at each block, and the phase of its distance. This is the near-field matched filter of Cafforio, Prati and Rocca ("SAR data focusing
 //! using seismic migration techniques", 1991) with an interpolator instead of a sum over samples.
-//! migration techniques", 1991) with an interpolator instead of a sum over samples.
 
 use super::cells::GridCells;
 use crate::maps::centred_spectrum;

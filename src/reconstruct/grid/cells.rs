@@ -2,7 +2,7 @@
 
 use crate::radar::Radar;
 use crate::reconstruct::seen::{Direction, directions, row_ranges_metres};
-use crate::scene::{MIN_ELEMENT_DISTANCE_METRES, Reflector};
+use crate::scene::{Reflector, touched_element};
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::Array2;
 
@@ -17,9 +17,7 @@ pub(super) struct GridCells<'a> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct GridCell {
-    /// Range bin.
     pub bin: usize,
-    /// Index of the direction.
     pub direction: usize,
 }
 
@@ -35,7 +33,6 @@ impl<'a> GridCells<'a> {
         GridCells { hears: ends.hears(), ..GridCells::new(radar) }
     }
 
-    /// The radar of the cells.
     pub fn radar(&self) -> &'a Radar {
         self.radar
     }
@@ -50,20 +47,7 @@ impl<'a> GridCells<'a> {
         let (range, cos) = (*self.range_metres.get(cell.bin)?, self.directions.get(cell.direction)?.cos_theta);
         let place =
             Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt(), reflectivity: 1.0 };
-        let radar = self.radar;
-        if !radar.is_monostatic() {
-            let is_clear =
-                |[x, y]: [f64; 2]| (place.x_metres - x).hypot(place.y_metres - y) > MIN_ELEMENT_DISTANCE_METRES;
-            let mut antennas = (0..radar.elements).flat_map(|n| radar.pair(n).places_metres());
-            let [_, foremost] = radar.antenna_depth_metres();
-            let is_near_the_axis = place.y_metres <= foremost + MIN_ELEMENT_DISTANCE_METRES;
-            let clear = !is_near_the_axis || antennas.all(is_clear);
-            return (range > 0.0 && clear).then_some(place);
-        }
-        let nearest = (place.x_metres - radar.element_x_metres(0)) / radar.element_spacing_metres;
-        let nearest = radar.element_x_metres(nearest.round().clamp(0.0, radar.elements as f64 - 1.0) as usize);
-        let clear = (place.x_metres - nearest).hypot(place.y_metres) > MIN_ELEMENT_DISTANCE_METRES;
-        (range > 0.0 && clear).then_some(place)
+        (range > 0.0 && touched_element(self.radar, &place).is_none()).then_some(place)
     }
 
     /// Whether a reflector can stand in `cell`.

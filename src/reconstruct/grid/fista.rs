@@ -30,7 +30,6 @@ pub struct Fista {
     pub penalty: f64,
     /// Cells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
     pub candidates: usize,
-    /// Iterations.
     pub iterations: usize,
 }
 

@@ -64,7 +64,7 @@ impl Reconstructor for MatchedFilter {
         if let Some(heard) = &request.heard {
             let layout = Layout::of_numbers(radar, &heard.layout);
             let lambda = layout_matched_filter(radar, &layout, heard.samples.view(), request)?;
-            return Ok(Reconstruction { lambda, ..Reconstruction::silence(radar) });
+            return Ok(Reconstruction::of_map(lambda));
         }
         let cells = GridCells::new(radar);
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::Hann);

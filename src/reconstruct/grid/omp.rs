@@ -22,7 +22,6 @@ use num_complex::Complex64;
 /// where they explain most; the map is that of the picked atoms. One look at the grid gives several picks that are far apart in range.
 #[derive(Debug, Clone, Copy)]
 pub struct Omp {
-    /// Most atoms to pick.
     pub max_atoms: usize,
 }
 

@@ -1,9 +1,8 @@
 //! Capon's minimum-variance beamformer.
 
 use super::covariance::{quadratic_form, smoothed, subarray_len};
-use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
+use super::method::{Render, RowMethod};
 use super::row::RowSnapshot;
-use crate::reconstruct::reconstructor::About;
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
 use num_complex::Complex64;
@@ -13,26 +12,20 @@ use num_complex::Complex64;
 /// J. Capon, "High-resolution frequency-wavenumber spectrum analysis", Proc. IEEE 57, 1969; with spatial smoothing and diagonal
 /// loading by the noise, since one row of one chirp gives one snapshot.
 pub const CAPON: RowMethod = RowMethod {
-    about: About {
-        name: "capon",
-        description: "minimum-variance beams of each end and range row, with spatial smoothing",
-        told: ASSUMPTIONS,
-        eta: 0.851, // by examples/choose_eta.rs
-    },
+    name: "capon",
+    description: "minimum-variance beams of each end and range row, with spatial smoothing",
+    eta: 0.851, // by examples/choose_eta.rs
     estimate: spectrum,
     render: Render::Spectrum,
 };
 
 /// The peaks of [`CAPON`], rendered.
 pub const CAPON_PEAKS: RowMethod = RowMethod {
-    about: About {
-        name: "capon-peaks",
-        description: "the peaks of capon, moved to where their echoes fit both ends best, and the exact map of them",
-        told: TOLD_PEAKS,
-        eta: 0.806, // by examples/choose_eta.rs
-    },
-    estimate: spectrum,
+    name: "capon-peaks",
+    description: "the peaks of capon, moved to where their echoes fit both ends best, and the exact map of them",
+    eta: 0.806, // by examples/choose_eta.rs
     render: Render::Peaks,
+    ..CAPON
 };
 
 /// Added to the covariance's diagonal beside the noise, as a part of its mean, for the elements' small departures from a plane wave.

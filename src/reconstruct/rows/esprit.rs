@@ -1,9 +1,8 @@
 //! ESPRIT: directions from the phase step of the signal subspace between neighbouring elements.
 
 use super::covariance::{smoothed, subarray_len, subspaces};
-use super::method::{Render, RowMethod, TOLD_PEAKS};
+use super::method::{Render, RowMethod};
 use super::row::RowSnapshot;
-use crate::reconstruct::reconstructor::About;
 use faer::linalg::solvers::{SelfAdjointEigen, Solve};
 use faer::{Mat, Side};
 use num_complex::Complex64;
@@ -14,13 +13,10 @@ use num_complex::Complex64;
 /// R. Roy and T. Kailath, "ESPRIT: estimation of signal parameters via rotational invariance techniques", IEEE Trans. Acoust., Speech,
 /// Signal Process. 37, 1989.
 pub const ESPRIT: RowMethod = RowMethod {
-    about: About {
-        name: "esprit",
-        description: "directions from how the signals turn from element to element, moved to where their echoes fit both ends best, and \
-            the exact map of them",
-        told: TOLD_PEAKS,
-        eta: 0.752, // by examples/choose_eta.rs
-    },
+    name: "esprit",
+    description: "directions from how the signals turn from element to element, moved to where their echoes fit both ends best, and \
+        the exact map of them",
+    eta: 0.752, // by examples/choose_eta.rs
     estimate: |row| row.continued(&directions(row)?),
     render: Render::Peaks,
 };

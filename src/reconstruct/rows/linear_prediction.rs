@@ -1,9 +1,8 @@
 //! Linear prediction: each element as a combination of its neighbours.
 
 use super::covariance::subarray_len;
-use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
+use super::method::{Render, RowMethod};
 use super::row::RowSnapshot;
-use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use num_complex::Complex64;
 
@@ -13,26 +12,20 @@ use num_complex::Complex64;
 /// D. W. Tufts and R. Kumaresan, "Estimation of frequencies of multiple sinusoids: making linear prediction perform like maximum
 /// likelihood", Proc. IEEE 70, 1982.
 pub const LINEAR_PREDICTION: RowMethod = RowMethod {
-    about: About {
-        name: "linear-prediction",
-        description: "nulls of the prediction error over angle, for each end and range row",
-        told: ASSUMPTIONS,
-        eta: 0.863, // by examples/choose_eta.rs
-    },
+    name: "linear-prediction",
+    description: "nulls of the prediction error over angle, for each end and range row",
+    eta: 0.863, // by examples/choose_eta.rs
     estimate: spectrum,
     render: Render::Spectrum,
 };
 
 /// The peaks of [`LINEAR_PREDICTION`], rendered.
 pub const LINEAR_PREDICTION_PEAKS: RowMethod = RowMethod {
-    about: About {
-        name: "linear-prediction-peaks",
-        description: "the peaks of linear-prediction, moved to where their echoes fit both ends best, and the exact map of them",
-        told: TOLD_PEAKS,
-        eta: 0.775, // by examples/choose_eta.rs
-    },
-    estimate: spectrum,
+    name: "linear-prediction-peaks",
+    description: "the peaks of linear-prediction, moved to where their echoes fit both ends best, and the exact map of them",
+    eta: 0.775, // by examples/choose_eta.rs
     render: Render::Peaks,
+    ..LINEAR_PREDICTION
 };
 
 /// Coefficients `a` of `x[n] = sum_k a[k] x[n - 1 - k]`, and backward with their conjugates.

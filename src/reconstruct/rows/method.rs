@@ -23,11 +23,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Power of a row relative to the strongest below which the row has only side lobes: plain beamforming draws it.
 const ACTIVE_ROW: f64 = 1e-12;
 
-/// The assumptions of every row method, [`About::told`].
-pub(super) const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
+/// [`About::told`] of the methods that draw a spectrum.
+const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
     It does not use the phase between the ends";
 
-pub(super) const TOLD_PEAKS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
+const TOLD_PEAKS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
     scene or the floor, it measures the noise itself. Its peaks do not use the phase between the ends; their places and amplitudes \
     are then fitted to both ends together, as those of iaa and sbl are";
 
@@ -55,7 +55,10 @@ const LEAST_PEAK_OVER_NOISE: f64 = 10.0;
 /// A method that estimates power over angle of one end and one range row at a time.
 #[derive(Debug, Clone, Copy)]
 pub struct RowMethod {
-    pub(super) about: About,
+    pub(super) name: &'static str,
+    pub(super) description: &'static str,
+    /// [`About::eta`].
+    pub(super) eta: f32,
     /// Power over angle, one value a column in the order of the transform, or `None` to leave the row to plain beamforming.
     pub(super) estimate: fn(&RowSnapshot<'_>) -> Option<Vec<f64>>,
     pub(super) render: Render,
@@ -63,7 +66,8 @@ pub struct RowMethod {
 
 impl Reconstructor for RowMethod {
     fn about(&self) -> About {
-        self.about
+        let RowMethod { name, description, eta, render, .. } = *self;
+        About { name, description, told: if render == Render::Peaks { TOLD_PEAKS } else { ASSUMPTIONS }, eta }
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -91,6 +95,17 @@ impl Reconstructor for RowMethod {
         Ok(of_echoes(radar, ends, &found, noise_variance, request))
     }
 }
+
+/// Each end's beams without an angle window, combined on the centre's grid.
+///
+/// M. S. Bartlett, "Smoothing periodograms from time-series with continuous spectra", Nature 161, 1948, applied to arrays.
+pub const BARTLETT: RowMethod = RowMethod {
+    name: "bartlett",
+    description: "both ends' plain beams, laid over each other where they see the same place",
+    eta: 0.952, // by examples/choose_eta.rs
+    estimate: |row| Some(row.bartlett()),
+    render: Render::Spectrum,
+};
 
 /// [`RowSnapshot::not_plane`] of the sub-arrays of `radar`'s ends. Over half a sub-array the range changes by up to `b` bins, and the amplitude
 /// in a row in proportion; a second signal in the same direction takes up the linear part, and its square is left.

@@ -5,7 +5,6 @@
 //! no phase between the ends. A method draws that power, or its peaks: these are moved to where their exact echoes explain the samples of both
 //! ends best, as those of the coherent methods are, and the exact map of these echoes is drawn.
 
-mod bartlett;
 mod capon;
 mod covariance;
 mod esprit;
@@ -16,10 +15,9 @@ mod registered;
 mod root_music;
 mod row;
 
-pub use bartlett::BARTLETT;
 pub use capon::{CAPON, CAPON_PEAKS};
 pub use esprit::ESPRIT;
 pub use linear_prediction::{LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS};
-pub use method::RowMethod;
+pub use method::{BARTLETT, RowMethod};
 pub use music::{MUSIC, MUSIC_PEAKS};
 pub use root_music::{ROOT_MUSIC, ROOT_MUSIC_PEAKS};

@@ -1,34 +1,27 @@
 //! MUSIC: directions orthogonal to the noise subspace.
 
 use super::covariance::{quadratic_form, smoothed, subarray_len, subspaces};
-use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
+use super::method::{Render, RowMethod};
 use super::row::RowSnapshot;
-use crate::reconstruct::reconstructor::About;
 
 /// The pseudo-spectrum of each end and range row, with spatial smoothing.
 ///
 /// R. O. Schmidt, "Multiple emitter location and signal parameter estimation", IEEE Trans. Antennas Propag. 34, 1986.
 pub const MUSIC: RowMethod = RowMethod {
-    about: About {
-        name: "music",
-        description: "subspace pseudo-spectrum of each end and range row, with spatial smoothing",
-        told: ASSUMPTIONS,
-        eta: 0.842, // by examples/choose_eta.rs
-    },
+    name: "music",
+    description: "subspace pseudo-spectrum of each end and range row, with spatial smoothing",
+    eta: 0.842, // by examples/choose_eta.rs
     estimate: spectrum,
     render: Render::Spectrum,
 };
 
 /// The peaks of [`MUSIC`], rendered.
 pub const MUSIC_PEAKS: RowMethod = RowMethod {
-    about: About {
-        name: "music-peaks",
-        description: "the peaks of music, moved to where their echoes fit both ends best, and the exact map of them",
-        told: TOLD_PEAKS,
-        eta: 0.757, // by examples/choose_eta.rs
-    },
-    estimate: spectrum,
+    name: "music-peaks",
+    description: "the peaks of music, moved to where their echoes fit both ends best, and the exact map of them",
+    eta: 0.757, // by examples/choose_eta.rs
     render: Render::Peaks,
+    ..MUSIC
 };
 
 fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {

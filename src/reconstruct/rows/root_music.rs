@@ -1,9 +1,8 @@
 //! root-MUSIC: directions as roots of a polynomial, and the whole array continued from them.
 
 use super::covariance::{diagonal_sums, smoothed, subarray_len, subspaces};
-use super::method::{ASSUMPTIONS, Render, RowMethod, TOLD_PEAKS};
+use super::method::{Render, RowMethod};
 use super::row::RowSnapshot;
-use crate::reconstruct::reconstructor::About;
 use faer::Mat;
 use num_complex::Complex64;
 
@@ -12,26 +11,20 @@ use num_complex::Complex64;
 ///
 /// A. J. Barabell, "Improving the resolution performance of eigenstructure-based direction-finding algorithms", ICASSP 1983.
 pub const ROOT_MUSIC: RowMethod = RowMethod {
-    about: About {
-        name: "root-music",
-        description: "directions of each end and range row as polynomial roots, and the array continued from them",
-        told: ASSUMPTIONS,
-        eta: 0.665, // by examples/choose_eta.rs
-    },
+    name: "root-music",
+    description: "directions of each end and range row as polynomial roots, and the array continued from them",
+    eta: 0.665, // by examples/choose_eta.rs
     estimate: continued,
     render: Render::Spectrum,
 };
 
 /// The peaks of [`ROOT_MUSIC`], rendered.
 pub const ROOT_MUSIC_PEAKS: RowMethod = RowMethod {
-    about: About {
-        name: "root-music-peaks",
-        description: "the directions of root-music, moved to where their echoes fit both ends best, and the exact map of them",
-        told: TOLD_PEAKS,
-        eta: 0.756, // by examples/choose_eta.rs
-    },
-    estimate: continued,
+    name: "root-music-peaks",
+    description: "the directions of root-music, moved to where their echoes fit both ends best, and the exact map of them",
+    eta: 0.756, // by examples/choose_eta.rs
     render: Render::Peaks,
+    ..ROOT_MUSIC
 };
 
 /// Turns of phase per element of each wave: the roots inside the unit circle that are nearest to it.

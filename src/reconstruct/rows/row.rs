@@ -14,7 +14,6 @@ pub struct RowSnapshot<'a> {
     pub noise_variance: f64,
     /// Part of the power of one echo that no plane wave describes: its range, and so its amplitude in a range row, changes over the end.
     pub not_plane: f64,
-    /// The transform from elements to columns.
     pub spectrum: &'a Spectrum,
 }
 

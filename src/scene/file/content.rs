@@ -12,15 +12,12 @@ pub const MAX_FILE_BYTES: u64 = 64 << 20;
 /// A scene and the radar that looks at it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneFile {
-    /// The scene.
     pub scene: Scene,
     /// The radar: table 3.1 unless the file says otherwise.
     pub radar: Radar,
 }
 
-/// An error of reading or writing a scene file.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
 pub enum SceneFileError {
     #[error("{}: {source}", path.display())]
     Io { path: PathBuf, source: io::Error },
@@ -43,7 +40,6 @@ pub enum SceneFileError {
 /// The two kinds of scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SceneFormat {
-    /// The whole scene, readable.
     Toml,
     /// Positions only, as the thesis author's program reads and writes them.
     Npz,
@@ -67,11 +63,9 @@ impl SceneFormat {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}, column {column}: {message}")]
 pub struct SceneTextError {
-    /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// The fault and the expected value.
     pub message: String,
 }
 

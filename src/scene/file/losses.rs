@@ -1,113 +1,51 @@
-//! Losses of a file format: properties of a scene that it can't store, reported before the scene is written.
+//! Losses of a file format: properties of a scene that it can't store, told before the scene is written.
 
 use super::content::{SceneFile, SceneFormat};
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
-use std::fmt;
-
-/// A property of a scene that a file would not give back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)] // Names of fields say what is in them.
-pub enum FileLoss {
-    /// The scene's name.
-    Name,
-    /// The scene's notes.
-    Notes,
-    /// The number that picks the floor's noise: reopened, it is 0.
-    NoiseSeed,
-    /// A radar other than table 3.1's: reopened, the scene stands before the usual one.
-    Radar,
-    /// Elements as they are built, an interferer or a mirror: reopened, there are none.
-    Disturbances,
-    /// The recording that the scene is laid over: reopened, it lies over none.
-    Recording,
-    /// Reflectivities other than 1: reopened, they are 1.
-    Reflectivity { objects: usize },
-    /// Names: reopened, objects are called by kind and number.
-    Named { objects: usize },
-    /// Velocities: reopened, everything rests.
-    Velocity {
-        /// Objects that move.
-        objects: usize,
-    },
-    /// Bodies that hide nothing: reopened, there are no bodies.
-    Shadows,
-    /// Bodies: reopened, they are points where the array's middle sees them echo, which hide nothing.
-    Bodies {
-        /// Walls, boxes, posts and polygons.
-        objects: usize,
-        /// Points they become.
-        points: usize,
-    },
-    /// Lines and clusters: reopened, they are points.
-    Structure {
-        /// Lines and clusters.
-        objects: usize,
-        /// Points they become.
-        points: usize,
-    },
-}
-
-impl fmt::Display for FileLoss {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            FileLoss::Name => f.write_str("the scene's name"),
-            FileLoss::Notes => f.write_str("its notes"),
-            FileLoss::NoiseSeed => f.write_str("its noise seed"),
-            FileLoss::Radar => f.write_str("its radar"),
-            FileLoss::Shadows => f.write_str("that its bodies hide nothing"),
-            FileLoss::Bodies { objects: 1, points } => {
-                write!(f, "one body, which becomes {points} points where it echoes")
-            }
-            FileLoss::Bodies { objects, points } => {
-                write!(f, "{objects} bodies, which become {points} points where they echo")
-            }
-            FileLoss::Disturbances => f.write_str("what disturbs it"),
-            FileLoss::Recording => f.write_str("the recording that it is laid over"),
-            FileLoss::Reflectivity { objects: 1 } => f.write_str("the reflectivity of one object"),
-            FileLoss::Reflectivity { objects } => write!(f, "the reflectivity of {objects} objects"),
-            FileLoss::Named { objects: 1 } => f.write_str("the name of one object"),
-            FileLoss::Named { objects } => write!(f, "the names of {objects} objects"),
-            FileLoss::Velocity { objects: 1 } => f.write_str("the velocity of one object"),
-            FileLoss::Velocity { objects } => write!(f, "the velocity of {objects} objects"),
-            FileLoss::Structure { objects: 1, points } => {
-                write!(f, "one line or cluster, which becomes {points} points")
-            }
-            FileLoss::Structure { objects, points } => {
-                write!(f, "{objects} lines and clusters, which become {points} points")
-            }
-        }
-    }
-}
 
 impl SceneFormat {
-    /// The parts of `file` that a file of this format loses; empty for none.
-    pub fn losses(self, file: &SceneFile) -> Vec<FileLoss> {
+    /// The parts of `file` that a file of this format loses, in words; empty for none.
+    ///
+    /// An archive gives back points of reflectivity 1 before the usual radar: bodies as the places where the array's middle sees them echo.
+    pub fn losses(self, file: &SceneFile) -> Vec<String> {
         let SceneFile { scene, radar } = file;
         let Scene { name, notes, noise_seed, shadows, disturbances, objects } = scene;
         if self == SceneFormat::Toml {
             return Vec::new();
         }
-        let mut losses = Vec::new();
-        losses.extend((!name.is_empty()).then_some(FileLoss::Name));
-        losses.extend((!notes.is_empty()).then_some(FileLoss::Notes));
-        losses.extend((*noise_seed != 0).then_some(FileLoss::NoiseSeed));
-        losses.extend((*radar != Radar::default()).then_some(FileLoss::Radar));
-        losses.extend((!disturbances.is_none()).then_some(FileLoss::Disturbances));
-        let reflective = objects.iter().filter(|o| o.reflectivity() != 1.0).count();
-        losses.extend((reflective > 0).then_some(FileLoss::Reflectivity { objects: reflective }));
-        let named = objects.iter().filter(|o| !o.name().is_empty()).count();
-        losses.extend((named > 0).then_some(FileLoss::Named { objects: named }));
-        let moving = objects.iter().filter(|o| o.is_moving()).count();
-        losses.extend((moving > 0).then_some(FileLoss::Velocity { objects: moving }));
-        losses.extend((!shadows).then_some(FileLoss::Shadows));
+        let count = |is: fn(&Object) -> bool| objects.iter().filter(|object| is(object)).count();
+        let counted = |one: &str, many: &str, count: usize| match count {
+            0 => None,
+            1 => Some(format!("the {one} of one object")),
+            _ => Some(format!("the {many} of {count} objects")),
+        };
         let bodies: Vec<_> = objects.iter().filter_map(Object::body).collect();
-        let points = bodies.iter().map(|b| b.echo_places_metres([0.0, 0.0]).len()).sum();
-        losses.extend((!bodies.is_empty()).then_some(FileLoss::Bodies { objects: bodies.len(), points }));
-        let structured = || objects.iter().filter(|o| o.body().is_none() && !matches!(o, Object::Point(_)));
-        let (structures, points) = (structured().count(), structured().map(Object::reflector_count).sum());
-        losses.extend((structures > 0).then_some(FileLoss::Structure { objects: structures, points }));
-        losses
+        let places: usize = bodies.iter().map(|b| b.echo_places_metres([0.0, 0.0]).len()).sum();
+        let is_structure = |o: &Object| o.body().is_none() && !matches!(o, Object::Point(_));
+        let points: usize = objects.iter().filter(|o| is_structure(o)).map(Object::reflector_count).sum();
+        let losses = [
+            (!name.is_empty()).then(|| "the scene's name".to_owned()),
+            (!notes.is_empty()).then(|| "its notes".to_owned()),
+            (*noise_seed != 0).then(|| "its noise seed".to_owned()),
+            (*radar != Radar::default()).then(|| "its radar".to_owned()),
+            (!disturbances.is_none()).then(|| "what disturbs it".to_owned()),
+            counted("reflectivity", "reflectivity", count(|o| o.reflectivity() != 1.0)),
+            counted("name", "names", count(|o| !o.name().is_empty())),
+            counted("velocity", "velocity", count(Object::is_moving)),
+            (!shadows).then(|| "that its bodies hide nothing".to_owned()),
+            match bodies.len() {
+                0 => None,
+                1 => Some(format!("one body, which becomes {places} points where it echoes")),
+                n => Some(format!("{n} bodies, which become {places} points where they echo")),
+            },
+            match count(is_structure) {
+                0 => None,
+                1 => Some(format!("one line or cluster, which becomes {points} points")),
+                n => Some(format!("{n} lines and clusters, which become {points} points")),
+            },
+        ];
+        losses.into_iter().flatten().collect()
     }
 }
 
@@ -183,7 +121,7 @@ mod tests {
         let objects = vec![Object::Line(line), Object::Wall(Wall::new(0.0, 20.0, 5.0, 0.0))];
         let scene = Scene { notes: "n".to_owned(), shadows: false, objects, ..Scene::default() };
         let file = SceneFile { scene, radar: Radar { elements: 64, ..Radar::default() } };
-        let told: Vec<String> = SceneFormat::Npz.losses(&file).iter().map(FileLoss::to_string).collect();
+        let told = SceneFormat::Npz.losses(&file);
         let points = "one body, which becomes 3 points where it echoes; one line or cluster, which becomes 40 points";
         let others = "its notes; its radar; the reflectivity of one object; that its bodies hide nothing";
         assert_eq!(told.join("; "), format!("{others}; {points}"));

@@ -61,7 +61,6 @@ mod write;
 
 pub use content::{MAX_FILE_BYTES, SceneFile, SceneFileError, SceneFormat, SceneTextError};
 pub use disk::{load, load_beside, save, save_beside};
-pub use losses::FileLoss;
 pub use radar::radar_of;
 pub use read::{from_toml, from_toml_beside};
 pub use write::{to_toml, to_toml_beside};

@@ -28,12 +28,12 @@ fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Sce
     let (file, other) = parse(text, beside)?;
     file.scene.validate(&file.radar).map_err(|error| {
         let span = match &error {
-            SceneError::Value { object, field, .. } => object_spans(text, *object).field(field),
-            SceneError::Outline { object, .. } => object_spans(text, *object).field("corners_metres"),
+            SceneError::Value { object, field, .. } => span_of(text, "object", Some(*object), field),
+            SceneError::Outline { object, .. } => span_of(text, "object", Some(*object), "corners_metres"),
             SceneError::OnElement { object, .. } | SceneError::Covers { object, .. } => {
-                object_spans(text, *object).whole
+                span_of(text, "object", Some(*object), "")
             }
-            SceneError::Elements(_) | SceneError::Disturbance { .. } => disturbances_span(text),
+            SceneError::Elements(_) | SceneError::Disturbance { .. } => span_of(text, "disturbances", None, ""),
             SceneError::TooMany { .. } | SceneError::Radar(_) => 0..0,
         };
         SceneTextError::at(text, span.start, error.to_string())
@@ -97,7 +97,6 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
     let mut document = document.into_inner();
     check_format(text, &document)?;
     document.remove("format");
-    let radar_spans = document.get("radar").map(Spans::of);
     let entries = document.remove("object");
     let start = span.start;
     let wrong = |e: toml::de::Error| of_toml(text, &e, start);
@@ -106,8 +105,7 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
     let head = ValueDeserializer::from(Spanned::new(span.clone(), DeValue::Table(document)));
     let head = Head::deserialize(head).map_err(wrong)?;
     head.radar.validate().map_err(|error| {
-        let span = radar_spans.as_ref().map_or(0..0, |s| s.field(error.field()));
-        SceneTextError::at(text, span.start, error.to_string())
+        SceneTextError::at(text, span_of(text, "radar", None, error.field()).start, error.to_string())
     })?;
     let objects = entries.map(|e| objects(text, e)).transpose()?.unwrap_or_default();
     Ok((
@@ -143,34 +141,20 @@ fn check_format(text: &str, document: &DeTable<'_>) -> Result<(), SceneTextError
     Err(SceneTextError::at(text, format.span().start, message))
 }
 
-/// Places of object `index` and of its fields in a text that was read before. They are looked up for errors only.
-fn object_spans(text: &str, index: usize) -> Spans {
+/// The place of a field of a table, or of the object with this index under `key`, in a text that was read before; that of the table where it has
+/// no such field. It is looked up for errors only.
+fn span_of(text: &str, key: &str, index: Option<usize>, field: &str) -> Range<usize> {
     let document = table(text).ok();
-    let entries = document.as_ref().and_then(|d| d.get_ref().get("object")).and_then(|e| e.get_ref().as_array());
-    entries.and_then(|e| e.get(index)).map_or(Spans { whole: 0..0, fields: Vec::new() }, Spans::of)
-}
-
-fn disturbances_span(text: &str) -> Range<usize> {
-    table(text).ok().and_then(|d| d.get_ref().get("disturbances").map(Spanned::span)).unwrap_or(0..0)
-}
-
-struct Spans {
-    whole: Range<usize>,
-    fields: Vec<(String, Range<usize>)>,
-}
-
-impl Spans {
-    fn of(value: &Spanned<DeValue<'_>>) -> Spans {
-        let fields = match value.get_ref() {
-            DeValue::Table(table) => table.iter().map(|(k, v)| (k.get_ref().to_string(), v.span())).collect(),
-            _ => Vec::new(),
-        };
-        Spans { whole: value.span(), fields }
-    }
-
-    fn field(&self, name: &str) -> Range<usize> {
-        self.fields.iter().find(|(n, _)| n == name).map_or_else(|| self.whole.clone(), |(_, s)| s.clone())
-    }
+    let value = document.as_ref().and_then(|document| document.get_ref().get(key));
+    let value = value.and_then(|value| match index {
+        Some(index) => value.get_ref().as_array()?.get(index),
+        None => Some(value),
+    });
+    let field = match value.map(Spanned::get_ref) {
+        Some(DeValue::Table(table)) => table.get(field),
+        _ => None,
+    };
+    field.or(value).map_or(0..0, Spanned::span)
 }
 
 fn of_toml(text: &str, error: &toml::de::Error, otherwise: usize) -> SceneTextError {

@@ -30,31 +30,18 @@ pub enum Beyond {
 }
 
 impl Beyond {
-    /// Every kind.
     pub const ALL: [Beyond; 6] =
         [Beyond::Walls, Beyond::Crossing, Beyond::Clusters, Beyond::Faint, Beyond::Ring, Beyond::Many];
 
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
+    /// The name on the command line, and the objects of such a scene.
+    pub(super) fn entry(self) -> (&'static str, &'static str) {
         match self {
-            Beyond::Walls => "beyond-walls",
-            Beyond::Crossing => "beyond-crossing",
-            Beyond::Clusters => "beyond-clusters",
-            Beyond::Faint => "beyond-faint",
-            Beyond::Ring => "beyond-ring",
-            Beyond::Many => "beyond-many",
-        }
-    }
-
-    /// The objects of such a scene, in a few words.
-    pub fn description(self) -> &'static str {
-        match self {
-            Beyond::Walls => "walls at any step, jittered, bent and broken",
-            Beyond::Crossing => "two walls that cross",
-            Beyond::Clusters => "clusters of any shape",
-            Beyond::Faint => "points up to 60 dB apart",
-            Beyond::Ring => "points within one range bin",
-            Beyond::Many => "10 to 300 points",
+            Beyond::Walls => ("beyond-walls", "walls at any step, jittered, bent and broken"),
+            Beyond::Crossing => ("beyond-crossing", "two walls that cross"),
+            Beyond::Clusters => ("beyond-clusters", "clusters of any shape"),
+            Beyond::Faint => ("beyond-faint", "points up to 60 dB apart"),
+            Beyond::Ring => ("beyond-ring", "points within one range bin"),
+            Beyond::Many => ("beyond-many", "10 to 300 points"),
         }
     }
 }

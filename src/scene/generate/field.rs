@@ -22,33 +22,20 @@ pub(super) struct PlacementField {
 impl PlacementField {
     /// The objects of a scene of `kind`, one of [`Kind::VARIED`] or [`Kind::IRREGULAR`]; none for the others.
     pub fn objects(&self, kind: Kind, rng: &mut ChaCha8Rng) -> Vec<Object> {
-        match kind {
-            Kind::Clusters => {
-                let mut objects: Vec<_> = (0..rng.random_range(1..=3)).map(|_| self.cluster(rng)).collect();
-                objects.extend(self.some_points(rng));
-                objects
-            }
-            Kind::Walls => {
-                let mut objects: Vec<_> = (0..rng.random_range(1..=3))
-                    .map(|_| {
-                        let direction = rng.random_range(0.0..360.0);
-                        self.line(direction, self.spacing(rng, 3.0), 20..=100, rng)
-                    })
-                    .collect();
-                objects.extend(self.some_points(rng));
-                objects
-            }
+        let mut objects: Vec<Object> = match kind {
+            Kind::Clusters => (0..rng.random_range(1..=3)).map(|_| self.cluster(rng)).collect(),
+            Kind::Walls => (0..rng.random_range(1..=3))
+                .map(|_| {
+                    let direction = rng.random_range(0.0..360.0);
+                    self.line(direction, self.spacing(rng, 3.0), 20..=100, rng)
+                })
+                .collect(),
             Kind::Spacings => {
-                let mut objects: Vec<_> = (0..rng.random_range(1..=3))
-                    .map(|_| self.line(90.0, self.other_spacing(rng), 20..=100, rng))
-                    .collect();
-                objects.extend(self.some_points(rng));
-                objects
+                (0..rng.random_range(1..=3)).map(|_| self.line(90.0, self.other_spacing(rng), 20..=100, rng)).collect()
             }
             Kind::Corner => {
                 let mut objects = self.corner(rng);
                 objects.push(self.cluster(rng));
-                objects.push(self.point(1.0, rng));
                 objects
             }
             Kind::Crowd => (0..rng.random_range(12..=40)).map(|_| self.point(1.0, rng)).collect(),
@@ -59,18 +46,21 @@ impl PlacementField {
                 })
                 .collect(),
             Kind::Near => (0..rng.random_range(1..=3)).map(|_| near_point(rng)).collect(),
-            Kind::Fences => {
-                let mut objects = self.fences(rng);
-                objects.extend((0..rng.random_range(0..=3)).map(|_| self.point(1.0, rng)));
-                objects
-            }
-            Kind::Rain => {
-                let mut objects: Vec<_> = (0..rng.random_range(1..=4)).map(|_| self.point(1.0, rng)).collect();
-                objects.extend((0..rng.random_range(60..=240)).map(|_| self.weak_point(rng)));
-                objects
-            }
+            Kind::Fences => self.fences(rng),
+            Kind::Rain => (0..rng.random_range(1..=4)).map(|_| self.point(1.0, rng)).collect(),
             _ => Vec::new(),
+        };
+        let points = match kind {
+            Kind::Clusters | Kind::Walls | Kind::Spacings => rng.random_range(1..=3),
+            Kind::Corner => 1,
+            Kind::Fences => rng.random_range(0..=3),
+            _ => 0,
+        };
+        objects.extend((0..points).map(|_| self.point(1.0, rng)));
+        if kind == Kind::Rain {
+            objects.extend((0..rng.random_range(60..=240)).map(|_| self.weak_point(rng)));
         }
+        objects
     }
 
     fn place(&self, rng: &mut ChaCha8Rng) -> [f64; 2] {
@@ -111,10 +101,6 @@ impl PlacementField {
                 return places.into_iter().map(|[x, y]| Object::Point(Point::new(x, y))).collect();
             }
         }
-    }
-
-    fn some_points(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
-        (0..rng.random_range(1..=3)).map(|_| self.point(1.0, rng)).collect()
     }
 
     fn cluster(&self, rng: &mut ChaCha8Rng) -> Object {

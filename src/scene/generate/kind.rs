@@ -61,10 +61,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The three test sets, in order.
     pub const TEST_SETS: [Kind; 3] = [Kind::Set1, Kind::Set2, Kind::Set3];
 
-    /// The kinds beside the test sets.
     pub const VARIED: [Kind; 7] =
         [Kind::Clusters, Kind::Walls, Kind::Spacings, Kind::Corner, Kind::Crowd, Kind::Dynamic, Kind::Near];
 
@@ -97,7 +95,7 @@ impl Kind {
             return Ok(Kind::World);
         }
         match name.parse::<Kind>().map_err(|error| format!("{error}, or {WORLD}"))? {
-            Kind::Beyond(kind) => Err(format!("{} makes scenes for tests alone; expected another kind", kind.name())),
+            Kind::Beyond(kind) => Err(format!("{} makes scenes for tests alone; expected another kind", kind.entry().0)),
             kind => Ok(kind),
         }
     }
@@ -122,30 +120,7 @@ impl Kind {
 
     /// The objects of such a scene, in a few words.
     pub fn description(self) -> &'static str {
-        match self {
-            Kind::Set1 => "one point",
-            Kind::Set2 => "3 to 6 points",
-            Kind::Set3 => "3 to 6 points and lines",
-            Kind::Clusters => "Gaussian clusters and points",
-            Kind::Walls => "lines at any slant and points",
-            Kind::Spacings => "vertical lines at other spacings and points",
-            Kind::Corner => "two perpendicular lines, a cluster and a point",
-            Kind::Crowd => "12 to 40 points",
-            Kind::Dynamic => "5 points up to 40 dB apart",
-            Kind::Near => "points from 0.3 m",
-            Kind::Fences => "two long rows of points at irregular steps",
-            Kind::Rain => "60 to 240 weak points and a few strong ones",
-            Kind::Bodies => "walls, cars, posts and corners",
-            Kind::Street => "a street of cars, walls and posts",
-            Kind::Rails => "guard rails, a car and posts",
-            Kind::Occlusion => "bodies behind a car or a post",
-            Kind::Rough => "rough bodies and a post",
-            Kind::Beyond(kind) => kind.description(),
-            Kind::World => "curves, clouds and bodies of every kind, for training",
-            Kind::Noise => "noise alone",
-            Kind::Points(_) => "points of experiment 1",
-            Kind::Mixed(_) => "points and lines of experiment 2",
-        }
+        self.entry().2
     }
 
     /// Title of a generated scene, for example "Test set 3, seed 0, scene 7".
@@ -162,29 +137,34 @@ impl Kind {
     }
 
     pub(super) fn stream(self) -> u64 {
+        self.entry().1
+    }
+
+    /// Its name, which a number follows where it has one; the number of its random stream; and its objects.
+    fn entry(self) -> (&'static str, u64, &'static str) {
         match self {
-            Kind::Set1 => 1,
-            Kind::Set2 => 2,
-            Kind::Set3 => 3,
-            Kind::Clusters => 4,
-            Kind::Walls => 5,
-            Kind::Spacings => 6,
-            Kind::Corner => 7,
-            Kind::Crowd => 8,
-            Kind::Dynamic => 9,
-            Kind::Near => 10,
-            Kind::Noise => 11,
-            Kind::Bodies => 12,
-            Kind::Street => 13,
-            Kind::Rails => 14,
-            Kind::Occlusion => 15,
-            Kind::Rough => 16,
-            Kind::Fences => 17,
-            Kind::Rain => 18,
-            Kind::World => 19,
-            Kind::Beyond(kind) => 0x20 + kind as u64,
-            Kind::Points(n) => 0x100 + u64::from(n),
-            Kind::Mixed(n) => 0x200 + u64::from(n),
+            Kind::Set1 => ("1", 1, "one point"),
+            Kind::Set2 => ("2", 2, "3 to 6 points"),
+            Kind::Set3 => ("3", 3, "3 to 6 points and lines"),
+            Kind::Clusters => ("clusters", 4, "Gaussian clusters and points"),
+            Kind::Walls => ("walls", 5, "lines at any slant and points"),
+            Kind::Spacings => ("spacings", 6, "vertical lines at other spacings and points"),
+            Kind::Corner => ("corner", 7, "two perpendicular lines, a cluster and a point"),
+            Kind::Crowd => ("crowd", 8, "12 to 40 points"),
+            Kind::Dynamic => ("dynamic", 9, "5 points up to 40 dB apart"),
+            Kind::Near => ("near", 10, "points from 0.3 m"),
+            Kind::Noise => ("noise", 11, "noise alone"),
+            Kind::Bodies => ("bodies", 12, "walls, cars, posts and corners"),
+            Kind::Street => ("street", 13, "a street of cars, walls and posts"),
+            Kind::Rails => ("rails", 14, "guard rails, a car and posts"),
+            Kind::Occlusion => ("occlusion", 15, "bodies behind a car or a post"),
+            Kind::Rough => ("rough", 16, "rough bodies and a post"),
+            Kind::Fences => ("fences", 17, "two long rows of points at irregular steps"),
+            Kind::Rain => ("rain", 18, "60 to 240 weak points and a few strong ones"),
+            Kind::World => (WORLD, 19, "curves, clouds and bodies of every kind, for training"),
+            Kind::Beyond(kind) => (kind.entry().0, 0x20 + kind as u64, kind.entry().1),
+            Kind::Points(n) => ("points", 0x100 + u64::from(n), "points of experiment 1"),
+            Kind::Mixed(n) => ("mixed", 0x200 + u64::from(n), "points and lines of experiment 2"),
         }
     }
 }
@@ -193,31 +173,10 @@ const WORLD: &str = "world";
 
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = match self {
-            Kind::Set1 => "1",
-            Kind::Set2 => "2",
-            Kind::Set3 => "3",
-            Kind::Clusters => "clusters",
-            Kind::Walls => "walls",
-            Kind::Spacings => "spacings",
-            Kind::Corner => "corner",
-            Kind::Crowd => "crowd",
-            Kind::Dynamic => "dynamic",
-            Kind::Near => "near",
-            Kind::Fences => "fences",
-            Kind::Rain => "rain",
-            Kind::Bodies => "bodies",
-            Kind::Street => "street",
-            Kind::Rails => "rails",
-            Kind::Occlusion => "occlusion",
-            Kind::Rough => "rough",
-            Kind::World => WORLD,
-            Kind::Beyond(kind) => kind.name(),
-            Kind::Noise => "noise",
-            Kind::Points(n) => return write!(f, "points-{n}"),
-            Kind::Mixed(n) => return write!(f, "mixed-{n}"),
-        };
-        f.pad(name)
+        match self {
+            Kind::Points(n) | Kind::Mixed(n) => write!(f, "{}-{n}", self.entry().0),
+            _ => f.pad(self.entry().0),
+        }
     }
 }
 

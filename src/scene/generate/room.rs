@@ -7,11 +7,8 @@ use crate::radar::Radar;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("scenes of {kind} need a radar that sees {needed_metres} m far; this one sees {found_metres:.1} m")]
 pub struct NoRoom {
-    /// The kind.
     pub kind: Kind,
-    /// Maximum range that it needs, metres.
     pub needed_metres: f64,
-    /// Maximum range of the radar, metres.
     pub found_metres: f64,
 }
 

@@ -97,7 +97,7 @@ fn samples(shape: &Shape) -> Vec<[f64; 2]> {
 
 /// Whether an object stands in the field, nearer than `far_metres`, and apart from all others.
 pub(super) fn has_room(object: &Object, others: &[Object], far_metres: f64) -> bool {
-    let shape = |o: &Object| o.body().map(|body| body.shape());
+    let shape = |o: &Object| o.body().map(|body| body.shape);
     let Some(own) = shape(object) else {
         return !others.iter().filter_map(shape).any(|s| s.distance_metres(object.centre_metres()) < APART_METRES);
     };

@@ -149,7 +149,7 @@ impl World {
     fn add_bodies(&self, bodies: &mut Vec<Object>, rng: &mut ChaCha8Rng) {
         let count = rng.random_range(1..=4).min(MAX_BODIES - bodies.len());
         for _ in 0..count {
-            let rough = bodies.iter().filter(|o| o.body().is_some_and(|b| b.surface().roughness_millimetres > 0.0));
+            let rough = bodies.iter().filter(|o| o.body().is_some_and(|b| b.roughness_millimetres > 0.0));
             let may_be_rough = rough.count() < MAX_ROUGH_BODIES;
             let made = (0..TRIES).map(|_| self.body(may_be_rough, rng));
             bodies.extend(made.into_iter().find(|body| has_room(body, bodies, self.max_range_metres)));

@@ -17,7 +17,6 @@ pub const SIMD_VARIABLE: &str = "APERTURA_SIMD";
 pub enum Simd {
     /// The instructions of every machine of the target; no fused multiply-add.
     Portable,
-    /// AVX2 and FMA.
     Avx2,
     /// AVX-512 F, DQ, BW and VL.
     Avx512,
@@ -25,7 +24,6 @@ pub enum Simd {
 
 /// A reason for which the instruction set that [`SIMD_VARIABLE`] names can't be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum SimdError {
     #[error("{SIMD_VARIABLE} is \"{0}\"; expected portable, avx2 or avx512")]
     Unknown(String),
@@ -163,7 +161,6 @@ impl Simd {
 /// Functions that it calls must be `#[inline(always)]`, and its loops plain ones: a closure handed to `map`, `for_each` or `array::from_fn` may be
 /// compiled apart, without the instructions, where every fused multiply-add is a call.
 pub trait Kernel {
-    /// The result.
     type Output;
 
     /// Does the work; `FMA` says whether fused multiply-add is an instruction (elsewhere it is a slow call).

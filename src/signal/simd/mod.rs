@@ -9,6 +9,7 @@ pub mod powers;
 
 pub use instructions::{Kernel, SIMD_VARIABLE, Simd, SimdError};
 
+use num_complex::Complex;
 use rustfft::FftNum;
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -24,7 +25,6 @@ pub trait Real: FftNum + Copy + Default + PartialOrd + Sub<Output = Self> + Add<
     const NAME: &'static str;
     /// Rounds to this precision.
     fn of(v: f64) -> Self;
-    /// The number as f64.
     fn wide(self) -> f64;
     /// `self * b + c`, rounded once.
     fn fused(self, b: Self, c: Self) -> Self;
@@ -87,7 +87,6 @@ pub const LANES_F64: usize = 8;
 pub struct Lanes<T, const W: usize>(pub [T; W]);
 
 impl<T: Real, const W: usize> Lanes<T, W> {
-    /// The same number in every lane.
     #[inline(always)]
     pub fn splat(v: T) -> Self {
         Lanes([v; W])
@@ -143,10 +142,15 @@ impl<const W: usize> Lanes<f64, W> {
         self.map(|v| (v + SHIFT) - SHIFT)
     }
 
-    /// Square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.map(f64::sqrt)
+    }
+
+    /// The least and the greatest lane.
+    #[inline(always)]
+    pub(in crate::signal) fn bounds(self) -> (f64, f64) {
+        self.0.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
     }
 
     /// The sum of all lanes, by halves; `W` is a power of two.
@@ -207,19 +211,22 @@ pub struct ComplexLanes<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> ComplexLanes<T, W> {
-    /// Zero in every lane.
     #[inline(always)]
     pub fn zero() -> Self {
-        ComplexLanes { re: Lanes::splat(T::default()), im: Lanes::splat(T::default()) }
+        ComplexLanes::splat(Complex::default())
     }
 
-    /// The complex conjugate.
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(v: Complex<T>) -> Self {
+        ComplexLanes { re: Lanes::splat(v.re), im: Lanes::splat(v.im) }
+    }
+
     #[inline(always)]
     pub fn conj(self) -> Self {
         ComplexLanes { re: self.re, im: -self.im }
     }
 
-    /// `self * b`.
     #[inline(always)]
     pub fn times<const FMA: bool>(self, b: Self) -> Self {
         ComplexLanes {
@@ -228,7 +235,6 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
         }
     }
 
-    /// `self + a * b`.
     #[inline(always)]
     pub fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
         let re = a.re.mul_add::<FMA>(b.re, self.re);
@@ -236,7 +242,6 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
         ComplexLanes { re: (-a.im).mul_add::<FMA>(b.im, re), im: a.im.mul_add::<FMA>(b.re, im) }
     }
 
-    /// Each lane times a real number.
     #[inline(always)]
     pub fn scaled(self, by: Lanes<T, W>) -> Self {
         ComplexLanes { re: self.re * by, im: self.im * by }
@@ -259,6 +264,16 @@ impl<T: Real, const W: usize> Sub for ComplexLanes<T, W> {
     }
 }
 
+/// The sum of `terms[k] * x^k`, by Horner's rule.
+#[inline(always)]
+pub(super) fn horner<T: Real, const W: usize, const FMA: bool>(terms: &[f64], x: Lanes<T, W>) -> Lanes<T, W> {
+    let mut value = Lanes::splat(T::of(terms[terms.len() - 1]));
+    for term in terms[..terms.len() - 1].iter().rev() {
+        value = value.mul_add::<FMA>(x, Lanes::splat(T::of(*term)));
+    }
+    value
+}
+
 /// `exp(2 pi j t)` of every lane, `|t|` below 2^49. Within two units in the last place of 1.
 ///
 /// Whole quarter turns are taken off in f64, the rest (at most an eighth of a turn) goes through the Taylor series.
@@ -274,15 +289,8 @@ pub fn phasor<T: Real, const W: usize, const FMA: bool>(turns: Lanes<f64, W>) ->
     let sign: Lanes<T, W> = (of(1.0) - halves * halves * of(2.0)).round_to();
 
     let square = rest * rest;
-    let horner = |terms: &[f64]| {
-        let mut value = Lanes::splat(T::of(terms[terms.len() - 1]));
-        for term in terms[..terms.len() - 1].iter().rev() {
-            value = value.mul_add::<FMA>(square, Lanes::splat(T::of(*term)));
-        }
-        value
-    };
-    let sin = rest * horner(T::SIN) * sign;
-    let cos = horner(T::COS) * sign;
+    let sin = rest * horner::<T, W, FMA>(T::SIN, square) * sign;
+    let cos = horner::<T, W, FMA>(T::COS, square) * sign;
     let even = Lanes::splat(T::of(1.0)) - odd * odd;
     ComplexLanes { re: even * cos - odd * sin, im: even * sin + odd * cos }
 }

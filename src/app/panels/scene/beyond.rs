@@ -58,7 +58,7 @@ fn beyond<'a>(radar: &Radar, scene: &'a Scene) -> Vec<Beyond<'a>> {
     let of = |(index, object): (usize, &'a Object)| {
         let places: Vec<Place> = match object {
             Object::Line(l) => vec![[l.x_metres, l.y_start_metres].into(), l.end_metres().into()],
-            other => match other.body().map(|body| body.shape()) {
+            other => match other.body().map(|body| body.shape) {
                 Some(Body::Wall(ends)) => ends.map(Place::from).to_vec(),
                 Some(Body::Outline(corners)) => corners.into_iter().map(Place::from).collect(),
                 Some(Body::Circle { .. }) | None => vec![other.centre_metres().into()],

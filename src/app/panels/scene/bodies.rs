@@ -66,7 +66,7 @@ pub fn shadows(
     for (end, colour) in End::BOTH.into_iter().zip(colours) {
         let from = [radar.end_centre_metres(end), 0.0];
         for body in scene.objects.iter().filter_map(|o| o.body()).take(MAX_BODIES) {
-            if let Some(shadow) = behind(from, &body.shape(), far_metres) {
+            if let Some(shadow) = behind(from, &body.shape, far_metres) {
                 let shadow = shadow.map(|c| at(c.into())).to_vec();
                 painter.add(Drawn::convex_polygon(shadow, colour.gamma_multiply(0.10), Stroke::NONE));
             }

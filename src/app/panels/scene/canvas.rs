@@ -181,7 +181,7 @@ pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look
         }
         Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => {
             if let Some(body) = object.body() {
-                bodies::outline(painter, &at, &body.shape(), colour, halo);
+                bodies::outline(painter, &at, &body.shape, colour, halo);
             }
         }
     }

@@ -51,7 +51,7 @@ pub fn show(bin_metres: f64, editor: &mut Editor, view: SceneView, ui: &Ui, rect
 fn on_screen(object: &Object, view: SceneView, rect: Rect) -> Rect {
     let places = match object.body() {
         Some(body) => {
-            let (low, high) = body.shape().extent();
+            let (low, high) = body.shape.extent();
             vec![low.into(), high.into()]
         }
         None => object.reflectors().iter().map(|r| Place::new(r.x_metres, r.y_metres)).collect(),

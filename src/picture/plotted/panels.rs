@@ -1,17 +1,16 @@
 //! The picture of all panels, drawn by [`render`] and [`render_svg`].
 
 use super::canvas::{Drawing, FAINT_INK, INK, PAPER, PanelArea, PictureError};
-use super::detections::{CellVerdict, told_apart};
-use super::finer::{finer, in_place};
 use super::inputs::InputMap;
 use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
-use super::{ColourMap, text};
+use super::text;
 use crate::evaluate::failure::Ghost;
 use crate::evaluate::{Metrics, eta_text, squared_error};
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::picture::{CellVerdict, ColourMap, finer, in_place, told_apart};
 use crate::radar::Radar;
 use crate::reconstruct::Detection;
 use crate::scene::Scene;
@@ -27,7 +26,6 @@ pub struct Panels<'a> {
     /// Of a recording the echoes that the method found, the strongest first. They are drawn and listed in place of the figures that need a known
     /// scene.
     pub found: Option<&'a [Detection]>,
-    /// The radar that looks at it.
     pub radar: &'a Radar,
     /// The maps' settings (reflectors, carrier, floor, normalisation), in words.
     pub about: &'a str,
@@ -35,28 +33,21 @@ pub struct Panels<'a> {
     pub inputs: &'a [InputMap],
     /// Lambda of the whole array ("target"), where it is known.
     pub target: Option<&'a RangeAngleMap>,
-    /// Lambda of a method's output.
     pub output: &'a RangeAngleMap,
-    /// Name of the method.
     pub method: &'a str,
-    /// Thresholds of output and target.
     pub etas: [f32; 2],
     /// Blobs of the output where the scene has nothing.
     pub ghosts: &'a [Ghost],
     /// The cells that a detector found, in the place of those above the thresholds.
     pub detected: Option<&'a DetectedCells>,
-    /// Colours of the maps.
     pub colours: ColourMap,
 }
 
 /// Detected cells of target and output. A detected cell is 1 and any other 0; both maps are `[range bins, columns]`.
 #[derive(Debug, Clone)]
 pub struct DetectedCells {
-    /// The detector.
     pub cfar: Cfar,
-    /// Detected cells of the target.
     pub target: RangeAngleMap,
-    /// Detected cells of the output.
     pub output: RangeAngleMap,
 }
 
@@ -108,7 +99,7 @@ impl Drawing for Panels<'_> {
     }
 
     fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
-        root.fill(&PAPER).map_err(PictureError::new)?;
+        root.fill(&PAPER)?;
         self.header(root)?;
         let (field_width, field_height) = (LEFT - MARGIN - 8, 396);
         let field = |row: i32| {
@@ -133,7 +124,7 @@ impl Drawing for Panels<'_> {
             let area = root.clone().shrink((LEFT + column * width, HEADER + row * height), (width, height));
             panel.draw(&area, self.radar)?;
         }
-        root.present().map_err(PictureError::new)
+        Ok(root.present()?)
     }
 }
 
@@ -249,7 +240,7 @@ mod tests {
     use super::*;
     use crate::maps::{LogMaps, Normalisation};
     use crate::picture::{encode_png, is_our_png};
-    use crate::radar::Decibels;
+    use crate::radar::{BuiltArray, Decibels};
     use crate::scene::presets;
     use crate::signal::BeatSignal;
 
@@ -259,7 +250,8 @@ mod tests {
         let maps = LogMaps::of_signal(&radar, &BeatSignal::silence(&radar));
         let flat = maps.full.normalise(Normalisation::MinMax);
         let file = presets::default_scene();
-        let inputs = InputMap::of_ends(&radar, [&maps.first, &maps.last], Normalisation::MinMax);
+        let (array, ends) = (BuiltArray::default(), [&maps.first, &maps.last]);
+        let (_, inputs) = InputMap::of(&radar, &array, None, ends, (None, Normalisation::MinMax)).unwrap();
         let panels = Panels {
             scene: &file.scene,
             radar: &radar,

@@ -44,7 +44,7 @@ pub(super) fn line<B: DrawingBackend>(
     weight: Weight,
     colour: &RGBColor,
 ) -> Result<(), PictureError> {
-    area.draw(&Text::new(text.to_owned(), at, style(size, weight, colour))).map_err(PictureError::new)
+    Ok(area.draw(&Text::new(text.to_owned(), at, style(size, weight, colour)))?)
 }
 
 pub(super) fn fitted<B: DrawingBackend>(
@@ -57,7 +57,7 @@ pub(super) fn fitted<B: DrawingBackend>(
     let style = style(size, weight, &RGBColor(0, 0, 0));
     let mut shown = text.to_owned();
     let mut kept = text.chars().count();
-    while area.estimate_text_size(&shown, &style).map_err(PictureError::new)?.0 > width && kept > 0 {
+    while area.estimate_text_size(&shown, &style)?.0 > width && kept > 0 {
         kept -= 1;
         shown = text.chars().take(kept).chain(['\u{2026}']).collect();
     }
@@ -80,7 +80,7 @@ pub(super) fn paragraphs<B: DrawingBackend>(
         for word in paragraph.split_whitespace() {
             let word = fitted(area, word, size, Weight::Normal, width.saturating_sub(at.0 as u32))?;
             let longer = if current.is_empty() { word.clone() } else { format!("{current} {word}") };
-            let (needed, _) = area.estimate_text_size(&longer, &style).map_err(PictureError::new)?;
+            let (needed, _) = area.estimate_text_size(&longer, &style)?;
             if needed + at.0 as u32 > width && !current.is_empty() {
                 lines.push(std::mem::replace(&mut current, word));
             } else {
@@ -98,7 +98,7 @@ pub(super) fn paragraphs<B: DrawingBackend>(
     }
     for (number, text) in lines.iter().enumerate() {
         let place = (at.0, at.1 + number as i32 * step);
-        area.draw(&Text::new(text.as_str(), place, style.clone())).map_err(PictureError::new)?;
+        area.draw(&Text::new(text.as_str(), place, style.clone()))?;
     }
     Ok(())
 }

@@ -1,9 +1,9 @@
 //! One range-angle map with title, axes and colour bar.
 
 use super::canvas::{FAINT_INK, HAIRLINE, INK, PanelArea, PictureError};
-use super::colour::{ColourMap, Rgb};
-use super::detections::CellVerdict;
 use super::text::{self, Weight};
+use crate::picture::colour::{ColourMap, Rgb};
+use crate::picture::detections::CellVerdict;
 use crate::radar::{FEW_COLUMNS, Radar};
 use ndarray::{Array2, CowArray, Ix2};
 use plotters::prelude::*;
@@ -36,7 +36,6 @@ pub(super) struct MapAxes {
     /// Values at the left and the right end of the axis, rising.
     pub x: [f64; 2],
     pub y: [f64; 2],
-    /// Title of the axis to the right.
     pub x_title: &'static str,
     /// Digits of its labels after the point.
     pub x_digits: usize,
@@ -66,14 +65,13 @@ impl MapPanel<'_> {
             .x_label_area_size(52)
             .y_label_area_size(62)
             .margin_right(2)
-            .build_cartesian_2d(left..right, bottom..top)
-            .map_err(PictureError::new)?;
+            .build_cartesian_2d(left..right, bottom..top)?;
         let (x, y) = chart.plotting_area().get_pixel_range();
         let size = ((x.end - x.start) as u32, (y.end - y.start) as u32);
         let pixels = self.cells.paint(size.0 as usize, size.1 as usize);
         let bitmap: BitMapElement<_> = BitMapElement::with_owned_buffer((left, top), size, pixels)
             .ok_or_else(|| PictureError::new("a map has no room"))?;
-        chart.draw_series(std::iter::once(bitmap)).map_err(PictureError::new)?;
+        chart.draw_series(std::iter::once(bitmap))?;
         chart
             .configure_mesh()
             .disable_mesh()
@@ -86,8 +84,7 @@ impl MapPanel<'_> {
             .label_style(text::style(16, Weight::Normal, &FAINT_INK))
             .axis_desc_style(text::style(17, Weight::Normal, &INK))
             .axis_style(HAIRLINE)
-            .draw()
-            .map_err(PictureError::new)?;
+            .draw()?;
 
         let (chart_x, chart_y) = area.get_pixel_range();
         let (bar_left, bar_top, bar_height) = (x.end - chart_x.start + 12, y.start - chart_y.start, size.1 as i32);
@@ -149,7 +146,7 @@ fn colour_bar<B: DrawingBackend>(
     for row in 0..height {
         let [r, g, b] = colours.colour(1.0 - row as f32 / (height - 1).max(1) as f32);
         let strip = Rectangle::new([(x, y + row), (x + WIDTH, y + row + 1)], RGBColor(r, g, b).filled());
-        area.draw(&strip).map_err(PictureError::new)?;
+        area.draw(&strip)?;
     }
     for (value, part) in [("1", 0.0), ("0.5", 0.5), ("0", 1.0)] {
         let at = y + (f64::from(height) * part) as i32 - 8;
@@ -165,14 +162,14 @@ fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Result<(), PictureError> {
     for detection in CellVerdict::SEEN.into_iter().rev() {
         let name = detection.name();
         let style = text::style(15, Weight::Normal, &FAINT_INK);
-        let (name_width, _) = area.estimate_text_size(name, &style).map_err(PictureError::new)?;
+        let (name_width, _) = area.estimate_text_size(name, &style)?;
         x -= name_width as i32;
-        area.draw(&Text::new(name, (x, 13), style)).map_err(PictureError::new)?;
+        area.draw(&Text::new(name, (x, 13), style))?;
         x -= 19;
         let square = [(x, 14), (x + 13, 27)];
         let [r, g, b] = detection.fill(true);
-        area.draw(&Rectangle::new(square, RGBColor(r, g, b).filled())).map_err(PictureError::new)?;
-        area.draw(&Rectangle::new(square, FAINT_INK)).map_err(PictureError::new)?;
+        area.draw(&Rectangle::new(square, RGBColor(r, g, b).filled()))?;
+        area.draw(&Rectangle::new(square, FAINT_INK))?;
         x -= 8;
     }
     Ok(())

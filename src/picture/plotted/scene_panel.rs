@@ -1,11 +1,11 @@
 //! The half plane ahead of the array from above, in metres: the scene, or a map projected onto it (thesis figure 2-12).
 
-use super::ColourMap;
 use super::canvas::{FAINT_INK, HAIRLINE, INK, PAPER, PanelArea, PictureError};
 use super::text::{self, Weight};
 use crate::maps::{RangeAngleMap, cartesian::project};
+use crate::picture::ColourMap;
 use crate::radar::{End, Radar};
-use crate::scene::{Object, Scene, Shape};
+use crate::scene::{Object, Scene};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::f64::consts::PI;
@@ -39,8 +39,7 @@ pub(super) fn draw<B: DrawingBackend>(
         .margin_right(2)
         .x_label_area_size(labels_x)
         .y_label_area_size(labels_y)
-        .build_cartesian_2d(-max..max, -behind..tall - behind)
-        .map_err(PictureError::new)?;
+        .build_cartesian_2d(-max..max, -behind..tall - behind)?;
     if let SceneContent::Map(map, colours) = content {
         draw_map(&mut chart, radar, map, colours, metres)?;
     }
@@ -56,8 +55,7 @@ pub(super) fn draw<B: DrawingBackend>(
         .label_style(text::style(16, Weight::Normal, &FAINT_INK))
         .axis_desc_style(text::style(17, Weight::Normal, &INK))
         .axis_style(HAIRLINE)
-        .draw()
-        .map_err(PictureError::new)?;
+        .draw()?;
 
     let line = match content {
         SceneContent::Scene(_) => HAIRLINE.mix(1.0),
@@ -88,7 +86,7 @@ fn draw_map<B: DrawingBackend>(
     let bitmap: BitMapElement<_> =
         BitMapElement::with_owned_buffer((-max, max), (2 * rows as u32, rows as u32), pixels.collect())
             .ok_or_else(|| PictureError::new("a map has no room"))?;
-    chart.draw_series(std::iter::once(bitmap)).map_err(PictureError::new)?;
+    chart.draw_series(std::iter::once(bitmap))?;
     Ok(())
 }
 
@@ -105,24 +103,23 @@ fn draw_rings_and_spokes<B: DrawingBackend>(
         LineSeries::new((0..=180).map(at), style)
     };
     for ring in (1..).map(|i| f64::from(i) * 10.0).take_while(|r| *r < 0.98 * max).take(40) {
-        chart.draw_series(arc(ring, line.into())).map_err(PictureError::new)?;
+        chart.draw_series(arc(ring, line.into()))?;
     }
     for cos in [-0.75f64, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75] {
         let end = (max * cos, max * (1.0 - cos * cos).sqrt());
-        chart.draw_series(LineSeries::new([(0.0, 0.0), end], line)).map_err(PictureError::new)?;
+        chart.draw_series(LineSeries::new([(0.0, 0.0), end], line))?;
     }
-    chart.draw_series(arc(max, FAINT_INK.into())).map_err(PictureError::new)?;
+    chart.draw_series(arc(max, FAINT_INK.into()))?;
     Ok(())
 }
 
 fn draw_array<B: DrawingBackend>(chart: &mut Chart<B>, radar: &Radar) -> Result<(), PictureError> {
     let element = |n: usize| (radar.element_x_metres(n), 0.0);
     let whole = LineSeries::new([element(0), element(radar.elements - 1)], ARRAY.stroke_width(5));
-    chart.draw_series(whole).map_err(PictureError::new)?;
+    chart.draw_series(whole)?;
     for end in End::BOTH {
         chart
-            .draw_series([Circle::new((radar.end_centre_metres(end), 0.0), 4, END.filled())])
-            .map_err(PictureError::new)?;
+            .draw_series([Circle::new((radar.end_centre_metres(end), 0.0), 4, END.filled())])?;
     }
     Ok(())
 }
@@ -137,31 +134,16 @@ fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64
         };
         let colour = RGBColor(red, green, blue);
         if let Some(body) = object.body() {
-            chart.draw_series([Polygon::new(outline(&body.shape()), colour.mix(0.5))]).map_err(PictureError::new)?;
-            chart
-                .draw_series([PathElement::new(outline(&body.shape()), colour.stroke_width(2))])
-                .map_err(PictureError::new)?;
+            let line = body.shape.line_around();
+            chart.draw_series([Polygon::new(line.clone(), colour.mix(0.5))])?;
+            chart.draw_series([PathElement::new(line, colour.stroke_width(2))])?;
         }
         // A line array sees y and -y alike: reflectors behind it are drawn ahead, hollow.
         chart
             .draw_series(object.reflectors().iter().filter(|r| r.x_metres.hypot(r.y_metres) <= max).map(|r| {
                 let style = if r.y_metres < 0.0 { ShapeStyle::from(colour) } else { colour.filled() };
                 Circle::new((r.x_metres, r.y_metres.abs()), radius, style)
-            }))
-            .map_err(PictureError::new)?;
+            }))?;
     }
     Ok(())
-}
-
-fn outline(shape: &Shape) -> Vec<(f64, f64)> {
-    match shape {
-        Shape::Wall([a, b]) => vec![(a[0], a[1]), (b[0], b[1])],
-        Shape::Outline(corners) => corners.iter().chain(corners.first()).map(|c| (c[0], c[1])).collect(),
-        Shape::Circle { centre_metres: [x, y], radius_metres: r } => (0..=48)
-            .map(|i| {
-                let (sin, cos) = (f64::from(i) * PI / 24.0).sin_cos();
-                (x + r * cos, y + r * sin)
-            })
-            .collect(),
-    }
 }

@@ -2,9 +2,10 @@
 
 use super::canvas::{Drawing, PAPER, PanelArea, PictureError};
 use super::map_panel::{MapAxes, MapCells, MapPanel};
-use super::{ColourMap, PictureFormat, encode_png, render, render_svg};
+use super::PictureFormat;
 use crate::maps::doppler::RangeDopplerMap;
 use crate::maps::{Normalisation, RangeAngleMap};
+use crate::picture::ColourMap;
 use crate::radar::Radar;
 use plotters::prelude::*;
 
@@ -21,11 +22,7 @@ pub fn compose_range_doppler(
     format: PictureFormat,
 ) -> Result<Vec<u8>, PictureError> {
     let lambda = map.log_magnitude().normalise(normalisation);
-    let picture = Picture { radar, lambda: &lambda, colours };
-    Ok(match format {
-        PictureFormat::Png => encode_png(&render(&picture)?)?,
-        PictureFormat::Svg => render_svg(&picture)?.into_bytes(),
-    })
+    format.bytes_of(&Picture { radar, lambda: &lambda, colours })
 }
 
 struct Picture<'a> {
@@ -40,7 +37,7 @@ impl Drawing for Picture<'_> {
     }
 
     fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
-        root.fill(&PAPER).map_err(PictureError::new)?;
+        root.fill(&PAPER)?;
         let radar = self.radar;
         let velocity = |column: f64| radar.velocity_of_column_metres_per_second(column);
         let range = |bin: f64| radar.range_of_bin_metres(bin);

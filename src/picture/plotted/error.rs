@@ -7,7 +7,6 @@ use crate::reconstruct::ReconstructError;
 
 /// The reason why a picture could not be composed.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // Names and messages say it.
 pub enum ComposeError {
     #[error(transparent)]
     Reconstruct(#[from] ReconstructError),

@@ -1,30 +1,27 @@
 //! Pictures of recordings: the panels of a scene, or curves over direction where there is one snapshot.
 
-use super::canvas::Drawing;
-use super::compose::{PictureFormat, Style};
+use super::compose::{PictureFormat, Style, carrier_words};
 use super::directions::{Curve, DirectionAxis, Mark};
 use super::error::ComposeError;
-use super::inputs::{HeardByLayout, InputMap};
-use super::{DetectedCells, Panels, encode_png, render, render_svg};
-use crate::maps::{LogMap, LogMaps, Normalisation, RangeAngleMap, Spectrum, channels_map};
-use crate::radar::{BuiltArray, Carrier, Decibels, End, Radar};
+use super::inputs::{InputMap, layout_samples};
+use super::{DetectedCells, Panels};
+use crate::maps::{LogMap, LogMaps, Normalisation, Spectrum, channels_map};
+use crate::radar::{BuiltArray, Decibels, End, LayoutKind, Radar};
 use crate::reconstruct::found::reconstruct_and_find;
 use crate::reconstruct::{Detection, NoisePrior, Reconstructor, Request};
 use crate::recording::{Recorded, Recording};
 use crate::scene::{Object, Point, Reflector, Scene};
-use crate::signal::LayoutSamples;
-use ndarray::{ArrayView1, Axis};
+use crate::signal::{BeatSignal, LayoutSamples};
+use ndarray::{ArrayView1, ArrayView2, Axis};
 use num_complex::Complex64;
 use plotters::style::RGBColor;
 use std::sync::Arc;
 
-/// Largest number of detections that are drawn.
 const MAX_DRAWN_DETECTIONS: usize = 64;
 
 /// Columns that a snapshot's curves are padded to.
 const FINE_COLUMNS: usize = 8192;
 
-/// Dynamic range of a snapshot's curves.
 const CURVE_RANGE: Decibels = Decibels(60.0);
 
 const ALL_ELEMENTS: RGBColor = RGBColor(120, 128, 138);
@@ -59,13 +56,6 @@ pub fn compose_recording(
     }
 }
 
-fn bytes_of(drawing: &impl Drawing, format: PictureFormat) -> Result<Vec<u8>, ComposeError> {
-    Ok(match format {
-        PictureFormat::Png => encode_png(&render(drawing)?)?,
-        PictureFormat::Svg => render_svg(drawing)?.into_bytes(),
-    })
-}
-
 fn request(recording: &Recording, style: &Style, heard: Option<Arc<LayoutSamples>>) -> Request {
     let snapshot_range_metres = recording.range_metres;
     Request {
@@ -77,14 +67,6 @@ fn request(recording: &Recording, style: &Style, heard: Option<Arc<LayoutSamples
     }
 }
 
-/// Samples and map of a layout on a recording, where `style` has one.
-fn heard_by_layout(recording: &Recording, style: &Style) -> Result<Option<HeardByLayout>, ComposeError> {
-    let of_layout = |layout| {
-        HeardByLayout::of(&recording.radar, &BuiltArray::default(), recording.signal(), layout, style.normalisation)
-    };
-    style.layout.as_ref().map(of_layout).transpose()
-}
-
 fn panels(
     recording: &Recording,
     method: &dyn Reconstructor,
@@ -93,14 +75,11 @@ fn panels(
 ) -> Result<Vec<u8>, ComposeError> {
     let radar = &recording.radar;
     let ([first, last], full) = maps_of(recording);
-    let (heard, inputs) = match heard_by_layout(recording, style)? {
-        Some(HeardByLayout { samples, input }) => (Some(samples), vec![input]),
-        None => (None, InputMap::of_ends(radar, [&first, &last], style.normalisation)),
-    };
+    let shown = (style.layout.as_ref(), style.normalisation);
+    let (heard, inputs) = InputMap::of(radar, &BuiltArray::default(), recording.signal(), [&first, &last], shown)?;
     let request = request(recording, style, heard);
     let (output, found) = reconstruct_and_find(method, radar, &recording.two_ends(), &request)?;
-    let lambda = |map: &LogMap| -> RangeAngleMap { map.normalise(style.normalisation) };
-    let target = full.as_ref().map(lambda);
+    let target = full.as_ref().map(|map| map.normalise(style.normalisation));
     let detect = |cfar| {
         let (Some(full), Some(target)) = (&full, &target) else { return Err(ComposeError::DetectorAlone) };
         Ok(DetectedCells::of(cfar, full.scale(style.normalisation), target, &output.lambda)?)
@@ -112,10 +91,7 @@ fn panels(
         objects: found.iter().take(MAX_DRAWN_DETECTIONS).map(|f| Object::Point(point(f))).collect(),
         ..Scene::default()
     };
-    let carrier = match radar.carrier {
-        Carrier::OneWay => "one-way carrier",
-        Carrier::TwoWay => "two-way carrier",
-    };
+    let carrier = carrier_words(radar);
     let missing = match recording.missing.len() {
         0 => String::new(),
         n => format!(", {n} missing"),
@@ -136,7 +112,7 @@ fn panels(
         detected: detected.as_ref(),
         colours: style.colours,
     };
-    bytes_of(&panels, format)
+    Ok(format.bytes_of(&panels)?)
 }
 
 fn point(found: &Detection) -> Point {
@@ -153,24 +129,18 @@ fn curves(
     let radar = &recording.radar;
     let ends = recording.two_ends();
     let in_decibels = Style { normalisation: Normalisation::DynamicRange(CURVE_RANGE), ..style.clone() };
-    let heard = heard_by_layout(recording, &in_decibels)?.map(|heard| heard.samples);
+    let of_layout = |layout: &LayoutKind| layout_samples(radar, recording.signal(), layout);
+    let heard = style.layout.as_ref().map(of_layout).transpose()?;
     let request = request(recording, &in_decibels, heard);
     let (output, found) = reconstruct_and_find(method, radar, &ends, &request)?;
-    let mut curves = Vec::new();
-    if let Some(signal) = recording.signal() {
-        let name = format!("all {} elements", radar.elements);
-        curves.push(Curve {
-            name,
-            points: beam_pattern(radar, signal.samples.index_axis(Axis(1), 0)),
-            colour: ALL_ELEMENTS,
-        });
-    }
-    let one_end = beam_pattern(radar, ends.first.index_axis(Axis(1), 0));
-    curves.push(Curve {
-        name: format!("{} elements of one end", radar.end_elements),
-        points: one_end,
-        colour: ONE_END,
-    });
+    let of_samples = |name, samples: ArrayView2<'_, Complex64>, colour| {
+        Curve { name, points: beam_pattern(radar, samples.index_axis_move(Axis(1), 0)), colour }
+    };
+    let all = |signal: &BeatSignal| {
+        of_samples(format!("all {} elements", radar.elements), signal.samples.view(), ALL_ELEMENTS)
+    };
+    let mut curves: Vec<Curve> = recording.signal().map(all).into_iter().collect();
+    curves.push(of_samples(format!("{} elements of one end", radar.end_elements), ends.first.view(), ONE_END));
     let row = output.lambda.lambda.index_axis(Axis(0), 0);
     let decibels = row.iter().map(|v| (f64::from(*v) - 1.0) * CURVE_RANGE.0).collect();
     let name = format!("{} of {} + {} elements", method.name(), radar.end_elements, radar.end_elements);
@@ -182,7 +152,8 @@ fn curves(
         .collect();
     let about =
         format!("one snapshot at about {range} m, {} elements; found by {}: stems", radar.elements, method.name());
-    bytes_of(&DirectionAxis { name: &recording.name, about: &about, curves: &curves, found: &found }, format)
+    let picture = DirectionAxis { name: &recording.name, about: &about, curves: &curves, found: &found };
+    Ok(format.bytes_of(&picture)?)
 }
 
 fn degrees(cos_theta: f64) -> f64 {

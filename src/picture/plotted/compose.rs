@@ -1,12 +1,13 @@
 //! The bytes of a picture from a signal: maps, reconstruction, panels.
 
 use super::error::ComposeError;
-use super::inputs::{HeardByLayout, InputMap};
-use super::{ColourMap, DetectedCells, Panels, encode_png, render, render_svg};
+use super::inputs::InputMap;
+use super::{DetectedCells, Drawing, Panels, PictureError, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
 use crate::evaluate::failure::Footprints;
 use crate::maps::cfar::{Cfar, DETECTED};
 use crate::maps::{LogMaps, Normalisation};
+use crate::picture::ColourMap;
 use crate::radar::{Carrier, LayoutKind, Radar, counted};
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::Scene;
@@ -16,7 +17,6 @@ use std::path::Path;
 /// Kind of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// A bitmap.
     Png,
     /// Lines and text as such, maps as bitmaps.
     Svg,
@@ -31,6 +31,13 @@ impl PictureFormat {
             _ => None,
         }
     }
+
+    pub(super) fn bytes_of(self, drawing: &impl Drawing) -> Result<Vec<u8>, PictureError> {
+        Ok(match self {
+            PictureFormat::Png => encode_png(&render(drawing)?)?,
+            PictureFormat::Svg => render_svg(drawing)?.into_bytes(),
+        })
+    }
 }
 
 /// Settings of the maps, of their thresholds and of their colours.
@@ -40,13 +47,10 @@ pub struct Style {
     pub floor: Floor,
     /// The elements that the method hears; those of the two ends where `None`.
     pub layout: Option<LayoutKind>,
-    /// Normalisation of decades to Lambda.
     pub normalisation: Normalisation,
-    /// Colours of the maps.
     pub colours: ColourMap,
     /// Threshold of the output; the method's own where `None`.
     pub eta: Option<f32>,
-    /// Threshold of the target.
     pub target_eta: f32,
     /// The detector in the place of both thresholds, if one is in use.
     pub cfar: Option<Cfar>,
@@ -80,17 +84,9 @@ pub fn compose(
     let Style { floor, normalisation, .. } = *style;
     let elements = &scene.disturbances.elements;
     let maps = LogMaps::heard_by(radar, elements, signal);
-    let of_layout = |layout| HeardByLayout::of(radar, elements, Some(signal), layout, normalisation);
-    let (heard, inputs) = match style.layout.as_ref().map(of_layout).transpose()? {
-        Some(HeardByLayout { samples, input }) => (Some(samples), vec![input]),
-        None => (None, InputMap::of_ends(radar, [&maps.first, &maps.last], normalisation)),
-    };
+    let (heard, inputs) = InputMap::of(radar, elements, Some(signal), [&maps.first, &maps.last], (style.layout.as_ref(), normalisation))?;
     let request = Request { noise: floor.into(), normalisation, heard, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
-    let carrier = match radar.carrier {
-        Carrier::OneWay => "one-way carrier",
-        Carrier::TwoWay => "two-way carrier",
-    };
     let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
     let reflectors = match (scene.reflector_count(), bodies) {
         (0, 0) => "no reflector".to_owned(),
@@ -109,7 +105,7 @@ pub fn compose(
         scene,
         found: None,
         radar,
-        about: &format!("{reflectors}, {carrier}, floor {floor}, normalisation {normalisation}"),
+        about: &format!("{reflectors}, {}, floor {floor}, normalisation {normalisation}", carrier_words(radar)),
         inputs: &inputs,
         target: Some(&target),
         output: &output.lambda,
@@ -119,8 +115,12 @@ pub fn compose(
         detected: detected.as_ref(),
         colours: style.colours,
     };
-    Ok(match format {
-        PictureFormat::Png => encode_png(&render(&panels)?)?,
-        PictureFormat::Svg => render_svg(&panels)?.into_bytes(),
-    })
+    Ok(format.bytes_of(&panels)?)
+}
+
+pub(super) fn carrier_words(radar: &Radar) -> &'static str {
+    match radar.carrier {
+        Carrier::OneWay => "one-way carrier",
+        Carrier::TwoWay => "two-way carrier",
+    }
 }

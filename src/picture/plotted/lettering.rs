@@ -9,8 +9,8 @@ use plotters_backend::{
 };
 use std::convert::Infallible;
 
-pub(super) const NORMAL: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans.ttf");
-pub(super) const BOLD: &[u8] = include_bytes!("../../assets/fonts/DejaVuSans-Bold.ttf");
+pub(super) const NORMAL: &[u8] = include_bytes!("../../../assets/fonts/DejaVuSans.ttf");
+pub(super) const BOLD: &[u8] = include_bytes!("../../../assets/fonts/DejaVuSans-Bold.ttf");
 
 /// A size of text over that of its em square.
 const SIZE_OVER_EM: f64 = 1.24;

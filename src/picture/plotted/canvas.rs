@@ -15,6 +15,12 @@ impl PictureError {
     }
 }
 
+impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PictureError {
+    fn from(error: DrawingAreaErrorKind<E>) -> Self {
+        PictureError::new(error)
+    }
+}
+
 pub(super) type PanelArea<B> = DrawingArea<B, Shift>;
 
 pub(super) const INK: RGBColor = RGBColor(28, 32, 38);

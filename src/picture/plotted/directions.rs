@@ -8,33 +8,26 @@ use plotters::prelude::*;
 /// Power over direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// The curve's name in the legend.
     pub name: String,
     /// Angle from broadside in degrees, positive towards +x, rising; and decibels below the curve's own strongest.
     pub points: Vec<(f64, f64)>,
-    /// Its colour.
     pub colour: RGBColor,
 }
 
 /// A direction with a detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// Angle from broadside, degrees.
     pub angle_degrees: f64,
-    /// Decibels below the strongest.
     pub below_strongest_db: f64,
 }
 
 /// The contents of the picture of a snapshot.
 #[derive(Debug, Clone)]
 pub struct DirectionAxis<'a> {
-    /// Its title.
     pub name: &'a str,
-    /// A line beneath it.
     pub about: &'a str,
     /// The curves, the most important one last.
     pub curves: &'a [Curve],
-    /// The detections.
     pub found: &'a [Mark],
 }
 
@@ -48,7 +41,7 @@ impl Drawing for DirectionAxis<'_> {
     }
 
     fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
-        root.fill(&PAPER).map_err(PictureError::new)?;
+        root.fill(&PAPER)?;
         let name = text::fitted(root, self.name, 32, Weight::Bold, WIDTH - 60)?;
         text::line(root, (30, 18), &name, 32, Weight::Bold, &INK)?;
         let about = text::fitted(root, self.about, 18, Weight::Normal, WIDTH - 60)?;
@@ -58,8 +51,7 @@ impl Drawing for DirectionAxis<'_> {
         let mut chart = ChartBuilder::on(&area)
             .x_label_area_size(52)
             .y_label_area_size(66)
-            .build_cartesian_2d(left..right, LOWEST_DB..1.5)
-            .map_err(PictureError::new)?;
+            .build_cartesian_2d(left..right, LOWEST_DB..1.5)?;
         chart
             .configure_mesh()
             .light_line_style(TRANSPARENT)
@@ -73,11 +65,10 @@ impl Drawing for DirectionAxis<'_> {
             .label_style(text::style(17, Weight::Normal, &FAINT_INK))
             .axis_desc_style(text::style(18, Weight::Normal, &INK))
             .axis_style(HAIRLINE)
-            .draw()
-            .map_err(PictureError::new)?;
+            .draw()?;
         self.draw_marks(&mut chart)?;
         self.draw_curves(root, &mut chart)?;
-        root.present().map_err(PictureError::new)
+        Ok(root.present()?)
     }
 }
 
@@ -88,12 +79,12 @@ impl DirectionAxis<'_> {
         let (left, right) = self.span_degrees();
         for mark in self.found.iter().filter(|m| m.below_strongest_db > LOWEST_DB) {
             let stem = [(mark.angle_degrees, LOWEST_DB), (mark.angle_degrees, mark.below_strongest_db)];
-            chart.draw_series(LineSeries::new(stem, INK.mix(0.5))).map_err(PictureError::new)?;
+            chart.draw_series(LineSeries::new(stem, INK.mix(0.5)))?;
             let shown = if mark.angle_degrees.abs() < 0.005 { 0.0 } else { mark.angle_degrees };
             let style = text::style(18, Weight::Bold, &INK);
             let place = (mark.angle_degrees + (right - left) * 0.006, LOWEST_DB + 3.0);
             let label = Text::new(format!("{shown:.2}\u{b0}"), place, style);
-            chart.draw_series(std::iter::once(label)).map_err(PictureError::new)?;
+            chart.draw_series(std::iter::once(label))?;
         }
         Ok(())
     }
@@ -109,12 +100,12 @@ impl DirectionAxis<'_> {
             let width = if number + 1 == self.curves.len() { 3 } else { 2 };
             let points = curve.points.iter().map(|(x, y)| (*x, y.max(LOWEST_DB)));
             let points: Vec<(f64, f64)> = points.filter(|(x, _)| (left..=right).contains(x)).collect();
-            chart.draw_series(LineSeries::new(points, curve.colour.stroke_width(width))).map_err(PictureError::new)?;
+            chart.draw_series(LineSeries::new(points, curve.colour.stroke_width(width)))?;
             let swatch = Rectangle::new([(at, 97), (at + 26, 101)], curve.colour.filled());
-            root.draw(&swatch).map_err(PictureError::new)?;
+            root.draw(&swatch)?;
             text::line(root, (at + 34, 88), &curve.name, 18, Weight::Normal, &INK)?;
             let style = text::style(18, Weight::Normal, &INK);
-            at += 34 + root.estimate_text_size(&curve.name, &style).map_err(PictureError::new)?.0 as i32 + 36;
+            at += 34 + root.estimate_text_size(&curve.name, &style)?.0 as i32 + 36;
         }
         Ok(())
     }
