@@ -100,8 +100,7 @@ const MAX_LIVE_BYTES: u64 = 256 << 20;
 /// [`WeightsError`] when the file can't be read, is damaged, or belongs to another network.
 pub fn live_from_file(path: &Path, name: &str) -> Result<LiveMethod, WeightsError> {
     let file = path.display().to_string();
-    let bytes = read_bounded(path, MAX_LIVE_BYTES)
-        .map_err(|e| WeightsError::File { file: file.clone(), reason: e.to_string() })?;
+    let bytes = read_bounded(path, MAX_LIVE_BYTES).map_err(|e| WeightsError(format!("{file}: {e}")))?;
     LiveMethod::named(WeightFile::parse(&file, &bytes)?, name)
 }
 

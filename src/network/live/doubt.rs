@@ -96,9 +96,9 @@ fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::live::LiveConfig;
     use crate::network::live::engine::{LiveEngine, LiveScratch};
     use crate::network::live::grid::ROWS;
+    use crate::network::live::size::LiveSize;
     use crate::network::live::twin_tests::heard;
     use crate::radar::Radar;
 
@@ -111,8 +111,8 @@ mod tests {
     const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
 
     fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {
-        let config = LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 };
-        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &config.into()).unwrap();
+        let size = LiveSize { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4, ..LiveSize::default() };
+        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &size).unwrap();
         let mut scratch = LiveScratch::default();
         engine.forward(&heard(&Radar::default(), reference, 1.0).1, &mut scratch);
         engine.doubt(&scratch)

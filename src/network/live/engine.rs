@@ -77,9 +77,9 @@ impl LiveEngine {
     /// # Errors
     /// [`WeightsError`] names the tensor that is missing or of another shape.
     pub fn new(file: &WeightFile, size: &LiveSize) -> Result<Self, WeightsError> {
-        let LiveSize { config, rows, columns } = size;
-        let [c0, c1, c2, c3] = config.channels;
-        let [b0, b1, b2, b3] = config.blocks;
+        let LiveSize { channels, blocks, fine, rows, columns } = *size;
+        let [c0, c1, c2, c3] = channels;
+        let [b0, b1, b2, b3] = blocks;
         let layers = LiveLayers { file };
         Ok(LiveEngine {
             stem: layers.stem("stem.conv", INPUT_CHANNELS, c0)?,
@@ -101,17 +101,17 @@ impl LiveEngine {
                 layers.blocks("dec2", b2, c2, true)?,
             ],
             widen: layers.widened("widen.conv", c0, DECODER_CHANNELS)?,
-            fine1: layers.conv("fine1.conv", [DECODER_CHANNELS + FINE_CHANNELS; 2], config.fine)?,
-            fine2: layers.small("fine2", config.fine, 2 * COLUMNS_PER_FINE, 1)?,
+            fine1: layers.conv("fine1.conv", [DECODER_CHANNELS + FINE_CHANNELS; 2], fine)?,
+            fine2: layers.small("fine2", fine, 2 * COLUMNS_PER_FINE, 1)?,
             row_sources: layers.small("row_sources", c0, WIDE_COLUMNS / COARSE_COLUMNS, 1)?,
-            lobes: WindowLobes::all(file, *rows)?,
+            lobes: WindowLobes::all(file, rows)?,
             scalar1: layers.linear("scalar1", [2 * c3 + SCALARS + CONSTANTS, CONSTANTS], 64)?,
             scalar2: layers.linear("scalar2", [64, 0], 2)?,
             doubt: DoubtHead::new(file, c0)?,
-            channels: config.channels,
-            rows: *rows,
-            columns: *columns,
-            taps: ColumnTaps::new(*columns),
+            channels,
+            rows,
+            columns,
+            taps: ColumnTaps::new(columns),
         })
     }
 

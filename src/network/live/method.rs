@@ -55,8 +55,8 @@ impl LiveMethod {
     /// # Errors
     /// As [`LiveMethod::new`].
     pub fn named(file: WeightFile, name: &str) -> Result<Self, WeightsError> {
-        if !file.network().is_empty() {
-            file.expect_network(NAME)?;
+        if !["", NAME].contains(&file.network()) {
+            return Err(file.foreign(NAME));
         }
         let size = LiveSize::of(&file)?;
         let trained = file.provenance.domain(file.name())?;
@@ -201,13 +201,7 @@ impl Reconstructor for LiveMethod {
         let lambda = Array2::from_shape_vec((radar.samples, radar.elements), map)
             .map_err(|e| ReconstructError::Unusable { method: self.name, reason: e.to_string() })?;
         let lambda = RangeAngleMap { lambda };
-        let eta = own_threshold(&lambda, doubt.as_ref());
-        Ok(Reconstruction {
-            lambda,
-            eta: Some(eta),
-            least_eta: Some(least_eta),
-            doubt,
-            ..Reconstruction::silence(radar)
-        })
+        let (eta, least_eta) = (Some(own_threshold(&lambda, doubt.as_ref())), Some(least_eta));
+        Ok(Reconstruction { eta, least_eta, doubt, ..Reconstruction::of_map(lambda) })
     }
 }

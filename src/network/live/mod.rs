@@ -45,5 +45,4 @@ pub mod size;
 mod twin_tests;
 mod winograd;
 
-pub use config::LiveConfig;
 pub use method::LiveMethod;
