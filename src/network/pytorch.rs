@@ -13,7 +13,6 @@ const MAX_BYTES: u64 = 1 << 30;
 /// Keys under which programs keep a network's state beside an optimizer's and others; the first that a file has counts. `training` keeps the
 /// averaged weights, which it validates and ships, under `average`.
 const STATES: [&str; 6] = ["average", "model_state_dict", "state_dict", "model", "network", "net"];
-/// Deepest nesting of states that is searched.
 const DEEPEST_STATE: usize = 4;
 /// Prefix that `DataParallel` adds to every name.
 const PARALLEL: &str = "module.";

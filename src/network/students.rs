@@ -27,8 +27,6 @@ pub trait Student: Module + Clone {
     fn fresh(config: &Self::Config, device: &Device) -> Self;
 
     /// The input made of the two ends' samples, `[channels, rows, columns]` row-major.
-    /// # Errors
-    /// [`ReconstructError`] for a radar that the network can't use.
     fn input(config: &Self::Config, radar: &Radar, ends: &TwoEnds) -> Result<Vec<f32>, ReconstructError>;
 
     /// The target for the network's output, every cell in [0, 1].

@@ -42,8 +42,6 @@ impl ThesisConfig {
     pub const MAX_LEVELS: usize = 8;
 
     /// Refuses a radar whose maps can't be halved so often.
-    /// # Errors
-    /// [`ReconstructError::Unusable`] with the numbers of samples and elements.
     pub(super) fn check(&self, radar: &Radar) -> Result<(), ReconstructError> {
         let (Radar { samples, elements, .. }, levels, least) = (radar, self.levels, 1 << self.levels);
         if samples.is_multiple_of(least) && elements.is_multiple_of(least) {
@@ -134,8 +132,6 @@ impl Thesis {
     }
 
     /// Width and depth of the network whose weights `file` holds.
-    /// # Errors
-    /// [`WeightsError`] when it lacks the first convolution.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
         let stage = |level: usize| {
             let ours = file.shape(&format!("down.layer3x3.{level}.conv.weight"));
@@ -153,8 +149,6 @@ impl Thesis {
     }
 
     /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()`.
-    /// # Errors
-    /// [`WeightsError`] when they don't fit.
     pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
         let mut network = Thesis::new(config, device);
         let renamed = Thesis::in_our_names(file)?;
@@ -163,8 +157,6 @@ impl Thesis {
     }
 
     /// The bytes of `file` with this crate's tensor names. The names of the author's PyTorch program are replaced.
-    /// # Errors
-    /// [`WeightsError`] if the header can't be written again.
     pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {
         file.renamed(from_pytorch)
     }

@@ -39,14 +39,17 @@ pub struct ThesisMethod {
 #[derive(Debug)]
 enum Network {
     /// The engine without a framework, with idle buffers. A pass takes them out and holds no lock while it runs: another thread makes its own.
-    Engine { engine: Box<ThesisEngine>, idle: Mutex<Option<Buffers>> },
-    /// burn, on a requested backend.
-    Burn { network: Box<Thesis>, device: Device },
+    Engine {
+        engine: Box<ThesisEngine>,
+        idle: Mutex<Option<Buffers>>,
+    },
+    Burn {
+        network: Box<Thesis>,
+        device: Device,
+    },
 }
 
 impl Network {
-    /// # Errors
-    /// [`WeightsError`] when `file` doesn't fit `config`.
     fn new(file: &WeightFile, config: &ThesisConfig, backend: Backend) -> Result<Self, WeightsError> {
         if backend == Backend::default() {
             let engine = Box::new(ThesisEngine::new(file, config)?);
@@ -80,8 +83,6 @@ impl Network {
 impl ThesisMethod {
     /// The network with the weights of `file`, whose tensors decide its width and depth: computed by an engine of its own, or by burn where
     /// `backend` is not the default one.
-    /// # Errors
-    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(
         name: &'static str,
         description: &'static str,
@@ -161,8 +162,6 @@ pub struct UnetMethod {
 
 impl UnetMethod {
     /// The shipped architecture with the weights of `file`, computed by `backend`.
-    /// # Errors
-    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
         let device = backend.device();
         let config = UnetConfig::default();

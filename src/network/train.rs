@@ -21,8 +21,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Trains by `recipe` until the recipe or a limit of `run` ends it. `resume` continues from the folder's checkpoint; `watch` is called after every step.
-/// # Errors
-/// [`TrainError`].
 pub fn train<S: Student>(
     recipe: &Recipe,
     config: &S::Config,
@@ -102,8 +100,8 @@ fn begin<S: Student>(
     let mut optimizer = recipe.optimizer.fresh();
     let (mut progress, mut initial) = (RunProgress::default(), None);
     if let Some(folder) = from {
-        let found = checkpoint::load(folder, recipe, &mut network, &mut optimizer)?;
-        (progress, initial) = (found.progress, Some(found.weights_sha256));
+        let (found, weights_sha256) = checkpoint::load(folder, recipe, &mut network, &mut optimizer)?;
+        (progress, initial) = (found, Some(weights_sha256));
     }
     progress.parts.push(RunPart::starting(run, initial, progress.maps));
     Ok((network, optimizer, progress))

@@ -17,7 +17,6 @@ use rayon::prelude::*;
 const PREFIX: &str = "doubt.";
 /// Exponents that the head gives for each coarse cell of the network's picture.
 const DOUBTS_PER_CELL: usize = FINE_COLUMNS / COARSE_COLUMNS;
-/// Columns of the map that share one exponent.
 const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE_COLUMNS;
 
 /// Limits of a cell's exponent.
@@ -105,7 +104,6 @@ mod tests {
     // `training/reference.py` writes these files.
     /// Weights of a tiny network that has the head.
     const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/doubt_reference_weights.safetensors");
-    /// Weights of the same network without the head.
     const WITHOUT: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
     /// Three reflectors, and PyTorch's results for them.
     const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");

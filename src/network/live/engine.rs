@@ -274,7 +274,6 @@ fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>
     each(out, |v| power_of_ten((v * 3.0 - 3.0).clamp(-18.0, 4.0)));
 }
 
-/// Fills a line with the cells' own amplitudes and the side lobes in range.
 fn fill_line(heads: &Plane, lobes: &[f32], row: usize, line: &mut [f32]) {
     spread_out(heads.data[row * FINE_COLUMNS * heads.c..].chunks_exact(heads.c), 0..COLUMNS_PER_FINE, line);
     for (block, line) in line.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {

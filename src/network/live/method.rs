@@ -45,15 +45,11 @@ pub struct LiveMethod {
 
 impl LiveMethod {
     /// The network of the weights of `file`.
-    /// # Errors
-    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
         LiveMethod::named(file, NAME)
     }
 
     /// The network under a name of its own, beside the shipped weights. The name is never freed.
-    /// # Errors
-    /// As [`LiveMethod::new`].
     pub fn named(file: WeightFile, name: &str) -> Result<Self, WeightsError> {
         if !["", NAME].contains(&file.network()) {
             return Err(file.foreign(NAME));
@@ -78,7 +74,6 @@ impl LiveMethod {
         LiveMethod { other_radars: others, ..self }
     }
 
-    /// The network that answers samples of `radar`.
     fn on(&self, radar: &Radar) -> &LiveMethod {
         if self.trained.holds(radar) {
             return self;
@@ -104,7 +99,6 @@ impl LiveMethod {
         Ok(made)
     }
 
-    /// The map in decades, and the estimated error of Lambda.
     fn with_doubt(&self, radar: &Radar, ends: &TwoEnds) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
         let input = self.extractor(radar)?.extract(ends)?;
         // A panic elsewhere can't spoil the buffers: every pass overwrites them.
@@ -132,7 +126,6 @@ impl LiveMethod {
 /// Signal-to-noise ratios of the third of the training scenes that had thermal noise (`--snr` of `training/train_live.py`).
 const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
-/// Step between the cells of which the median is taken.
 const CELLS_A_LOOK: usize = 17;
 
 /// A level that no noise cell exceeds, decades of the network's own map. It lies above the median cell, which is the network's mean of noise
