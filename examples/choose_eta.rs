@@ -9,7 +9,7 @@
 //! `cargo run --release --example choose_eta -- thresholds|penalty`; minutes each.
 
 use apertura::evaluate::trial::Trial;
-use apertura::evaluate::{Roc, RocPoint, squared_error};
+use apertura::evaluate::{Roc, RocPoint, squared_error, upper_median};
 use apertura::methods;
 use apertura::radar::Radar;
 use apertura::reconstruct::{Fista, Reconstructor, Request};
@@ -30,10 +30,8 @@ const DETECTION: f64 = 0.999;
 /// Largest difference of a method's own threshold from the one chosen: Lambda that a percent or two of one of the rates is worth.
 const TOLERANCE: f32 = 0.005;
 
-/// Methods with the thesis' own thresholds.
 const THE_THESIS_OWN: [&str; 3] = ["baseline", "thesis", "unet"];
 
-/// Scenes of each set for the thresholds.
 const SCENES: u32 = 8;
 
 /// Choose thresholds and settings on validation scenes.
@@ -58,18 +56,15 @@ fn main() -> Outcome {
     }
 }
 
-/// A scene as a method meets it.
 fn trial(radar: &Radar, scene: &Scene) -> Outcome<Trial> {
     Ok(Trial::new(radar, scene, Floor::Thesis, Request::default().normalisation)?)
 }
 
-/// The first `count` validation scenes of a kind.
 fn validation(radar: &Radar, kind: Kind, count: u32) -> impl Iterator<Item = Outcome<Trial>> {
     let generator = Generator::new(radar, Reading::Program, Purpose::Validation, 0);
     (0..count).map(move |number| trial(radar, &generator.scene(kind, number)))
 }
 
-/// Figures of one method.
 struct Figures {
     method: Arc<dyn Reconstructor>,
     roc: Roc,
@@ -77,7 +72,6 @@ struct Figures {
     milliseconds: Vec<f64>,
 }
 
-/// The threshold by the rule above.
 fn chosen(roc: &Roc) -> Option<RocPoint> {
     let by_alarms = roc.at_false_alarm(FALSE_ALARM)?;
     Some(roc.at_detection(DETECTION).filter(|p| p.eta > by_alarms.eta).unwrap_or(by_alarms))
@@ -108,24 +102,17 @@ fn thresholds(names: &[String]) -> Outcome {
     let heading = ["own eta", "eta", "P_D %", "P_FA %", "SE 1", "SE 2", "SE 3", "ms"];
     println!("{:<28}{}", "method", heading.map(|h| format!("{h:>9}")).concat());
     let mut others = Vec::new();
-    for f in &mut all {
+    for f in &all {
         let point = chosen(&f.roc).ok_or("no threshold keeps the false-alarm rate")?;
         let (name, own) = (f.method.name(), f.method.eta());
         let brings_its_own = f.method.reads_eta() || THE_THESIS_OWN.iter().any(|n| name.starts_with(n));
         if !brings_its_own && (own - point.eta).abs() > TOLERANCE {
             others.push(format!("{name} {:.3}, not {own:.3}", point.eta));
         }
-        f.milliseconds.sort_by(f64::total_cmp);
-        println!(
-            "{name:<28}{own:>9.3}{:>9.3}{:>9.2}{:>9.2}{:>9.0}{:>9.0}{:>9.0}{:>9.0}",
-            point.eta,
-            point.detection * 100.0,
-            point.false_alarm * 100.0,
-            f.squared_error[0],
-            f.squared_error[1],
-            f.squared_error[2],
-            f.milliseconds[f.milliseconds.len() / 2]
-        );
+        let (eta, detection, false_alarm) = (point.eta, 100.0 * point.detection, 100.0 * point.false_alarm);
+        let errors = f.squared_error.map(|error| format!("{error:>9.0}")).concat();
+        let middle = upper_median(f.milliseconds.iter().copied()).unwrap_or_default();
+        println!("{name:<28}{own:>9.3}{eta:>9.3}{detection:>9.2}{false_alarm:>9.2}{errors}{middle:>9.0}");
     }
     if others.is_empty() { Ok(()) } else { Err(format!("thresholds chosen: {}", others.join("; ")).into()) }
 }

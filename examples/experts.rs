@@ -57,6 +57,9 @@ const DOUBT_EDGES: [f64; 6] = [0.0, 0.5, 0.7, 0.85, 0.95, 1.0];
 /// Range bins and columns within which a true reflector makes a listed one right.
 const NEAR_CELLS: [f64; 2] = [1.0, 2.0];
 
+const HEADING: &str = "scenes                      live    nomp  hybrid  ratio     +-   live P_D/P_FA          hybrid  largest     time \
+                       calibrated";
+
 /// The methods, in the order of the columns.
 const METHODS: [&str; 3] = ["live", "nomp", "hybrid"];
 
@@ -71,20 +74,7 @@ fn main() -> Outcome {
             DOUBT_EDGES.windows(2).map(|b| format!("{:>18}", format!("{}-{}", b[0], b[1]))).collect::<String>()
         );
     } else {
-        println!(
-            "{:24}{:>8}{:>8}{:>8}{:>7}{:>7}{:>16}{:>16}{:>9}{:>9}{:>11}",
-            "scenes",
-            "live",
-            "nomp",
-            "hybrid",
-            "ratio",
-            "+-",
-            "live P_D/P_FA",
-            "hybrid",
-            "largest",
-            "time",
-            "calibrated"
-        );
+        println!("{HEADING}");
     }
     for &kind in &arguments.kinds {
         for &floor in &arguments.floors {
@@ -121,7 +111,6 @@ impl Arguments {
         METHODS.iter().map(ask).collect()
     }
 
-    /// Prints, for reflectors that are listed with about the same confidence, the mean confidence, the part that is there, and the count.
     fn print_confidence(&self, name: &str, kind: Kind, answers: &[Vec<TimedAnswer>]) {
         let mut bins = [[0.0; 3]; DOUBT_EDGES.len() - 1];
         for (number, answer) in (self.first..).zip(answers) {
@@ -155,7 +144,6 @@ impl Arguments {
         Generator::new(&Radar::default(), Reading::Program, purpose, self.seed).scene(kind, number)
     }
 
-    /// Gives the trial the samples of elements with errors.
     fn put_off(&self, trial: &mut Trial, scene: &Scene, floor: Floor, number: u32) -> Outcome {
         let tolerances = Tolerances { gain: Decibels(0.3), phase_degrees: 3.0, position_millimetres: 0.0 };
         let array = tolerances.times(self.elements_off).build(&trial.radar, self.seed.wrapping_add(number.into()));
@@ -164,7 +152,6 @@ impl Arguments {
     }
 }
 
-/// Whether a listed reflector stands where a true one does.
 fn is_near(listed: &Reflector, truth: &Reflector) -> bool {
     let radar = Radar::default();
     let [a, b] = [listed, truth].map(|r| radar.polar_of(r.x_metres, r.y_metres));
@@ -193,16 +180,13 @@ fn print_row(name: &str, answers: &[Vec<TimedAnswer>], largest: f64) {
         let alarms = mean(answers.iter().map(|a| a[method].metrics.false_alarm));
         format!("{:>9.2} /{:>5.2}", 100.0 * detected, 100.0 * alarms)
     };
-    let best = live.min(nomp);
+    let (ratio, deviation) = (hybrid / live.min(nomp), standard_error / live.min(nomp));
     let [live_time, time] = [0, 2].map(|method: usize| mean(answers.iter().map(|a| a[method].milliseconds)));
     let is_calibrated = |a: &&Vec<TimedAnswer>| a[1].found.trace.iter().any(|attempt| attempt.rung == CALIBRATION);
     let calibrated = answers.iter().filter(is_calibrated).count();
+    let (of_live, of_hybrid, time) = (rates(0), rates(2), time / live_time);
     println!(
-        "{name:24}{live:>8.0}{nomp:>8.0}{hybrid:>8.0}{:>7.2}{:>7.2}{}{}{largest:>9.2}{:>9.2}{calibrated:>11}",
-        hybrid / best,
-        standard_error / best,
-        rates(0),
-        rates(2),
-        time / live_time
+        "{name:24}{live:>8.0}{nomp:>8.0}{hybrid:>8.0}{ratio:>7.2}{deviation:>7.2}{of_live}{of_hybrid}{largest:>9.2}{time:>9.2}\
+         {calibrated:>11}"
     );
 }

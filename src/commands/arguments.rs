@@ -1,6 +1,6 @@
 //! Arguments that several subcommands share.
 
-use crate::radar::Carrier;
+use crate::radar::{Carrier, Decibels};
 use crate::signal::Floor;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt::Display;
@@ -46,6 +46,16 @@ where
 /// Parses a number within `range`; the message to anything else says what is allowed.
 pub fn real(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     within("a number", range)
+}
+
+/// Parses decibels from -200 to 200.
+pub fn decibels(text: &str) -> Result<Decibels, String> {
+    usable(text, |db| (-200.0..=200.0).contains(&db), "expected decibels between -200 and 200").map(Decibels)
+}
+
+/// Parses a number of which `is_usable`; the message to anything else is `expected`.
+pub fn usable(text: &str, is_usable: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|number| is_usable(*number)).ok_or_else(|| expected.to_owned())
 }
 
 fn within<T>(

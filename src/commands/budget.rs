@@ -1,5 +1,6 @@
 //! `apertura budget`: SNR by the radar equation.
 
+use super::arguments::{decibels, usable};
 use super::{CommandError, print, print_json};
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{Decibels, LinkBudget, LinkFigures, Radar};
@@ -42,20 +43,12 @@ pub struct Args {
     json: bool,
 }
 
-fn number(text: &str, is_usable: impl Fn(f64) -> bool, expected: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|number| is_usable(*number)).ok_or_else(|| expected.to_owned())
-}
-
-fn decibels(text: &str) -> Result<Decibels, String> {
-    number(text, |db| (-200.0..=200.0).contains(&db), "expected decibels between -200 and 200").map(Decibels)
-}
-
 fn metres(text: &str) -> Result<f64, String> {
-    number(text, |m| (1e-3..=1e9).contains(&m), "expected metres from 0.001 to 1e9")
+    usable(text, |m| (1e-3..=1e9).contains(&m), "expected metres from 0.001 to 1e9")
 }
 
 fn degrees(text: &str) -> Result<f64, String> {
-    number(text, |a| (-90.0..=90.0).contains(&a), "expected degrees off broadside, -90 to 90")
+    usable(text, |a| (-90.0..=90.0).contains(&a), "expected degrees off broadside, -90 to 90")
 }
 
 #[derive(Debug, Serialize)]
@@ -113,7 +106,7 @@ impl Row {
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let file = match &self.scene {
-            Some(path) => load(path).map_err(CommandError::failed)?,
+            Some(path) => load(path)?,
             None => SceneFile::default(),
         };
         let radar = &file.radar;
@@ -125,10 +118,7 @@ impl Args {
             object,
             objects: file.scene.objects.iter().enumerate().filter_map(|o| Row::of(radar, o)).collect(),
         };
-        match self.json {
-            true => print_json(&report),
-            false => print(&report.text(radar.budget.is_some())),
-        }
+        if self.json { print_json(&report) } else { print(&report.text(radar.budget.is_some())) }
     }
 }
 

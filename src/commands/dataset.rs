@@ -6,7 +6,7 @@ use super::radar_arg::RadarArg;
 use super::{CommandError, print};
 use crate::network::floors::Floors;
 use crate::network::live::arrays::Arrays;
-use crate::network::live::dataset::{DatasetError, DatasetPrecision, DatasetRequest, ExamplePart, write};
+use crate::network::live::dataset::{DatasetPrecision, DatasetRequest, ExamplePart, write};
 use crate::network::live::radars::Radars;
 use crate::radar::{Bytes, Decibels};
 use crate::scene::generate::Kind;
@@ -79,7 +79,6 @@ pub struct Args {
 /// Ratios of --thermal, those that the live network was trained at.
 const THERMAL: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
-/// Time between two drawings of the progress.
 const TICK: Duration = Duration::from_millis(100);
 
 impl Args {
@@ -111,20 +110,11 @@ impl Args {
             writing.join()
         });
         bar.finish_and_clear();
-        let manifest = written.unwrap_or_else(|panic| std::panic::resume_unwind(panic)).map_err(told)?;
+        let manifest = written.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
         let files = || manifest.splits.values().flatten().flat_map(|shard| shard.files.values());
         let bytes: u64 = files().map(|file| file.bytes).sum();
         let examples: u32 = manifest.splits.values().flatten().map(|shard| shard.examples).sum();
         let (count, bytes) = (files().count(), Bytes(bytes));
         print(&format!("wrote {}: {examples} examples in {count} files, {bytes}", self.output.display()))
-    }
-}
-
-fn told(error: DatasetError) -> CommandError {
-    match error {
-        DatasetError::File { path, source } => CommandError::File { path, source },
-        DatasetError::Request(message) => CommandError::Usage(message),
-        DatasetError::Examples(error) => CommandError::Usage(error.to_string()),
-        other => CommandError::failed(other),
     }
 }

@@ -1,34 +1,28 @@
 //! Errors of commands.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::fmt::{self, Display};
+use std::path::Path;
 
-/// An error of a command. Every message names the file or argument, the fault and the expected value.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-#[allow(missing_docs)] // The messages name every field.
-pub enum CommandError {
-    #[error("{}: {source}", path.display())]
-    File { path: PathBuf, source: std::io::Error },
-    /// The arguments make no sense together.
-    #[error("{0}")]
-    Usage(String),
-    /// An error of the room that the subcommand uses.
-    #[error("{0}")]
-    Failed(Box<dyn Error + Send + Sync>),
-    /// An error of the room that the subcommand uses, about a file.
-    #[error("{}: {source}", path.display())]
-    FailedOn { path: PathBuf, source: Box<dyn Error + Send + Sync> },
+/// An error of a command, or of a room that it uses. The message names the file or argument, the fault and the expected value.
+#[derive(Debug)]
+pub struct CommandError(pub String);
+
+impl Display for CommandError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl<E: Error> From<E> for CommandError {
+    fn from(error: E) -> Self {
+        CommandError(error.to_string())
+    }
 }
 
 impl CommandError {
-    /// An error of another room.
-    pub fn failed(source: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
-        CommandError::Failed(source.into())
-    }
-
-    /// For `map_err`: an error of another room, about the file `path`.
-    pub fn on<E: Error + Send + Sync + 'static>(path: &Path) -> impl FnOnce(E) -> Self {
-        move |source| CommandError::FailedOn { path: path.to_owned(), source: Box::new(source) }
+    /// For `map_err`: an error about the file `path`.
+    pub fn on<E: Display>(path: &Path) -> impl FnOnce(E) -> Self {
+        move |source| CommandError(format!("{}: {source}", path.display()))
     }
 }

@@ -35,11 +35,11 @@ pub fn save_bitmap(figure: &impl Plot, folder: &Path, stem: &str) -> Result<(), 
     let mut pixels = vec![0; (3 * width * height) as usize];
     on_white(figure, BitMapBackend::with_buffer(&mut pixels, (width, height))).map_err(|e| undrawn(stem, &e))?;
     let bitmap = RgbImage::from_raw(width, height, pixels).ok_or_else(|| undrawn(stem, &"its size is out of range"))?;
-    write(folder, stem, "png", &encode_png(&bitmap).map_err(CommandError::failed)?)
+    write(folder, stem, "png", &encode_png(&bitmap)?)
 }
 
 pub fn save_numbers(numbers: &impl Serialize, folder: &Path, stem: &str) -> Result<(), CommandError> {
-    let text = serde_json::to_string_pretty(numbers).map_err(CommandError::failed)?;
+    let text = serde_json::to_string_pretty(numbers)?;
     write(folder, stem, "json", text.as_bytes())
 }
 
@@ -55,8 +55,8 @@ pub fn tick(value: &f64) -> String {
 }
 
 fn ready(folder: &Path) -> Result<(), CommandError> {
-    std::fs::create_dir_all(folder).map_err(|source| CommandError::File { path: folder.to_owned(), source })?;
-    picture::register_fonts().map_err(CommandError::failed)
+    std::fs::create_dir_all(folder).map_err(CommandError::on(folder))?;
+    Ok(picture::register_fonts()?)
 }
 
 fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> Result<(), CommandError> {
@@ -64,7 +64,7 @@ fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> Result<(),
 }
 
 fn undrawn(stem: &str, error: &dyn std::fmt::Display) -> CommandError {
-    CommandError::Usage(format!("can't draw {stem}: {error}"))
+    CommandError(format!("can't draw {stem}: {error}"))
 }
 
 fn on_white<B: DrawingBackend>(figure: &impl Plot, backend: B) -> DrawingResult<B> {

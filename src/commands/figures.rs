@@ -32,10 +32,10 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let chosen = self.chosen()?;
         let folder = self.output.join("figures");
-        std::fs::create_dir_all(&folder).map_err(|source| CommandError::File { path: folder.clone(), source })?;
+        std::fs::create_dir_all(&folder).map_err(CommandError::on(&folder))?;
         let source = SceneSource::default();
         for figure in &chosen {
-            let failed = |e: &dyn std::fmt::Display| CommandError::Usage(format!("figure {}: {e}", figure.number));
+            let failed = |e: &dyn std::fmt::Display| CommandError(format!("figure {}: {e}", figure.number));
             let sheet = (figure.sheet)(&source).map_err(|e| failed(&e))?;
             let path = |ending: &str| folder.join(format!("{}.{ending}", figure.number));
             write_file(&path("png"), &draw::png(&sheet).map_err(|e| failed(&e))?)?;
@@ -54,20 +54,20 @@ impl Args {
         }
         let unknown = |number: &str| {
             let known: Vec<&str> = ALL.iter().map(|f| f.number).collect();
-            CommandError::Usage(format!("there is no figure \"{number}\"; known: {}", known.join(", ")))
+            CommandError(format!("there is no figure \"{number}\"; known: {}", known.join(", ")))
         };
         self.only.iter().map(|number| by_number(number.trim()).ok_or_else(|| unknown(number))).collect()
     }
 
     fn page(&self) -> Result<String, CommandError> {
         let named = pages::TABLE_METHODS.iter().map(|(name, _)| methods::by_name(name));
-        let methods: Vec<Arc<dyn Reconstructor>> = named.collect::<Result<_, _>>().map_err(CommandError::failed)?;
+        let methods: Vec<Arc<dyn Reconstructor>> = named.collect::<Result<_, _>>()?;
         let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
         let mut page = String::from(
             "# The thesis' figures\n\nDrawn by `apertura figures`, which also writes this page and an SVG beside every PNG.\n",
         );
         let _ = writeln!(page, "\n<!-- table figures: apertura figures --scenes {} -->", self.scenes);
-        page.push_str(&pages::tables(&methods, self.scenes).map_err(CommandError::failed)?);
+        page.push_str(&pages::tables(&methods, self.scenes)?);
         page.push_str("## Figures\n\n");
         page.extend(ALL.iter().map(|figure| pages::entry(figure, "figures")));
         // `scripts/tables` names the weights and the floor's edition here.

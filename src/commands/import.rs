@@ -48,12 +48,12 @@ const MAX_LISTED_LAYOUTS: usize = 4;
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let board = self.board.as_deref().map(load_board).transpose()?;
-        let imported = raw::import(&self.file, self.config.as_deref(), board).map_err(CommandError::failed)?;
+        let imported = raw::import(&self.file, self.config.as_deref(), board)?;
         if let Some(output) = &self.output {
             check_output(output, &imported.origin.data)?;
         }
         // A file whose recording can't be read is no import.
-        let recording = imported.recording().map_err(CommandError::failed)?;
+        let recording = imported.recording()?;
         if self.json {
             print(&described(&imported, &recording.doubts).to_string())?;
         } else {
@@ -65,7 +65,7 @@ impl Args {
                 .try_for_each(|doubt| print(&format!("note: {doubt}")))?;
         }
         let Some(output) = &self.output else { return Ok(()) };
-        let failed = |source| CommandError::File { path: output.clone(), source };
+        let failed = CommandError::on(&output);
         write_bytes(output, imported.origin.toml().as_bytes()).map_err(failed)?;
         if self.json { Ok(()) } else { print(&format!("wrote {}", output.display())) }
     }
@@ -78,13 +78,13 @@ fn check_output(output: &Path, data: &Path) -> Result<(), CommandError> {
         std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
     };
     if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
-        return Err(CommandError::Usage(format!("{}: expected a name ending in .toml", output.display())));
+        return Err(CommandError(format!("{}: expected a name ending in .toml", output.display())));
     }
     if folder(output) != folder(data) {
         let place = folder(data);
         let message =
             format!("{}: the TOML stands beside the capture; expected a name in {}", output.display(), place.display());
-        return Err(CommandError::Usage(message));
+        return Err(CommandError(message));
     }
     Ok(())
 }

@@ -9,9 +9,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Clone)]
 pub enum InputArgs {
-    /// A scene and the radar that looks at it.
     Scene(Box<SceneFile>),
-    /// Samples and the radar that measured them.
     Recording(Box<Recording>),
 }
 
@@ -24,12 +22,12 @@ impl InputArgs {
     /// [`InputArgs::load`] with the `.cfg` of a raw capture.
     pub fn load_with(path: &Path, config: Option<&Path>) -> Result<InputArgs, CommandError> {
         if let Some(text) = shared_text(path) {
-            return Ok(InputArgs::Scene(Box::new(SharedScene::from_text(text).map_err(CommandError::failed)?.file)));
+            return Ok(InputArgs::Scene(Box::new(SharedScene::from_text(text)?.file)));
         }
         if recording::file::is_recording_at(path) {
             return Ok(InputArgs::Recording(Box::new(load_recording(path, config)?)));
         }
-        Ok(InputArgs::Scene(Box::new(file::load(path).map_err(CommandError::failed)?)))
+        Ok(InputArgs::Scene(Box::new(file::load(path)?)))
     }
 }
 
@@ -47,11 +45,10 @@ pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, C
         None => recording::file::load(path),
         Some(_) if !recording::raw::is_raw_at(path) => {
             let message = "--config is that of a raw capture or an array; expected one as input";
-            return Err(CommandError::Usage(format!("{}: {message}", path.display())));
+            return Err(CommandError(format!("{}: {message}", path.display())));
         }
         Some(config) => recording::raw::open(path, Some(config)),
-    }
-    .map_err(CommandError::failed)?;
+    }?;
     print_doubts(path, &recording.doubts);
     Ok(recording)
 }
@@ -64,7 +61,7 @@ pub fn print_doubts(path: &Path, doubts: &[String]) {
 pub fn load_board(name: &str) -> Result<&'static Board, CommandError> {
     boards::by_name(name).ok_or_else(|| {
         let names: Vec<&str> = boards::ALL.iter().map(|b| b.name).collect();
-        CommandError::Usage(format!("--board {name}: no such board is known; expected {}", names.join(", ")))
+        CommandError(format!("--board {name}: no such board is known; expected {}", names.join(", ")))
     })
 }
 

@@ -39,13 +39,11 @@ pub struct Args {
     output: Option<PathBuf>,
 }
 
-/// False-alarm rate at which P_D is read.
 const FALSE_ALARM: f64 = 0.01;
 
 /// Place of the reflector whose side lobes are measured: 20 m ahead.
 const CENTRE: Polar = Polar { range_metres: 20.0, cos_theta: 0.0 };
 
-/// Columns to each side of the reflector that are drawn.
 const DRAWN_COLUMNS: f64 = 60.0;
 
 #[derive(Debug, Serialize)]
@@ -63,8 +61,7 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
         let of = |kind: &LayoutKind| Ok((kind.layout(&radar)?, kind.numbers(&radar)?));
-        let layouts: Vec<(Layout, Vec<usize>)> =
-            self.layout.iter().map(of).collect::<Result<_, LayoutError>>().map_err(CommandError::failed)?;
+        let layouts: Vec<(Layout, Vec<usize>)> = self.layout.iter().map(of).collect::<Result<_, LayoutError>>()?;
         let mut rows: Vec<Row> = self.layout.iter().zip(&layouts).map(|(k, (l, _))| Row::new(&radar, k, l)).collect();
         let bar = indicatif::ProgressBar::new(u64::from(self.count) * 3 * layouts.len() as u64);
         let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
@@ -74,12 +71,11 @@ impl Args {
             let mut rocs = vec![Roc::default(); layouts.len()];
             for number in 0..self.count {
                 let scene = generator.scene(kind, number);
-                let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).map_err(CommandError::failed)?;
+                let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed)?;
                 let target = LogMaps::of_signal(&radar, &signal).full.normalise(request.normalisation);
                 for (i, (layout, numbers)) in layouts.iter().enumerate() {
                     let samples = signal.samples.select(Axis(0), numbers);
-                    let map = layout_matched_filter(&radar, layout, samples.view(), &request)
-                        .map_err(CommandError::failed)?;
+                    let map = layout_matched_filter(&radar, layout, samples.view(), &request)?;
                     errors[i].push(squared_error(&target, &map));
                     rocs[i].add(&target, &map);
                     bar.inc(1);
@@ -116,13 +112,8 @@ fn print_table(radar: &Radar, count: u32, rows: &[Row]) -> Result<(), CommandErr
             let columns = l.highest_side_lobe_offset * radar.elements as f64 / 2.0;
             format!("{:>14.2} {columns:>14.2} {:>13.2}", db(l.highest_side_lobe), db(l.side_lobe_rms))
         });
-        print(&format!(
-            "{:12} {:>8} {lobes:43} {:>24} {:>22}",
-            r.layout,
-            r.elements,
-            errors.join(" / "),
-            rates.join(" / ")
-        ))?;
+        let (layout, elements, errors, rates) = (&r.layout, r.elements, errors.join(" / "), rates.join(" / "));
+        print(&format!("{layout:12} {elements:>8} {lobes:43} {errors:>24} {rates:>22}"))?;
     }
     Ok(())
 }

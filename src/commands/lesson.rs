@@ -31,7 +31,7 @@ impl Args {
         }
         match app::run(options) {
             Err(AppError::Window(_)) => print(&about),
-            other => other.map_err(CommandError::failed),
+            other => Ok(other?),
         }
     }
 
@@ -39,15 +39,15 @@ impl Args {
         let usual = app::Options::default();
         match self.lesson.to_str().filter(|name| !name.contains(['.', '/', '\\']) && !self.lesson.exists()) {
             Some(name) => {
-                let index = shipped::by_name(name).map_err(CommandError::failed)?;
-                let lesson = shipped::ALL[index].load().map_err(CommandError::failed)?;
+                let index = shipped::by_name(name)?;
+                let lesson = shipped::ALL[index].load()?;
                 Ok((
                     lesson,
                     app::Options { commands: vec![app::Command::Lesson(app::LessonCommand::Begin(index))], ..usual },
                 ))
             }
             None => {
-                let lesson = Lesson::load(&self.lesson).map_err(CommandError::failed)?;
+                let lesson = Lesson::load(&self.lesson)?;
                 Ok((lesson, app::Options { lesson: Some(self.lesson.clone()), ..usual }))
             }
         }

@@ -49,7 +49,6 @@ impl ChartLine {
     }
 }
 
-/// Radius of a dot in the legend, pixels.
 const LEGEND_DOT: i32 = 5;
 
 impl LineChart {

@@ -52,11 +52,10 @@ const WAITING: usize = 2;
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let board = self.board.as_deref().map(load_board).transpose()?;
-        let frame_bytes = raw::frame_bytes(&self.config).map_err(CommandError::failed)?;
-        let failed = |source: io::Error| CommandError::Usage(format!("port {}: {source}", self.port));
+        let frame_bytes = raw::frame_bytes(&self.config)?;
+        let failed = |source: io::Error| CommandError(format!("port {}: {source}", self.port));
         let mut card = Card::listen(self.port, frame_bytes).map_err(failed)?;
-        let created =
-            |path: &PathBuf| File::create(path).map_err(|source| CommandError::File { path: path.clone(), source });
+        let created = |path: &PathBuf| File::create(path).map_err(CommandError::on(&path));
         card.log = self.log.as_ref().map(created).transpose()?;
         card.most_frames = self.frames;
         card.silence = self.silence.map(|s| Duration::from_secs(s.into()));
@@ -68,11 +67,11 @@ impl Args {
             Err(TrySendError::Disconnected(_)) => Handed::Ended,
         };
         let thread = std::thread::Builder::new().name("card".to_owned()).spawn(move || card.run(hand, |_| true));
-        let thread = thread.map_err(|e| CommandError::Usage(format!("no thread: {e}")))?;
+        let thread = thread.map_err(|e| CommandError(format!("no thread: {e}")))?;
         let mut origin: Option<Origin> = None;
         for frame in frames {
             if origin.is_none() {
-                let imported = raw::of_frame(frame.bytes.clone(), &self.config, board).map_err(CommandError::failed)?;
+                let imported = raw::of_frame(frame.bytes.clone(), &self.config, board)?;
                 imported.origin.sentences.iter().try_for_each(|sentence| print(sentence))?;
                 print_doubts(&self.config, &imported.origin.doubts);
                 origin = Some(imported.origin);
@@ -88,7 +87,7 @@ impl Args {
 
 /// A line on a frame: its strongest echo, and its lost bytes.
 fn told(origin: &Origin, frame: &CardFrame) -> Result<String, CommandError> {
-    let recording = origin.recording_of(&frame.bytes).map_err(CommandError::failed)?;
+    let recording = origin.recording_of(&frame.bytes)?;
     let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
     let found = reconstruct_and_find(&IAA, &recording.radar, &recording.two_ends(), &request);
     let echo = match found.as_ref().map(|(_, found)| found.first()) {

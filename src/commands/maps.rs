@@ -1,11 +1,10 @@
 //! `apertura maps`: the maps of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs};
-use super::frames::Frames;
 use super::input::{ConfigArg, InputArgs};
 use super::layout_arg::LayoutArg;
 use super::own_method::OwnMethodArgs;
-use super::{CommandError, print, write_file};
+use super::{CommandError, ends_in, frames, picture_format, print, write_file};
 use crate::files::npz::NpzError;
 use crate::maps::archive::{write_frames, write_maps, write_recorded_maps};
 use crate::maps::cfar::Cfar;
@@ -18,7 +17,7 @@ use crate::recording::Recording;
 use crate::recording::explain::explain;
 use crate::scene::file::{self, SceneFile};
 use crate::signal::{self, BeatSignal, LayoutSamples, TwoEnds};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Compute the maps of a scene or a recording, to an .npz archive or a .png or .svg picture, or a .gif of all frames
@@ -97,119 +96,107 @@ pub struct Args {
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
-        let output = Output::of_path(&self.output)?;
+        let format = picture_format(&self.output, &["npz", "gif"], ".npz, .png, .svg or .gif")?;
+        let of_frames = self.all_frames || ends_in(&self.output, "gif");
         self.own.start()?;
-        match InputArgs::load_with(&self.input, self.capture.config.as_deref())? {
+        let mut input = InputArgs::load_with(&self.input, self.capture.config.as_deref())?;
+        let radar = match &mut input {
+            InputArgs::Scene(file) => &mut file.radar,
+            InputArgs::Recording(recording) => &mut recording.radar,
+        };
+        radar.carrier = self.carrier.unwrap_or(radar.carrier);
+        radar.focus_off_line |= self.focus_off_line;
+        match input {
             InputArgs::Scene(_) if self.explain.is_some() => {
-                return Err(CommandError::Usage(
-                    "--explain takes reflectors off a recording; expected one as input".into(),
-                ));
+                return Err(CommandError("--explain takes reflectors off a recording; expected one as input".into()));
             }
-            InputArgs::Scene(_) if self.all_frames || matches!(output, Output::Animation) => {
+            InputArgs::Scene(_) if of_frames => {
                 let message = "a scene has no frames; expected a recording for --all-frames or a .gif";
-                return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+                return Err(CommandError(format!("{}: {message}", self.input.display())));
             }
-            InputArgs::Scene(file) => self.of_scene(*file, output)?,
-            InputArgs::Recording(recording) if self.all_frames || matches!(output, Output::Animation) => {
-                self.of_frames(*recording, output)?;
-            }
-            InputArgs::Recording(recording) => self.of_recording(*recording, output)?,
+            InputArgs::Scene(file) => self.of_scene(&file, format)?,
+            InputArgs::Recording(recording) if of_frames => self.of_frames(&recording, format)?,
+            InputArgs::Recording(recording) => self.of_recording(*recording, format)?,
         }
         print(&format!("wrote {}", self.output.display()))
     }
 
-    fn of_scene(&self, SceneFile { scene, mut radar }: SceneFile, output: Output) -> Result<(), CommandError> {
-        radar.carrier = self.carrier.unwrap_or(radar.carrier);
-        radar.focus_off_line |= self.focus_off_line;
-        let signal = signal::simulate(&radar, &scene, self.floor.floor, self.seed.unwrap_or(scene.noise_seed))
+    fn of_scene(
+        &self,
+        SceneFile { scene, radar }: &SceneFile,
+        format: Option<PictureFormat>,
+    ) -> Result<(), CommandError> {
+        let signal = signal::simulate(radar, scene, self.floor.floor, self.seed.unwrap_or(scene.noise_seed))
             .map_err(CommandError::on(&self.input))?;
-        match output {
-            Output::Archive => {
-                let heard = self.heard(&radar, Some(&signal))?;
-                let (noise, normalisation) = (self.floor.floor.into(), self.normalisation);
-                let request = Request { noise, normalisation, heard: heard.clone(), ..Request::default() };
-                let output = self.estimate(&radar, &signal.two_ends(&radar), &request)?;
-                let full = write_maps(&self.output, &radar, &scene, &signal, heard.as_deref(), output.as_ref())
-                    .map_err(CommandError::on(&self.output))?;
-                print(&span(&full))
-            }
-            Output::Picture(format) => {
-                let method = self.method(&radar)?;
-                let style = Style { floor: self.floor.floor, ..self.style() };
-                let bytes =
-                    compose(&radar, &scene, &signal, method.as_ref(), &style, format).map_err(CommandError::failed)?;
-                write_file(&self.output, &bytes)
-            }
-            Output::Animation => Ok(()),
+        if let Some(format) = format {
+            let style = Style { floor: self.floor.floor, ..self.style() };
+            return write_file(
+                &self.output,
+                &compose(radar, scene, &signal, self.method(radar)?.as_ref(), &style, format)?,
+            );
         }
+        let heard = self.heard(radar, Some(&signal))?;
+        let (noise, normalisation) = (self.floor.floor.into(), self.normalisation);
+        let request = Request { noise, normalisation, heard: heard.clone(), ..Request::default() };
+        let output = self.estimate(radar, &signal.two_ends(radar), &request)?;
+        let full = write_maps(&self.output, radar, scene, &signal, heard.as_deref(), output.as_ref())
+            .map_err(CommandError::on(&self.output))?;
+        print(&span(&full))
     }
 
-    /// Every frame of a recording, one after another.
-    fn of_frames(&self, mut recording: Recording, output: Output) -> Result<(), CommandError> {
+    fn of_frames(&self, recording: &Recording, format: Option<PictureFormat>) -> Result<(), CommandError> {
+        let radar = &recording.radar;
         if self.explain.is_some() {
-            return Err(CommandError::Usage("--explain takes one frame".into()));
+            return Err(CommandError("--explain takes one frame".into()));
         }
-        recording.radar.carrier = self.carrier.unwrap_or(recording.radar.carrier);
-        recording.radar.focus_off_line |= self.focus_off_line;
-        let frames = Frames::of(recording);
-        let radar = &frames.opened().radar;
-        match output {
-            Output::Archive if self.method.is_some() => Err(CommandError::Usage(
-                "--all-frames writes maps without a method; `apertura reconstruct --all-frames` writes a method's"
-                    .into(),
-            )),
-            Output::Archive => {
-                let map = |n: usize| {
-                    let frame = frames.at(n).map_err(|e| NpzError::Io(std::io::Error::other(e)))?;
-                    maps_of(&frame).1.ok_or_else(|| NpzError::Io(std::io::Error::other(ENDS_ALONE)))
-                };
-                write_frames(&self.output, radar, frames.count(), map).map_err(CommandError::on(&self.output))
-            }
-            Output::Animation => {
-                let method = self.method(radar)?;
-                frames.animate(&self.output, |frame| {
-                    compose_recording(frame, method.as_ref(), &self.style(), PictureFormat::Png)
-                        .map_err(CommandError::on(&self.input))
-                })
-            }
-            Output::Picture(_) => Err(CommandError::Usage(format!(
-                "{}: a picture shows one frame; expected .gif or .npz beside --all-frames",
-                self.output.display()
-            ))),
+        if format.is_some() {
+            let message = "a picture shows one frame; expected .gif or .npz beside --all-frames";
+            return Err(CommandError(format!("{}: {message}", self.output.display())));
         }
+        if ends_in(&self.output, "gif") {
+            let (method, style) = (self.method(radar)?, self.style());
+            return frames::animate(recording, &self.output, |frame| {
+                compose_recording(frame, method.as_ref(), &style, PictureFormat::Png)
+                    .map_err(CommandError::on(&self.input))
+            });
+        }
+        if self.method.is_some() {
+            let other = "`apertura reconstruct --all-frames` writes a method's";
+            return Err(CommandError(format!("--all-frames writes maps without a method; {other}")));
+        }
+        let failed = |told: String| NpzError::Io(std::io::Error::other(told));
+        let map = |n: usize| {
+            let frame = frames::frame(recording, n).map_err(|error| failed(error.0))?;
+            maps_of(&frame).1.ok_or_else(|| failed(ENDS_ALONE.to_owned()))
+        };
+        write_frames(&self.output, radar, frames::count(recording), map).map_err(CommandError::on(&self.output))
     }
 
-    fn of_recording(&self, mut recording: Recording, output: Output) -> Result<(), CommandError> {
-        recording.radar.carrier = self.carrier.unwrap_or(recording.radar.carrier);
-        recording.radar.focus_off_line |= self.focus_off_line;
+    fn of_recording(&self, mut recording: Recording, format: Option<PictureFormat>) -> Result<(), CommandError> {
         if let Some(path) = &self.explain {
-            let scene = file::load(path).map_err(CommandError::failed)?.scene;
+            let scene = file::load(path)?.scene;
             let found = explain(&recording, &scene).map_err(CommandError::on(path))?;
             print(&format!("{} explains {:.2} % of the power", path.display(), 100.0 * found.explained))?;
             recording = found.residual;
         }
-        match output {
-            Output::Archive => {
-                let (_, full) = maps_of(&recording);
-                let (radar, ends) = (&recording.radar, recording.two_ends());
-                let (noise, normalisation) = (NoisePrior::UNKNOWN, self.normalisation);
-                let snapshot_range_metres = recording.range_metres;
-                let heard = self.heard(radar, recording.signal())?;
-                let request =
-                    Request { noise, normalisation, snapshot_range_metres, heard: heard.clone(), ..Request::default() };
-                let output = self.estimate(radar, &ends, &request)?;
-                write_recorded_maps(&self.output, radar, &ends, full.as_ref(), heard.as_deref(), output.as_ref())
-                    .map_err(CommandError::on(&self.output))?;
-                full.as_ref().map_or(Ok(()), |full| print(&span(full)))
-            }
-            Output::Picture(format) => {
-                let method = self.method(&recording.radar)?;
-                let bytes = compose_recording(&recording, method.as_ref(), &self.style(), format)
-                    .map_err(CommandError::on(&self.input))?;
-                write_file(&self.output, &bytes)
-            }
-            Output::Animation => Ok(()),
+        let radar = &recording.radar;
+        if let Some(format) = format {
+            let bytes = compose_recording(&recording, self.method(radar)?.as_ref(), &self.style(), format)
+                .map_err(CommandError::on(&self.input))?;
+            return write_file(&self.output, &bytes);
         }
+        let (full, ends, heard) = (maps_of(&recording).1, recording.two_ends(), self.heard(radar, recording.signal())?);
+        let request = Request {
+            noise: NoisePrior::UNKNOWN,
+            normalisation: self.normalisation,
+            snapshot_range_metres: recording.range_metres,
+            heard: heard.clone(),
+            ..Request::default()
+        };
+        let output = self.estimate(radar, &ends, &request)?;
+        write_recorded_maps(&self.output, radar, &ends, full.as_ref(), heard.as_deref(), output.as_ref())
+            .map_err(CommandError::on(&self.output))?;
+        full.as_ref().map_or(Ok(()), |full| print(&span(full)))
     }
 
     fn estimate(
@@ -219,24 +206,22 @@ impl Args {
         request: &Request,
     ) -> Result<Option<RangeAngleMap>, CommandError> {
         let Some(name) = self.method.as_deref() else { return Ok(None) };
-        let method = methods::by_name(name).map_err(CommandError::failed)?;
+        let method = methods::by_name(name)?;
         let answer = method.reconstruct(radar, ends, request).map_err(CommandError::on(&self.input))?;
         Ok(Some(answer.lambda))
     }
 
-    /// The method of a picture.
     fn method(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
         match (self.method.as_deref(), self.layout.numbers(radar)?) {
-            (Some(name), _) => methods::by_name(name).map_err(CommandError::failed),
+            (Some(name), _) => Ok(methods::by_name(name)?),
             (None, Some(layout)) => Ok(methods::preferred_hearing(radar, &layout)),
             (None, None) => Ok(methods::preferred_for(radar)),
         }
     }
 
-    /// Samples of the layout's elements, where a layout is given.
     fn heard(&self, radar: &Radar, signal: Option<&BeatSignal>) -> Result<Option<Arc<LayoutSamples>>, CommandError> {
         let Some(layout) = self.layout.numbers(radar)? else { return Ok(None) };
-        let alone = || CommandError::Usage(format!("{}: {ENDS_ALONE}, or no --layout", self.input.display()));
+        let alone = || CommandError(format!("{}: {ENDS_ALONE}, or no --layout", self.input.display()));
         Ok(Some(Arc::new(signal.ok_or_else(alone)?.of_layout(&layout))))
     }
 
@@ -246,7 +231,6 @@ impl Args {
     }
 }
 
-/// The sentence on the decibels that Lambda stands for under min-max normalisation.
 fn span(full: &LogMap) -> String {
     let decibels = 20.0 * (full.max() - full.min());
     format!(
@@ -255,31 +239,4 @@ fn span(full: &LogMap) -> String {
     )
 }
 
-/// Reason for which a recording has no map of the whole array.
 const ENDS_ALONE: &str = "the recording has the two ends alone; expected samples of every element";
-
-#[derive(Clone, Copy)]
-enum Output {
-    Archive,
-    /// A GIF of all frames.
-    Animation,
-    Picture(PictureFormat),
-}
-
-impl Output {
-    fn of_path(path: &Path) -> Result<Output, CommandError> {
-        let ends = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
-        if ends("npz") {
-            return Ok(Output::Archive);
-        }
-        if ends("gif") {
-            return Ok(Output::Animation);
-        }
-        PictureFormat::of_path(path).map(Output::Picture).ok_or_else(|| {
-            CommandError::Usage(format!(
-                "{}: can't tell what to write from this name; expected one ending in .npz, .png, .svg or .gif",
-                path.display()
-            ))
-        })
-    }
-}

@@ -44,7 +44,6 @@ fn line(method: &dyn Reconstructor, input: Option<&InputArgs>) -> String {
     format!("  {:<WIDTH$}{told}", method.name())
 }
 
-/// Whether `method` takes samples of this radar, and of a recording, its samples.
 fn takes(method: &dyn Reconstructor, input: &InputArgs) -> Result<(), ReconstructError> {
     match input {
         InputArgs::Scene(file) => method.check_array(&file.radar),

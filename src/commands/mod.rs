@@ -1,7 +1,7 @@
 //! The command line: one subcommand a file.
 //!
 //! A subcommand is a file with `pub struct Args` (clap) and `Args::run(self) -> Result<(), CommandError>`, a variant of
-//! `Command` and a line in `Command::run`. Its own errors travel as [`CommandError::Failed`] unless they need a name here.
+//! `Command` and a line in `Command::run`. Errors of other rooms become a [`CommandError`] by `?`.
 
 mod arguments;
 mod bench;
@@ -40,6 +40,7 @@ mod train;
 mod worsen;
 
 pub use error::CommandError;
+use output::{ends_in, picture_format};
 pub use output::{print, print_json, write_file};
 
 use crate::platform::console;
@@ -61,13 +62,11 @@ struct Cli {
     command: Option<Command>,
 }
 
-/// Environment variables, told below the help.
 const ENVIRONMENT: &str = "Environment:
   APERTURA_SIMD  portable, avx2 or avx512: instructions of simulation, maps and live network (default: the best that the processor has);
                  least squares and burn choose for themselves
   APERTURA_LOG   messages on standard error, such as debug (default: warnings)";
 
-/// Subcommands of the program.
 #[derive(Debug, Subcommand)]
 enum Command {
     Bench(bench::Args),
@@ -130,11 +129,11 @@ pub fn main() -> ExitCode {
     console::join();
     log_to_stderr();
     let cli = Cli::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
-    let result = Simd::requested().map_err(CommandError::failed).and_then(|_| match cli.command {
-        Some(command) => command.run(),
-        None => cli.open.run(),
-    });
-    match result {
+    let run = || {
+        Simd::requested()?;
+        cli.command.map_or_else(|| cli.open.run(), Command::run)
+    };
+    match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             console::say(&format!("error: {error}"));

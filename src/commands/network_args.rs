@@ -27,22 +27,18 @@ pub struct NetworkArgs {
 
 impl NetworkArgs {
     /// Starts the commands of --method-command, which are methods then; their names.
-    /// # Errors
-    /// [`CommandError`] for a command that is no method.
     pub fn start_own(&self) -> Result<Vec<&'static str>, CommandError> {
         self.own.start()
     }
 
     /// The methods called `names`, networks with the chosen weights and backend.
-    /// # Errors
-    /// [`CommandError`] for an unknown name, and for weights that can't be used or that no method of `names` uses.
     pub fn methods(&self, names: &[String]) -> Result<Vec<Arc<dyn Reconstructor>>, CommandError> {
         let own = self.networks(names)?;
         names
             .iter()
             .map(|name| match own.iter().find(|method| method.name() == name.trim()) {
                 Some(method) => Ok(method.clone()),
-                None => methods::by_name(name.trim()).map_err(CommandError::failed),
+                None => Ok(methods::by_name(name.trim())?),
             })
             .collect()
     }
@@ -51,12 +47,12 @@ impl NetworkArgs {
     fn networks(&self, names: &[String]) -> Result<Vec<Arc<dyn Reconstructor>>, CommandError> {
         let mut own = Vec::new();
         if let Some(path) = &self.weights {
-            let method = crate::network::from_file(path, self.backend).map_err(CommandError::failed)?;
+            let method = crate::network::from_file(path, self.backend)?;
             if !names.iter().any(|name| name.trim() == method.name()) {
                 let (file, name) = (path.display(), method.name());
                 let message =
                     format!("{file} holds weights of \"{name}\", which --method doesn't name; add --method {name}");
-                return Err(CommandError::Usage(message));
+                return Err(CommandError(message));
             }
             own.push(method);
         }

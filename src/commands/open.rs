@@ -53,12 +53,12 @@ impl Args {
             Some(path) => InputArgs::load(path)?,
             None => InputArgs::Scene(Box::new(presets::default_scene())),
         };
-        let method = self.method.as_deref().map(methods::by_name).transpose().map_err(CommandError::failed)?;
+        let method = self.method.as_deref().map(methods::by_name).transpose()?;
         let reason = match self.open_window(started) {
             Ok(()) => return Ok(()),
             Err(WindowError::NoWindow(reason)) => reason,
             #[cfg(feature = "app")]
-            Err(WindowError::Failed(error)) => return Err(CommandError::failed(error)),
+            Err(WindowError::Failed(error)) => return Err(error.into()),
         };
         let reason = shortened(&reason);
         console::say(&format!("apertura: {reason}; drawing its panels to a picture instead"));
@@ -69,7 +69,7 @@ impl Args {
     #[cfg(feature = "live")]
     fn networks(&self) -> Result<Vec<&'static str>, CommandError> {
         let name = |path: &PathBuf| methods::add_weights(path).map(|method| method.name());
-        self.weights.iter().map(name).collect::<Result<_, _>>().map_err(CommandError::failed)
+        self.weights.iter().map(name).collect::<Result<_, _>>().map_err(CommandError)
     }
 
     #[cfg(feature = "app")]
@@ -123,7 +123,7 @@ fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Re
     let bytes = match input {
         InputArgs::Scene(file) => {
             let SceneFile { scene, radar } = &**file;
-            let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed).map_err(CommandError::failed)?;
+            let signal = signal::simulate(radar, scene, style.floor, scene.noise_seed)?;
             let method = method.unwrap_or_else(|| methods::preferred_for(radar));
             compose(radar, scene, &signal, method.as_ref(), &style, PictureFormat::Png)
         }
@@ -131,8 +131,7 @@ fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Re
             let method = method.unwrap_or_else(|| methods::preferred_for(&recording.radar));
             compose_recording(recording, method.as_ref(), &style, PictureFormat::Png)
         }
-    }
-    .map_err(CommandError::failed)?;
+    }?;
     let path = free_name(Path::new("."));
     write_file(&path, &bytes)?;
     print(&format!("wrote {}", path.display()))

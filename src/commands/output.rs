@@ -2,6 +2,7 @@
 
 use super::CommandError;
 use crate::files::write_bytes;
+use crate::picture::PictureFormat;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
@@ -11,17 +12,31 @@ pub fn print(text: &str) -> Result<(), CommandError> {
     let mut out = io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(CommandError::File { path: "standard output".into(), source: error })
+            Err(CommandError(format!("standard output: {error}")))
         }
         _ => Ok(()),
     }
 }
 
 pub fn print_json(report: &impl Serialize) -> Result<(), CommandError> {
-    print(&serde_json::to_string_pretty(report).map_err(CommandError::failed)?)
+    print(&serde_json::to_string_pretty(report)?)
+}
+
+/// Whether the name of `path` ends in this way, whatever the case.
+pub fn ends_in(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
+}
+
+/// The kind of picture to write to `path`; `None` where its name ends in one of `others`, which are no pictures.
+pub fn picture_format(path: &Path, others: &[&str], expected: &str) -> Result<Option<PictureFormat>, CommandError> {
+    if others.iter().any(|ending| ends_in(path, ending)) {
+        return Ok(None);
+    }
+    let told = format!("can't tell what to write from this name; expected one ending in {expected}");
+    PictureFormat::of_path(path).map(Some).ok_or_else(|| CommandError(format!("{}: {told}", path.display())))
 }
 
 /// Writes a whole file, or none.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
-    write_bytes(path, bytes).map_err(|source| CommandError::File { path: path.to_owned(), source })
+    write_bytes(path, bytes).map_err(CommandError::on(path))
 }

@@ -23,20 +23,18 @@ pub struct OwnMethodArgs {
 
 impl OwnMethodArgs {
     /// Starts the commands and adds them to the methods; their names.
-    /// # Errors
-    /// [`CommandError`] for a command that is no method, and for a name that another method has.
     pub fn start(&self) -> Result<Vec<&'static str>, CommandError> {
         let mut names = Vec::new();
         for command in &self.method_command {
             let limit = Duration::from_secs_f64(self.method_seconds);
-            let method = start(command.clone(), limit, &Task::default()).map_err(CommandError::failed)?;
+            let method = start(command.clone(), limit, &Task::default())?;
             let name = crate::reconstruct::Reconstructor::name(&method);
             if names.contains(&name) {
                 let message = format!("{command}: another command of --method-command is called \"{name}\" too");
-                return Err(CommandError::Usage(message));
+                return Err(CommandError(message));
             }
             names.push(name);
-            methods::add(Arc::new(method)).map_err(|e| CommandError::Usage(format!("{command}: {e}")))?;
+            methods::add(Arc::new(method)).map_err(|e| CommandError(format!("{command}: {e}")))?;
         }
         Ok(names)
     }

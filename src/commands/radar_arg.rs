@@ -31,7 +31,7 @@ fn load(path: &Path) -> Result<(Radar, Option<f64>), CommandError> {
     if let Some(preset) = path.to_str().and_then(RadarPreset::by_id) {
         return Ok((preset.radar.clone(), None));
     }
-    let wrong = |what: String| CommandError::Usage(format!("{}: {what}", path.display()));
+    let wrong = |what: String| CommandError(format!("{}: {what}", path.display()));
     if path.extension().is_none() && !path.exists() {
         let names: Vec<&str> = presets::ALL.iter().map(|preset| preset.id).collect();
         return Err(wrong(format!(
@@ -39,8 +39,7 @@ fn load(path: &Path) -> Result<(Radar, Option<f64>), CommandError> {
             names.join(", ")
         )));
     }
-    let bytes =
-        read_bounded(path, MAX_FILE_BYTES).map_err(|source| CommandError::File { path: path.to_owned(), source })?;
+    let bytes = read_bounded(path, MAX_FILE_BYTES).map_err(CommandError::on(path))?;
     let text = String::from_utf8(bytes)
         .map_err(|_| wrong("is not text; expected a TOML file with a table [radar]".to_owned()))?;
     radar_of(&text).map_err(wrong)

@@ -2,7 +2,7 @@
 
 use super::arguments::{self, FloorArgs, real, whole};
 use super::input::{ConfigArg, InputArgs, load_recording};
-use super::{CommandError, print, write_file};
+use super::{CommandError, picture_format, print, write_file};
 use crate::maps::Normalisation;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
 use crate::picture::{ColourMap, PictureFormat, compose_range_doppler};
@@ -69,27 +69,18 @@ pub struct Args {
     seed: Option<u64>,
 }
 
-/// Note where the interval of chirps is unknown.
 const UNKNOWN_INTERVAL: &str = "Nothing says the interval of chirps: a step of velocity is shown as 1 m/s. radar.chirp_interval_seconds of a TOML says it.";
 
-/// Chirps where neither the scene nor the command says how many.
 const CHIRPS: usize = 128;
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
-        let is_archive = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz"));
-        let format = PictureFormat::of_path(&self.output);
-        if format.is_none() && !is_archive {
-            let name = self.output.display();
-            return Err(CommandError::Usage(format!(
-                "{name}: can't tell what to write from this name; expected one ending in .npz, .png or .svg"
-            )));
-        }
+        let format = picture_format(&self.output, &["npz"], ".npz, .png or .svg")?;
         if is_recording_at(&self.input) {
             return self.of_recording(format);
         }
         let InputArgs::Scene(file) = InputArgs::load(&self.input)? else {
-            return Err(CommandError::Usage(format!("{}: expected a scene or a raw capture", self.input.display())));
+            return Err(CommandError(format!("{}: expected a scene or a raw capture", self.input.display())));
         };
         let SceneFile { scene, mut radar } = *file;
         if let Some(microseconds) = self.interval {
@@ -98,8 +89,7 @@ impl Args {
         radar.chirps = self.chirps.unwrap_or(if radar.chirps > 1 { radar.chirps } else { CHIRPS });
         let scene = scene.at(self.time);
         let seed = self.seed.unwrap_or(scene.noise_seed);
-        let map = range_doppler(&radar, &scene, self.floor.floor, seed);
-        let map = map.map_err(CommandError::on(&self.input))?;
+        let map = range_doppler(&radar, &scene, self.floor.floor, seed).map_err(CommandError::on(&self.input))?;
         if let Some(sentence) = folded(&radar, &scene) {
             eprintln!("note: {sentence}");
         }
@@ -114,14 +104,14 @@ impl Args {
         ];
         if let Some((name, _)) = told.into_iter().find(|(_, said)| *said) {
             let message = format!("{name} is a scene's; a recording has chirps of its own");
-            return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+            return Err(CommandError(format!("{}: {message}", self.input.display())));
         }
         let recording = load_recording(&self.input, self.capture.config.as_deref())?;
         let Some(origin) = &recording.origin else {
             let message = "counts no loops; one chirp tells no velocity";
-            return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+            return Err(CommandError(format!("{}: {message}", self.input.display())));
         };
-        let FrameLoops { radar, mut samples, knows_interval } = origin.loops().map_err(CommandError::failed)?;
+        let FrameLoops { radar, mut samples, knows_interval } = origin.loops()?;
         if !knows_interval {
             eprintln!("note: {}: {UNKNOWN_INTERVAL}", self.input.display());
         }
@@ -130,12 +120,11 @@ impl Args {
         }
         let map = RangeDopplerMap::of(&radar, samples);
         let (bin, column) = map.peak();
+        let (range, velocity) =
+            (radar.range_of_bin_metres(bin as f64), radar.velocity_of_column_metres_per_second(column as f64));
+        let (chirps, most) = (radar.chirps, radar.unambiguous_velocity_metres_per_second());
         print(&format!(
-            "strongest: {:.2} m, {:.2} m/s away, of {} velocities up to {:.2} m/s either way",
-            radar.range_of_bin_metres(bin as f64),
-            radar.velocity_of_column_metres_per_second(column as f64),
-            radar.chirps,
-            radar.unambiguous_velocity_metres_per_second()
+            "strongest: {range:.2} m, {velocity:.2} m/s away, of {chirps} velocities up to {most:.2} m/s either way"
         ))?;
         self.write(&radar, &Scene::default(), &map, format)
     }
@@ -151,7 +140,7 @@ impl Args {
             None => write_range_doppler(&self.output, radar, scene, map).map_err(CommandError::on(&self.output))?,
             Some(format) => {
                 let bytes = compose_range_doppler(radar, map, self.normalisation, self.colours, format);
-                let bytes = bytes.map_err(CommandError::failed)?;
+                let bytes = bytes?;
                 write_file(&self.output, &bytes)?;
             }
         }

@@ -1,12 +1,11 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
-use super::frames::Frames;
 use super::input::{ConfigArg, load_recording, shared_text};
 use super::layout_arg::LayoutArg;
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
-use super::{CommandError, print};
+use super::{CommandError, ends_in, frames, print};
 use crate::files::kind::kind_at;
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use crate::maps::archive::{add_columns, read_radar};
@@ -71,9 +70,9 @@ pub struct Args {
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
-        if self.output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("npz")) {
+        if !ends_in(&self.output, "npz") {
             let name = self.output.display();
-            return Err(CommandError::Usage(format!("{name}: an archive is written; expected a name ending in .npz")));
+            return Err(CommandError(format!("{name}: an archive is written; expected a name ending in .npz")));
         }
         let own = self.network.start_own()?;
         // A wrong name is reported before any file is read.
@@ -84,21 +83,7 @@ impl Args {
         let input = self.input()?;
         let radar = &input.radar;
         let method = asked.map_or_else(|| self.usual(radar), Ok)?;
-        let answer = match &input.samples {
-            Samples::MagPhase(array) => {
-                let started = Instant::now();
-                let answer = method.reconstruct_mag_phase(radar, array).map_err(CommandError::on(&self.input))?;
-                Answer {
-                    eta: method.eta_of(&answer),
-                    map: answer.lambda.lambda,
-                    milliseconds: started.elapsed().as_secs_f64() * 1e3,
-                    found: Vec::new(),
-                }
-            }
-            Samples::Heard(heard) => self
-                .answer(method.as_ref(), (radar, input.range_metres, input.noise), heard)
-                .map_err(CommandError::on(&self.input))?,
-        };
+        let answer = answer(method.as_ref(), &input).map_err(CommandError::on(&self.input))?;
         self.write(radar, &answer).map_err(CommandError::on(&self.output))?;
         print_echoes(&answer.found)?;
         let doubtful = answer.found.iter().filter(|f| f.confidence.is_some_and(|c| c < DOUBTFUL)).count();
@@ -109,28 +94,24 @@ impl Args {
         print(&format!("wrote {} ({}, {:.1} ms)", self.output.display(), method.name(), answer.milliseconds))
     }
 
-    /// Every frame of a recording, one after another.
     fn of_frames(&self, asked: Option<Arc<dyn Reconstructor>>) -> Result<(), CommandError> {
         if !recording::file::is_recording_at(&self.input) {
             let name = self.input.display();
-            return Err(CommandError::Usage(format!("{name}: expected a recording beside --all-frames")));
+            return Err(CommandError(format!("{name}: expected a recording beside --all-frames")));
         }
-        let frames = Frames::of(load_recording(&self.input, self.capture.config.as_deref())?);
-        let radar = &frames.opened().radar;
+        let opened = load_recording(&self.input, self.capture.config.as_deref())?;
+        let (radar, count) = (&opened.radar, frames::count(&opened));
         let method = asked.map_or_else(|| self.usual(radar), Ok)?;
         let mut found: Vec<(usize, Detection)> = Vec::new();
-        let shape = [frames.count(), radar.samples, radar.elements];
-        let answer = |n: usize| -> Result<Answer, CommandError> {
-            let recording = frames.at(n)?;
-            let heard = self.heard(&recording)?;
-            let Recording { radar, range_metres, .. } = recording;
-            self.answer(method.as_ref(), (&radar, range_metres, NoisePrior::UNKNOWN), &heard)
-                .map_err(CommandError::on(&self.input))
+        let shape = [count, radar.samples, radar.elements];
+        let answer_to = |n: usize| -> Result<Answer, CommandError> {
+            let input = self.of_recording(frames::frame(&opened, n)?)?;
+            answer(method.as_ref(), &input).map_err(CommandError::on(&self.input))
         };
         let written = write_npz(&self.output, |out| {
             let (mut etas, mut times) = (Vec::new(), Vec::new());
             out.add_stack("net_output", shape, |n| {
-                let answer = answer(n).map_err(|e| NpzError::Io(std::io::Error::other(e)))?;
+                let answer = answer_to(n).map_err(|e| NpzError::Io(std::io::Error::other(e.0)))?;
                 etas.push(f64::from(answer.eta));
                 times.push(answer.milliseconds);
                 found.extend(answer.found.into_iter().map(|echo| (n, echo)));
@@ -143,25 +124,22 @@ impl Args {
             add_found(out, &found.iter().map(|(_, echo)| echo))
         });
         written.map_err(CommandError::on(&self.output))?;
-        let (count, echoes) = (frames.count(), found.len());
+        let echoes = found.len();
         print(&format!("wrote {} ({}, {count} frames, {echoes} echoes)", self.output.display(), method.name()))
     }
 
     fn method(&self, name: &str) -> Result<Arc<dyn Reconstructor>, CommandError> {
         let found = self.network.methods(&[name.to_owned()])?;
-        found.into_iter().next().ok_or_else(|| CommandError::Usage("--method takes one name".into()))
+        found.into_iter().next().ok_or_else(|| CommandError("--method takes one name".into()))
     }
 
     fn input(&self) -> Result<Input, CommandError> {
         if recording::file::is_recording_at(&self.input) {
             if self.radar.is_given() {
                 let message = "a recording says which radar made it; leave --radar out";
-                return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+                return Err(CommandError(format!("{}: {message}", self.input.display())));
             }
-            let recording = load_recording(&self.input, self.capture.config.as_deref())?;
-            let samples = Samples::Heard(self.heard(&recording)?);
-            let (radar, range_metres) = (recording.radar, recording.range_metres);
-            return Ok(Input { radar, range_metres, noise: NoisePrior::UNKNOWN, samples });
+            return self.of_recording(load_recording(&self.input, self.capture.config.as_deref())?);
         }
         let (asked, range_metres) = self.radar.load()?;
         let mut archive = Npz::open(&self.input).map_err(|error| self.not_samples(error))?;
@@ -172,21 +150,24 @@ impl Args {
         let own = read_radar(&mut archive).map_err(CommandError::on(&self.input))?;
         if self.radar.is_given() && own.as_ref().is_some_and(|own| *own != asked) {
             let message = "the archive says which radar made it, and --radar names another; leave --radar out";
-            return Err(CommandError::Usage(format!("{}: {message}", self.input.display())));
+            return Err(CommandError(format!("{}: {message}", self.input.display())));
         }
         let radar = own.unwrap_or(asked);
         let layout = self.layout.numbers(&radar)?;
         let ready_made = !archive.has("sub0") && !archive.has("ends") && archive.has("polar_partial_mag_phase");
+        let noise = self.floor.floor.into();
+        let mut request = Request { noise, snapshot_range_metres: range_metres, ..Request::default() };
         let samples = if let Some(layout) = layout {
             let samples = archive.complexes::<Ix2>("heard").map_err(CommandError::on(&self.input))?;
-            Samples::Heard(Heard::layout(&radar, LayoutSamples { layout, samples }))
+            request.heard = Some(Arc::new(LayoutSamples { layout, samples }));
+            Samples::Ends(silence(&radar))
         } else if ready_made {
             let array = archive.reals::<Ix3>("polar_partial_mag_phase").map_err(CommandError::on(&self.input))?;
             Samples::MagPhase(array)
         } else {
-            Samples::Heard(Heard::ends(self.two_ends(&mut archive, &radar)?))
+            Samples::Ends(self.two_ends(&mut archive, &radar)?)
         };
-        Ok(Input { radar, range_metres, noise: self.floor.floor.into(), samples })
+        Ok(Input { radar, request, samples })
     }
 
     fn not_samples(&self, error: NpzError) -> CommandError {
@@ -197,7 +178,7 @@ impl Args {
             Some(kind) if !kind.contains(".npz") => {
                 let expected =
                     "an archive (.npz) with sub0 and sub1, the samples of the two ends, or a recording (.toml)";
-                CommandError::Usage(format!("{} is {kind}; expected {expected}", self.input.display()))
+                CommandError(format!("{} is {kind}; expected {expected}", self.input.display()))
             }
             _ => CommandError::on(&self.input)(error),
         }
@@ -205,7 +186,7 @@ impl Args {
 
     fn is_scene(&self) -> CommandError {
         let name = self.input.display();
-        CommandError::Usage(format!(
+        CommandError(format!(
             "{name} is a scene; expected samples of the two ends: `apertura maps {name} -o IN.npz` computes them, for \
              `apertura reconstruct IN.npz -o OUT.npz`"
         ))
@@ -238,7 +219,6 @@ impl Args {
         Ok(TwoEnds { first, last: last.map_err(CommandError::on(&self.input))? })
     }
 
-    /// The method for an input where none is named.
     fn usual(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
         let layout = self.layout.numbers(radar)?;
         let usual =
@@ -246,31 +226,19 @@ impl Args {
         self.method(usual.name())
     }
 
-    /// Samples of the elements that are looked at.
-    fn heard(&self, recording: &Recording) -> Result<Heard, CommandError> {
-        let Some(layout) = self.layout.numbers(&recording.radar)? else { return Ok(Heard::ends(recording.two_ends())) };
-        let alone = "holds the samples of the two ends alone; leave --layout out";
-        let alone = || CommandError::Usage(format!("{}: the recording {alone}", self.input.display()));
-        let signal = recording.signal().ok_or_else(alone)?;
-        Ok(Heard::layout(&recording.radar, signal.of_layout(&layout)))
-    }
-
-    fn answer(
-        &self,
-        method: &dyn Reconstructor,
-        (radar, snapshot_range_metres, noise): (&Radar, Option<f64>, NoisePrior),
-        Heard { ends, layout }: &Heard,
-    ) -> Result<Answer, ReconstructError> {
-        let request = Request { noise, snapshot_range_metres, heard: layout.clone(), ..Request::default() };
-        let started = Instant::now();
-        let answer = method.reconstruct(radar, ends, &request)?;
-        let milliseconds = started.elapsed().as_secs_f64() * 1e3;
-        let mut found = find(method, radar, ends, &request, &answer)?;
-        if radar.samples == 1 {
-            // The range of a single sample's echoes comes from elsewhere.
-            found.iter_mut().for_each(|f| f.range_metres = snapshot_range_metres.unwrap_or(f64::NAN));
-        }
-        Ok(Answer { eta: method.eta_of(&answer), map: answer.lambda.lambda, milliseconds, found })
+    fn of_recording(&self, recording: Recording) -> Result<Input, CommandError> {
+        let (noise, snapshot_range_metres) = (NoisePrior::UNKNOWN, recording.range_metres);
+        let mut request = Request { noise, snapshot_range_metres, ..Request::default() };
+        let ends = match self.layout.numbers(&recording.radar)? {
+            None => recording.two_ends(),
+            Some(layout) => {
+                let alone = "the recording holds the samples of the two ends alone; leave --layout out";
+                let alone = || CommandError(format!("{}: {alone}", self.input.display()));
+                request.heard = Some(Arc::new(recording.signal().ok_or_else(alone)?.of_layout(&layout)));
+                silence(&recording.radar)
+            }
+        };
+        Ok(Input { radar: recording.radar, request, samples: Samples::Ends(ends) })
     }
 
     fn write(&self, radar: &Radar, answer: &Answer) -> Result<(), NpzError> {
@@ -284,7 +252,6 @@ impl Args {
     }
 }
 
-/// Adds the echoes found, an array for each figure.
 fn add_found<'a>(
     out: &mut NpzOutput<'_>,
     found: &(impl Iterator<Item = &'a Detection> + Clone),
@@ -305,7 +272,6 @@ fn rounded(number: f64, decimals: i32) -> f64 {
 /// Most echoes that are printed; OUT has all.
 const MAX_PRINTED_ECHOES: usize = 10;
 
-/// Prints the strongest echoes, a line each.
 fn print_echoes(found: &[Detection]) -> Result<(), CommandError> {
     for echo in found.iter().take(MAX_PRINTED_ECHOES) {
         let Detection { cos_theta, range_metres, .. } = echo;
@@ -324,43 +290,48 @@ fn print_echoes(found: &[Detection]) -> Result<(), CommandError> {
     }
 }
 
-/// Confidence below which an echo is called doubtful.
 const DOUBTFUL: f64 = 0.5;
 
-/// The input file's samples and radar.
 struct Input {
     radar: Radar,
-    range_metres: Option<f64>,
-    noise: NoisePrior,
+    /// What is known of the samples, and those of a layout.
+    request: Request,
     samples: Samples,
 }
 
 enum Samples {
-    Heard(Heard),
+    /// Those of the two ends; silence where a layout is heard in their place.
+    Ends(TwoEnds),
     MagPhase(Array3<f64>),
 }
 
-/// Samples of the two ends, or of another layout in their place.
-struct Heard {
-    ends: TwoEnds,
-    layout: Option<Arc<LayoutSamples>>,
+fn silence(radar: &Radar) -> TwoEnds {
+    let end = Array2::zeros((radar.end_elements, radar.samples));
+    TwoEnds { first: end.clone(), last: end }
 }
 
-impl Heard {
-    fn ends(ends: TwoEnds) -> Heard {
-        Heard { ends, layout: None }
-    }
-
-    fn layout(radar: &Radar, heard: LayoutSamples) -> Heard {
-        let silence = || Array2::zeros((radar.end_elements, radar.samples));
-        Heard { ends: TwoEnds { first: silence(), last: silence() }, layout: Some(Arc::new(heard)) }
-    }
-}
-
-/// The output file's arrays and figures.
 struct Answer {
     map: Array2<f32>,
     eta: f32,
     milliseconds: f64,
     found: Vec<Detection>,
+}
+
+fn answer(method: &dyn Reconstructor, input: &Input) -> Result<Answer, ReconstructError> {
+    let Input { radar, request, samples } = input;
+    let started = Instant::now();
+    let answer = match samples {
+        Samples::Ends(ends) => method.reconstruct(radar, ends, request)?,
+        Samples::MagPhase(array) => method.reconstruct_mag_phase(radar, array)?,
+    };
+    let milliseconds = started.elapsed().as_secs_f64() * 1e3;
+    let mut found = match samples {
+        Samples::Ends(ends) => find(method, radar, ends, request, &answer)?,
+        Samples::MagPhase(_) => Vec::new(),
+    };
+    if radar.samples == 1 {
+        // The range of a single sample's echoes comes from elsewhere.
+        found.iter_mut().for_each(|f| f.range_metres = request.snapshot_range_metres.unwrap_or(f64::NAN));
+    }
+    Ok(Answer { eta: method.eta_of(&answer), map: answer.lambda.lambda, milliseconds, found })
 }

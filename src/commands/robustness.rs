@@ -85,17 +85,13 @@ pub struct Args {
     output: Option<PathBuf>,
 }
 
-/// Largest tolerance or scale that is taken.
 const MAX_TOLERANCE: f64 = 180.0;
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         self.own.start()?;
-        let methods: Vec<Arc<dyn Reconstructor>> = self
-            .method
-            .iter()
-            .map(|name| methods::by_name(name.trim()).map_err(CommandError::failed))
-            .collect::<Result<_, _>>()?;
+        let methods: Vec<Arc<dyn Reconstructor>> =
+            self.method.iter().map(|name| methods::by_name(name.trim())).collect::<Result<_, _>>()?;
         let (radar, _) = self.radar.load()?;
         let robustness = Robustness {
             layout: self.layout.numbers(&radar)?,
@@ -114,7 +110,7 @@ impl Args {
         };
         let bar = indicatif::ProgressBar::new(u64::from(self.count) * (methods.len() * self.scale.len()) as u64);
         let borrowed: Vec<&dyn Reconstructor> = methods.iter().map(|m| &**m).collect();
-        let rows = robustness.run(&borrowed, &Task::default(), || bar.inc(1)).map_err(CommandError::failed)?;
+        let rows = robustness.run(&borrowed, &Task::default(), || bar.inc(1))?;
         bar.finish_and_clear();
         let csv = csv(&rows);
         let report = Report {
@@ -138,7 +134,6 @@ impl Args {
     }
 }
 
-/// The report, with the settings of its measurements; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     set: String,
@@ -156,25 +151,14 @@ fn csv(rows: &[RobustnessRow]) -> String {
                    detection,false_alarm\n"
             .to_owned();
     for r in rows {
-        let errors = (r.squared_error.mean, r.squared_error.standard_error);
-        let _ = writeln!(
-            out,
-            "{},{},{},{},{},{:.2},{:.2},{:.4},{:.5}",
-            r.method,
-            r.scale,
-            r.gain_decibels,
-            r.phase_degrees,
-            r.position_millimetres,
-            errors.0,
-            errors.1,
-            r.detection.mean,
-            r.false_alarm.mean
-        );
+        let RobustnessRow { method, scale, gain_decibels, phase_degrees, position_millimetres, .. } = r;
+        let _ = write!(out, "{method},{scale},{gain_decibels},{phase_degrees},{position_millimetres},");
+        let Estimate { mean, standard_error, .. } = r.squared_error;
+        let _ = writeln!(out, "{mean:.2},{standard_error:.2},{:.4},{:.5}", r.detection.mean, r.false_alarm.mean);
     }
     out
 }
 
-/// Least squared error that is drawn.
 const MIN_DRAWN_ERROR: f64 = 1.0;
 
 /// Mean less and plus its standard error, with the mean between them; never below [`MIN_DRAWN_ERROR`].
@@ -192,7 +176,6 @@ fn unit(rows: &[RobustnessRow]) -> String {
     })
 }
 
-/// Squared error over the scale of the elements' errors, a line a method.
 fn chart(scenes: u32, rows: &[RobustnessRow], methods: &[Arc<dyn Reconstructor>]) -> LineChart {
     let ends = rows.iter().flat_map(|r| {
         let [low, mean, high] = bar_of(r);

@@ -59,13 +59,13 @@ impl Args {
         let reading = if self.thesis_text { Reading::Text } else { Reading::Program };
         let generator = Generator::new(&radar, reading, Purpose::Test, self.seed);
         if let Some(index) = self.index {
-            file::SceneFormat::of_path(&self.output).map_err(CommandError::failed)?;
+            file::SceneFormat::of_path(&self.output)?;
             let scene = generator.scene(self.set, index);
             let seed = scene.noise_seed;
             if let Some(folder) = self.output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                 make(folder)?;
             }
-            file::save(&self.output, &SceneFile { scene, radar }).map_err(CommandError::failed)?;
+            file::save(&self.output, &SceneFile { scene, radar })?;
             return print(&format!("wrote {} (noise seed {seed})", self.output.display()));
         }
         make(&self.output)?;
@@ -79,7 +79,7 @@ impl Args {
             let name = format!("{prefix}{}-seed{}-{number:04}.{extension}", self.set, self.seed);
             let scene = generator.scene(self.set, number);
             let file = SceneFile { scene, radar: radar.clone() };
-            file::save(&self.output.join(name), &file).map_err(CommandError::failed)?;
+            file::save(&self.output.join(name), &file)?;
         }
         let scenes = counted(count, "scene", "scenes");
         print(&format!("wrote {scenes} of {what}{} to {}", self.set, self.output.display()))
@@ -87,5 +87,5 @@ impl Args {
 }
 
 fn make(folder: &Path) -> Result<(), CommandError> {
-    std::fs::create_dir_all(folder).map_err(|source| CommandError::File { path: folder.to_owned(), source })
+    std::fs::create_dir_all(folder).map_err(CommandError::on(folder))
 }

@@ -67,7 +67,6 @@ pub struct Args {
     json: bool,
 }
 
-/// The report; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
 struct Report {
     method: String,
@@ -78,32 +77,18 @@ struct Report {
     wanted: f64,
     eta: f32,
     #[serde(flatten)]
-    tried: Rates,
+    tried: ThresholdMeans,
     left_to_scenes: f64,
     scenes_within_a_tenth: u64,
-    check: Option<Rates>,
+    check: Option<ThresholdMeans>,
     #[serde(skip)]
     told_left: String,
-}
-
-/// Means over scenes.
-#[derive(Debug, Serialize)]
-struct Rates {
-    scenes: usize,
-    false_alarm: f64,
-    detection: f64,
-}
-
-impl From<ThresholdMeans> for Rates {
-    fn from(ThresholdMeans { scenes, false_alarm, detection }: ThresholdMeans) -> Rates {
-        Rates { scenes, false_alarm, detection }
-    }
 }
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         self.own.start()?;
-        let method = methods::by_name(self.method.trim()).map_err(CommandError::failed)?;
+        let method = methods::by_name(self.method.trim())?;
         let (radar, _) = self.radar.load()?;
         let search = ThresholdSearch {
             layout: self.layout.numbers(&radar)?,
@@ -118,10 +103,10 @@ impl Args {
         let (task, scenes) = (Task::default(), |count: u32| u64::from(count) * self.set.len() as u64);
         let bar = ProgressBar::new(scenes(self.count));
         let step = |_| bar.inc(1);
-        let KeptThreshold { eta, tried } = search.run(&*method, &task, step).map_err(CommandError::failed)?;
+        let KeptThreshold { eta, tried } = search.run(&*method, &task, step)?;
         bar.set_length(scenes(self.count) + scenes(self.check));
         let further = || search.try_further(&*method, eta, self.check, &task, step);
-        let check = (self.check > 0).then(further).transpose().map_err(CommandError::failed)?;
+        let check = (self.check > 0).then(further).transpose()?;
         bar.finish_and_clear();
         let report = Report {
             method: method.name().to_owned(),
@@ -131,40 +116,30 @@ impl Args {
             seed: self.seed,
             wanted: self.false_alarm / 100.0,
             eta,
-            tried: tried.into(),
+            tried,
             left_to_scenes: search.left_to_scenes(tried.scenes),
             scenes_within_a_tenth: search.scenes_within_a_tenth(),
             told_left: search.told_left(tried.scenes),
-            check: check.map(Rates::from),
+            check,
         };
-        match self.json {
-            true => print_json(&report),
-            false => print(&report.text()),
-        }
+        if self.json { print_json(&report) } else { print(&report.text()) }
     }
 }
 
 impl Report {
     fn text(&self) -> String {
-        let tried = |what: &str, tried: &Rates| {
+        let tried = |what: &str, tried: &ThresholdMeans| {
             let scenes = counted(tried.scenes, "scene", "scenes");
             format!("{what} {scenes}: P_FA {:.3} %, P_D {:.2} %", 100.0 * tried.false_alarm, 100.0 * tried.detection)
         };
         let heard = self.layout.as_ref().map_or_else(String::new, |layout| format!(", elements {layout} heard"));
+        let Report { method, floor, eta, .. } = self;
+        let (sets, wanted) = (self.sets.join(", "), 100.0 * self.wanted);
         let mut lines = vec![
-            format!(
-                "threshold of {} over {}{heard}, sets {}: {:.4}",
-                self.method,
-                self.floor,
-                self.sets.join(", "),
-                self.eta
-            ),
+            format!("threshold of {method} over {floor}{heard}, sets {sets}: {eta:.4}"),
             tried("on the", &self.tried),
             self.told_left.clone(),
-            format!(
-                "on a further scene that is drawn like these, P_FA is at most {} % on average",
-                100.0 * self.wanted
-            ),
+            format!("on a further scene that is drawn like these, P_FA is at most {wanted} % on average"),
         ];
         lines.extend(self.check.as_ref().map(|check| tried("checked on further", check)));
         lines.join("\n")

@@ -58,7 +58,6 @@ pub struct Args {
 /// A year.
 const MAX_MINUTES: f64 = 525_600.0;
 
-/// Folder of a run's checkpoint, inside the run's own.
 const CHECKPOINT: &str = "checkpoint";
 
 impl Args {
@@ -87,26 +86,26 @@ impl Args {
 
     fn recipe(&self) -> Result<Recipe, CommandError> {
         if let (None, Some(folder)) = (&self.recipe, &self.resume) {
-            return checkpoint::recipe(&folder.join(CHECKPOINT)).map_err(CommandError::failed);
+            return Ok(checkpoint::recipe(&folder.join(CHECKPOINT))?);
         }
         let name = self.recipe.as_deref().unwrap_or_default();
         if let Some(recipe) = Recipe::shipped(name) {
-            return recipe.map_err(CommandError::failed);
+            return Ok(recipe?);
         }
         let path = PathBuf::from(name);
         if !path.exists() {
             let known: Vec<_> = SHIPPED.iter().map(|(name, _)| *name).collect();
             let message = format!("\"{name}\" is neither a file nor a shipped recipe; shipped: {}", known.join(", "));
-            return Err(CommandError::Usage(message));
+            return Err(CommandError(message));
         }
-        let text = std::fs::read_to_string(&path).map_err(|source| CommandError::File { path, source })?;
-        Recipe::parse(name, &text).map_err(CommandError::failed)
+        let text = std::fs::read_to_string(&path).map_err(CommandError::on(&path))?;
+        Ok(Recipe::parse(name, &text)?)
     }
 }
 
 fn list() -> Result<(), CommandError> {
     for (name, text) in SHIPPED {
-        let recipe = Recipe::parse(name, text).map_err(CommandError::failed)?;
+        let recipe = Recipe::parse(name, text)?;
         print(&format!("{name:20} {}", recipe.description))?;
     }
     Ok(())
@@ -116,24 +115,18 @@ fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &TrainingRun, resume
     let all = recipe.training_scenes().len() / recipe.batch * recipe.epochs as usize;
     let bar = ProgressBar::new(run.max_steps.map_or(all as u64, |most| most.min(all as u64)));
     let style = ProgressStyle::with_template("{bar:30} step {pos}/{len}, {eta} left, {msg}");
-    bar.set_style(style.map_err(CommandError::failed)?);
+    bar.set_style(style?);
     let watch = |p: &RunProgress| {
         bar.set_position(p.step);
         bar.set_message(format!("epoch {}, loss {:.5}", p.epoch, p.loss));
     };
-    let end = train::<S>(recipe, config, run, resume, watch).map_err(CommandError::failed)?;
+    let end = train::<S>(recipe, config, run, resume, watch)?;
     bar.finish_and_clear();
-    print(&format!(
-        "{}, {}, {:.0} minutes, loss {:.5}; wrote {}",
-        counted(end.step, "step", "steps"),
-        counted(end.maps, "map", "maps"),
-        end.seconds / 60.0,
-        end.loss,
-        run.folder.join("weights.safetensors").display()
-    ))
+    let (steps, maps) = (counted(end.step, "step", "steps"), counted(end.maps, "map", "maps"));
+    let (minutes, loss, path) = (end.seconds / 60.0, end.loss, run.folder.join("weights.safetensors"));
+    print(&format!("{steps}, {maps}, {minutes:.0} minutes, loss {loss:.5}; wrote {}", path.display()))
 }
 
-/// The program and the arguments of the training, read once at its start.
 fn origin() -> Origin {
     let program = std::env::current_exe().and_then(|path| sha256::of_file(&path));
     Origin {

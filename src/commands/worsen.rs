@@ -70,12 +70,12 @@ const MAX_MINUTES: f64 = 525_600.0;
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
-        file::SceneFormat::of_path(&self.output).map_err(CommandError::failed)?;
+        file::SceneFormat::of_path(&self.output)?;
         let time = Duration::from_secs_f64(60.0 * self.minutes.unwrap_or(10.0));
-        let SceneFile { scene, radar } = file::load(&self.scene).map_err(CommandError::failed)?;
+        let SceneFile { scene, radar } = file::load(&self.scene)?;
         let own = self.network.start_own()?;
         let methods = self.network.methods(&chosen(self.method.as_slice(), &own, ""))?;
-        let [method] = methods.as_slice() else { return Err(CommandError::Usage("--method takes one name".into())) };
+        let [method] = methods.as_slice() else { return Err(CommandError("--method takes one name".into())) };
         let search = WorseningSearch {
             radar: radar.clone(),
             floor: self.floor.floor,
@@ -96,7 +96,7 @@ impl Args {
         let outcome =
             search.run(&scene, method.as_ref(), &Task::default(), on_try).map_err(CommandError::on(&self.scene))?;
         bar.finish_and_clear();
-        let Some((start, end)) = outcome.ends() else { return Err(CommandError::Usage("nothing was tried".into())) };
+        let Some((start, end)) = outcome.ends() else { return Err(CommandError("nothing was tried".into())) };
         print(&format!("before: {}", self.figures(start)))?;
         let Some(end) = end else { return self.nothing(&outcome) };
         print(&format!("after:  {}", self.figures(end)))?;
@@ -105,11 +105,10 @@ impl Args {
         let notes = format!("{} before, {} after, by {}", self.figures(start), self.figures(end), method.name());
         let name = format!("{} than {}", if self.repair { "Better" } else { "Worse" }, called(&scene, &self.scene));
         let found = SceneFile { scene: Scene { name, notes, ..end.scene.clone() }, radar };
-        file::save(&self.output, &found).map_err(CommandError::failed)?;
+        file::save(&self.output, &found)?;
         print(&format!("wrote {}", self.output.display()))
     }
 
-    /// Number of tries: without bound where only the time is given.
     fn most_tries(&self) -> u32 {
         let otherwise = if self.minutes.is_some() { u32::MAX } else { WorseningSearch::default().tries };
         self.tries.unwrap_or(otherwise)
@@ -144,7 +143,7 @@ impl Args {
             self.within,
             counted(outcome.tries, "try", "tries")
         );
-        Err(CommandError::Usage(message))
+        Err(CommandError(message))
     }
 }
 
@@ -152,7 +151,6 @@ fn called(scene: &Scene, path: &std::path::Path) -> String {
     if scene.name.is_empty() { path.display().to_string() } else { scene.name.clone() }
 }
 
-/// The differences between two scenes of the same objects, a line each.
 fn changes(before: &Scene, after: &Scene) -> String {
     let mut lines = Vec::new();
     for (i, (a, b)) in before.objects.iter().zip(&after.objects).enumerate() {

@@ -139,7 +139,7 @@ impl Campaign {
         }
         let counted = |set: &SceneSet| (set.to_string(), set.len().unwrap_or(self.count));
         let names = methods.iter().map(|method| method.name().to_owned()).collect();
-        let whole = Whole::new(sets.iter().map(counted).collect(), names)?;
+        let whole = Whole::new(sets.iter().map(counted).collect(), names).map_err(CampaignError::Refused)?;
         let of_all = Row {
             version: Some(FORMAT),
             program: env!("CARGO_PKG_VERSION").into(),
@@ -179,8 +179,6 @@ impl Campaign {
 
     /// [`Campaign::run`] without the rows that exist already: `is_done` tells whether the row of a set, scene and method exists. `empty` are
     /// [`Campaign::empty_rows`].
-    /// # Errors
-    /// As [`Campaign::run`].
     pub fn run_rest(
         &self,
         sets: &[SceneSet],
@@ -236,8 +234,6 @@ impl Campaign {
     }
 
     /// Sentences, one a set and method, with the number of scenes whose noise the method was not trained on; none where that number is 0.
-    /// # Errors
-    /// [`CampaignError`] names a scene that can't be read.
     pub fn untrained(&self, sets: &[SceneSet], methods: &[&dyn Reconstructor]) -> Result<Vec<String>, CampaignError> {
         let generator = self.generator();
         let mut told = Vec::new();
@@ -271,11 +267,9 @@ impl Campaign {
     }
 
     /// Reads or generates scene `index` of a set, and simulates it.
-    /// # Errors
-    /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
         let Case { radar, mut scene } = set.case(&self.radar, generator, index)?;
-        let fits = |layout: &Vec<usize>| check_layout(layout, radar.elements).map_err(CampaignError::Layout);
+        let fits = |layout: &Vec<usize>| check_layout(layout, radar.elements).map_err(CampaignError::Refused);
         self.layout.as_ref().map_or(Ok(()), fits)?;
         if let Some(elements) = self.elements.of(&radar, self.seed, index) {
             scene.disturbances.elements = elements;
@@ -288,7 +282,7 @@ impl Campaign {
             set.floor(self.floor),
             self.normalisation,
         )
-        .map_err(|source| CampaignError::Scene { set: set_name(set), index, source })?;
+        .map_err(|error| CampaignError::Refused(format!("scene {index} of {}: {error}", set_name(set))))?;
         trial.footprints();
         Ok(trial)
     }

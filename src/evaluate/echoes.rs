@@ -49,7 +49,7 @@ impl FromStr for EchoCounts {
 }
 
 /// Numbers of echoes that stand out in targets, and of those that an output shows, by classes of strength.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct EchoTally {
     /// Echoes that stand out in the target, one number a class.
     pub there: [usize; CLASSES],

@@ -1,5 +1,6 @@
 //! Distance of found points from their true places, and its Cramér-Rao bound.
 
+use super::estimate::upper_median;
 use super::failure::{Failures, Fate};
 use crate::bounds::cramer_rao;
 use crate::radar::{Layout, Radar};
@@ -16,7 +17,7 @@ pub fn median_offset_metres(scene: &Scene, failures: &Failures, found: &[Reflect
             found.iter().map(|r| (r.x_metres - point.x_metres).hypot(r.y_metres.abs() - point.y_metres.abs()));
         distances.min_by(f64::total_cmp)
     };
-    median(found_points(scene, failures).filter_map(nearest))
+    upper_median(found_points(scene, failures).filter_map(nearest))
 }
 
 /// The median Cramér-Rao bound, in metres, of the same points, each alone before the elements of `layout` over the noise of `floor`; `None`
@@ -34,7 +35,7 @@ pub fn median_bound_metres(
         let bounds = cramer_rao(radar, layout, &[Reflector { x_metres, y_metres, reflectivity }], variance).ok()?;
         bounds.first().map(|bound| bound.position_metres()).filter(|metres| metres.is_finite())
     };
-    median(found_points(scene, failures).filter_map(bound))
+    upper_median(found_points(scene, failures).filter_map(bound))
 }
 
 fn found_points<'a>(scene: &'a Scene, failures: &'a Failures) -> impl Iterator<Item = &'a Point> {
@@ -42,12 +43,6 @@ fn found_points<'a>(scene: &'a Scene, failures: &'a Failures) -> impl Iterator<I
         Object::Point(point) if *fate == Fate::Found => Some(point),
         _ => None,
     })
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }
 
 #[cfg(test)]

@@ -69,16 +69,14 @@ impl Robustness {
         mut on_map: impl FnMut(),
     ) -> Result<Vec<RobustnessRow>, CampaignError> {
         self.kind.check_room(&self.radar)?;
-        self.layout
-            .iter()
-            .try_for_each(|layout| check_layout(layout, self.radar.elements))
-            .map_err(CampaignError::Layout)?;
+        let has_elements = self.layout.iter().try_for_each(|layout| check_layout(layout, self.radar.elements));
+        has_elements.map_err(CampaignError::Refused)?;
         let mut metrics = vec![vec![Vec::new(); self.scales.len()]; methods.len()];
         let request = Request { noise: self.floor.into(), task: task.clone(), ..Request::default() };
         let set = || self.kind.to_string();
         for index in 0..self.count {
-            let (mut trial, signals) =
-                self.trial(index).map_err(|source| CampaignError::Scene { set: set(), index, source })?;
+            let failed = |error: SceneError| CampaignError::Refused(format!("scene {index} of {}: {error}", set()));
+            let (mut trial, signals) = self.trial(index).map_err(failed)?;
             for (i, signal) in signals.into_iter().enumerate() {
                 trial.ends = signal.two_ends(&self.radar);
                 trial.heard = self.layout.as_ref().map(|layout| Arc::new(signal.of_layout(layout)));

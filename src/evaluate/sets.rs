@@ -40,8 +40,6 @@ pub struct Listed {
 
 impl Listed {
     /// A set called `name` in rows.
-    /// # Errors
-    /// [`toml::ser::Error`] for a scene that can't be written as a file.
     pub fn new(name: String, cases: Vec<Case>) -> Result<Listed, toml::ser::Error> {
         let of = |case: &Case| file::to_toml(&SceneFile { scene: case.scene.clone(), radar: case.radar.clone() });
         let texts: Vec<String> = cases.iter().map(of).collect::<Result<_, _>>()?;
@@ -63,26 +61,26 @@ pub struct Folder {
     files: Vec<PathBuf>,
 }
 
-/// A folder without a scene, or one that can't be read.
+/// A folder without a scene, or a folder or file that can't be read.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum FolderError {
-    /// The system's error.
-    #[error("{}: {source}", path.display())]
-    Io { path: PathBuf, source: io::Error },
-    #[error("{}: there is no scene in this folder; expected files ending in .toml or .npz", path.display())]
-    Empty { path: PathBuf },
+#[error("{}: {why}", path.display())]
+pub struct FolderError {
+    path: PathBuf,
+    why: String,
+}
+
+impl FolderError {
+    fn on(path: &Path) -> impl Fn(io::Error) -> FolderError {
+        move |error| FolderError { path: path.to_owned(), why: error.to_string() }
+    }
 }
 
 impl Folder {
     /// Lists the scene files of `path` without reading them. Files whose names begin with a dot are left out.
-    /// # Errors
-    /// [`FolderError`] where there is none.
     pub fn open(path: &Path) -> Result<Folder, FolderError> {
-        let failed = |source| FolderError::Io { path: path.to_owned(), source };
         let mut files = Vec::new();
-        for entry in fs::read_dir(path).map_err(failed)? {
-            let file = entry.map_err(failed)?.path();
+        for entry in fs::read_dir(path).map_err(FolderError::on(path))? {
+            let file = entry.map_err(FolderError::on(path))?.path();
             let hidden = file.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
             if !hidden && file.is_file() && file::SceneFormat::of_path(&file).is_ok() {
                 files.push(file);
@@ -90,20 +88,18 @@ impl Folder {
         }
         files.sort();
         if files.is_empty() {
-            Err(FolderError::Empty { path: path.to_owned() })
+            let why = "there is no scene in this folder; expected files ending in .toml or .npz".to_owned();
+            Err(FolderError { path: path.to_owned(), why })
         } else {
             Ok(Folder { path: path.to_owned(), files })
         }
     }
 
     /// The fingerprint of the files' names and contents, equal only where all are equal.
-    /// # Errors
-    /// [`FolderError::Io`] names the file that can't be read.
     pub fn fingerprint(&self) -> Result<String, FolderError> {
         let mut pieces = Vec::new();
         for path in &self.files {
-            let bytes =
-                read_bounded(path, MAX_FILE_BYTES).map_err(|source| FolderError::Io { path: path.clone(), source })?;
+            let bytes = read_bounded(path, MAX_FILE_BYTES).map_err(FolderError::on(path))?;
             let name = path.file_name().unwrap_or_default().as_encoded_bytes().to_vec();
             pieces.extend([name, sha256::of_pieces([bytes.as_slice()]).into_bytes()]);
         }
@@ -128,8 +124,6 @@ pub struct Case {
 
 impl SceneSet {
     /// The set called `name` in rows: a kind of scenes, or else a folder.
-    /// # Errors
-    /// [`FolderError`] for a folder without a scene.
     pub fn by_name(name: &str) -> Result<SceneSet, FolderError> {
         match name.parse() {
             Ok(kind) => Ok(SceneSet::Generated(kind)),
@@ -152,8 +146,6 @@ impl SceneSet {
     }
 
     /// Scene `index`. `radar` and `generator` are those of generated scenes; a file names its own radar.
-    /// # Errors
-    /// [`SceneFileError`] for a file that can't be read as a scene.
     pub fn case(&self, radar: &Radar, generator: &Generator, index: u32) -> Result<Case, SceneFileError> {
         match self {
             SceneSet::Generated(kind) => Ok(Case { radar: radar.clone(), scene: generator.scene(*kind, index) }),

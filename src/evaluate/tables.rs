@@ -3,6 +3,7 @@
 pub use super::estimate::Estimate;
 
 use super::echoes::EchoTally;
+use super::estimate::upper_median;
 use super::rows::{Column, Row, estimate};
 
 /// The thesis' printed values for one test set (tables 4.1 to 4.3); rates as fractions.
@@ -133,9 +134,7 @@ impl Tally {
 
     /// Median time of one reconstruction, milliseconds; NaN without scenes.
     pub fn median_milliseconds(&self) -> f64 {
-        let mut t: Vec<f64> = self.rows.iter().map(|row| row.milliseconds).collect();
-        t.sort_by(f64::total_cmp);
-        t.get(t.len() / 2).copied().unwrap_or(f64::NAN)
+        upper_median(self.rows.iter().map(|row| row.milliseconds)).unwrap_or(f64::NAN)
     }
 }
 

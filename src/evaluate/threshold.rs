@@ -5,10 +5,10 @@ use super::{Roc, RocPoint, Target, detection_rates};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Radar, check_layout, counted};
 use crate::reconstruct::{ReconstructError, Reconstructor, Request};
-use crate::scene::SceneError;
-use crate::scene::generate::{Generator, Kind, NoRoom, Purpose, Reading};
+use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
+use std::fmt;
 
 /// A search for a threshold on validation scenes of some kinds, after the author's program.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +56,7 @@ pub struct KeptThreshold {
 }
 
 /// Means over scenes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct ThresholdMeans {
     /// Scenes with target cells.
     pub scenes: usize,
@@ -70,24 +70,9 @@ pub struct ThresholdMeans {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum ThresholdError {
-    #[error("a rate of {0} % of false alarms can't be kept; expected more than 0 and less than 100")]
-    Rate(f64),
-    #[error("scenes of the kind \"{0}\" have no echoes, and so no P_D to set against P_FA")]
-    NoEchoes(Kind),
-    #[error("the kind \"{0}\" is given twice; expected each kind once")]
-    GivenTwice(Kind),
-    #[error("{} can't keep a rate of {percent} %; take {fewest} scenes or more", counted(*scenes, "scene", "scenes"))]
-    TooFew { scenes: usize, percent: f64, fewest: f64 },
-    #[error("no threshold keeps {0} % on these scenes")]
-    Unreached(f64),
-    /// The objects of a kind of scenes find no room before the radar.
-    #[error(transparent)]
-    NoRoom(#[from] NoRoom),
+    /// A setting, or a scene that can't be simulated.
     #[error("{0}")]
-    Layout(String),
-    /// A scene can't be simulated.
-    #[error("scene {index} of {kind}: {source}")]
-    Scene { kind: Kind, index: u32, source: SceneError },
+    Refused(String),
     #[error("{method} on scene {index} of {kind}: {source}")]
     Method { method: &'static str, kind: Kind, index: u32, source: ReconstructError },
 }
@@ -113,15 +98,13 @@ impl ThresholdSearch {
         self.check()?;
         let mut roc = Roc::default();
         self.each(method, [0, self.count], task, on_part, |target, output| roc.add(target, output))?;
+        let unreached = || refused(format!("no threshold keeps {} % on these scenes", self.false_alarm_percent));
         let found = roc.keeping_false_alarm(self.rate());
-        let RocPoint { eta, detection, false_alarm } =
-            found.ok_or(ThresholdError::Unreached(self.false_alarm_percent))?;
+        let RocPoint { eta, detection, false_alarm } = found.ok_or_else(unreached)?;
         Ok(KeptThreshold { eta, tried: ThresholdMeans { scenes: roc.scenes(), false_alarm, detection } })
     }
 
     /// The rates at `eta` on `count` further scenes of each kind, which did not choose it.
-    /// # Errors
-    /// As [`ThresholdSearch::run`].
     pub fn try_further(
         &self,
         method: &dyn Reconstructor,
@@ -130,7 +113,7 @@ impl ThresholdSearch {
         task: &Task,
         on_part: impl FnMut(f32),
     ) -> Result<ThresholdMeans, ThresholdError> {
-        let mut sums = ThresholdMeans { scenes: 0, false_alarm: 0.0, detection: 0.0 };
+        let mut sums = ThresholdMeans::default();
         self.each(method, [self.count, count], task, on_part, |target, output| {
             let (detection, false_alarm) = detection_rates(target, output, eta);
             if let Some(detection) = detection {
@@ -145,12 +128,12 @@ impl ThresholdSearch {
 
     /// A sentence with the part of the rate that is left to P_FA on `scenes` scenes, and the number of scenes with nine tenths of it.
     pub fn told_left(&self, scenes: usize) -> String {
+        let (percent, left, fewest) =
+            (self.false_alarm_percent, 100.0 * self.left_to_scenes(scenes), self.scenes_within_a_tenth());
+        let scenes = counted(scenes, "scene", "scenes");
         format!(
-            "for {} % on further scenes, P_FA on {} may be {:.3} %: the rest is the price of few scenes, a tenth or less from {} scenes on",
-            self.false_alarm_percent,
-            counted(scenes, "scene", "scenes"),
-            100.0 * self.left_to_scenes(scenes),
-            self.scenes_within_a_tenth()
+            "for {percent} % on further scenes, P_FA on {scenes} may be {left:.3} %: the rest is the price of few scenes, a tenth or less from {fewest} \
+             scenes on"
         )
     }
 
@@ -169,28 +152,28 @@ impl ThresholdSearch {
     }
 
     /// Checks the settings before any scene is tried.
-    /// # Errors
-    /// [`ThresholdError`] of the first setting that can't be used.
     pub fn check(&self) -> Result<(), ThresholdError> {
         let percent = self.false_alarm_percent;
         if !(percent > 0.0 && percent < 100.0) {
-            return Err(ThresholdError::Rate(percent));
+            let expected = "expected more than 0 and less than 100";
+            return Err(refused(format!("a rate of {percent} % of false alarms can't be kept; {expected}")));
         }
         if self.kinds.contains(&Kind::Noise) {
-            return Err(ThresholdError::NoEchoes(Kind::Noise));
+            let noise = Kind::Noise;
+            return Err(refused(format!(
+                "scenes of the kind \"{noise}\" have no echoes, and so no P_D to set against P_FA"
+            )));
         }
-        self.layout
-            .iter()
-            .try_for_each(|layout| check_layout(layout, self.radar.elements))
-            .map_err(ThresholdError::Layout)?;
-        self.kinds.iter().try_for_each(|kind| kind.check_room(&self.radar))?;
+        self.layout.iter().try_for_each(|layout| check_layout(layout, self.radar.elements)).map_err(refused)?;
+        self.kinds.iter().try_for_each(|kind| kind.check_room(&self.radar)).map_err(refused)?;
         let twice = self.kinds.iter().enumerate().find(|(i, kind)| self.kinds[..*i].contains(kind));
         if let Some((_, kind)) = twice {
-            return Err(ThresholdError::GivenTwice(*kind));
+            return Err(refused(format!("the kind \"{kind}\" is given twice; expected each kind once")));
         }
         let (scenes, fewest) = (self.count as usize * self.kinds.len(), Roc::fewest_scenes(self.rate()));
         if (scenes as f64) < fewest {
-            return Err(ThresholdError::TooFew { scenes, percent, fewest });
+            let scenes = counted(scenes, "scene", "scenes");
+            return Err(refused(format!("{scenes} can't keep a rate of {percent} %; take {fewest} scenes or more")));
         }
         Ok(())
     }
@@ -215,12 +198,9 @@ impl ThresholdSearch {
                 let layout = self.layout.as_deref();
                 let trial =
                     Trial::against(Target::Measured, layout, &self.radar, &scene, self.floor, self.normalisation)
-                        .map_err(|source| ThresholdError::Scene { kind, index, source })?;
-                let answer = trial.ask(method, &request);
-                let answer = answer.map_err(|source| {
-                    let method = method.name();
-                    ThresholdError::Method { method, kind, index, source }
-                })?;
+                        .map_err(|source| refused(format!("scene {index} of {kind}: {source}")))?;
+                let failed = |source| ThresholdError::Method { method: method.name(), kind, index, source };
+                let answer = trial.ask(method, &request).map_err(failed)?;
                 judge(&trial.target, &answer.found.lambda);
                 done += 1.0;
                 on_part(done / total);
@@ -228,6 +208,10 @@ impl ThresholdSearch {
         }
         Ok(())
     }
+}
+
+fn refused(why: impl fmt::Display) -> ThresholdError {
+    ThresholdError::Refused(why.to_string())
 }
 
 #[cfg(test)]

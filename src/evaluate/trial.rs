@@ -29,16 +29,6 @@ pub struct Trial {
     footprints: OnceLock<Footprints>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Facts {
-    objects: usize,
-    reflectors: usize,
-    /// Columns and range bins between the nearest two reflectors of different objects.
-    nearest_pair: Option<[f64; 2]>,
-    min_range_metres: Option<f64>,
-    strongest_over_weakest_db: Option<f64>,
-}
-
 /// A method's answer for a [`Trial`], timed and judged.
 #[derive(Debug, Clone)]
 pub struct TimedAnswer {
@@ -54,15 +44,11 @@ pub struct TimedAnswer {
 
 impl Trial {
     /// Simulates `scene` over `floor`; the scene's seed picks the noise.
-    /// # Errors
-    /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
         Trial::against(Target::Measured, None, radar, scene, floor, normalisation)
     }
 
     /// [`Trial::new`] with another target, and with the samples of the elements of `layout` beside those of the ends.
-    /// # Errors
-    /// As [`Trial::new`].
     pub fn against(
         target: Target,
         layout: Option<&[usize]>,
@@ -89,8 +75,6 @@ impl Trial {
     }
 
     /// Runs `method` on the scene, and judges its answer.
-    /// # Errors
-    /// [`ReconstructError`] of the method.
     pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
         request.task.check()?;
         let start = Instant::now();
@@ -140,7 +124,6 @@ impl Trial {
     /// `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
     pub fn filled(&self, row: Row, answer: &TimedAnswer, false_alarm: f64) -> Row {
         let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
-        let facts = Facts::of(&self.radar, &self.scene);
         let failures = self.failures(answer);
         let has_bodies = self.scene.objects.iter().any(|object| object.body().is_some());
         let echoes = has_bodies.then(|| self.echoes(answer));
@@ -151,14 +134,8 @@ impl Trial {
             false_alarm: answer.metrics.false_alarm,
             detection_at_printed: roc.at_false_alarm(false_alarm).map(|p| p.detection),
             milliseconds: answer.milliseconds,
-            objects: facts.objects,
-            reflectors: facts.reflectors,
             missed: failures.missed(),
             ghosts: failures.ghosts.len(),
-            nearest_pair_columns: facts.nearest_pair.map(|[columns, _]| columns),
-            nearest_pair_bins: facts.nearest_pair.map(|[_, bins]| bins),
-            min_range_metres: facts.min_range_metres,
-            strongest_over_weakest_db: facts.strongest_over_weakest_db,
             found: Some(failures.count(|fate| fate == Fate::Found)),
             merged: Some(failures.count(|fate| matches!(fate, Fate::Merged { .. }))),
             wrong_tooth: Some(failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }))),
@@ -166,12 +143,11 @@ impl Trial {
             within_doubt: answer.found.doubt.as_ref().map(|d| part_within(d, &self.target, &answer.found.lambda)),
             echoes: echoes.map(|tally| EchoCounts(tally.there)),
             echoes_found: echoes.map(|tally| EchoCounts(tally.found)),
-            ..row
+            ..with_facts(row, &self.radar, &self.scene)
         }
     }
 }
 
-/// The map of the exact array.
 fn calibrated(radar: &Radar, scene: &Scene, floor: Floor) -> Result<LogMap, SceneError> {
     let elements = BuiltArray::default();
     let disturbances = Disturbances { elements: elements.clone(), ..scene.disturbances.clone() };
@@ -182,28 +158,29 @@ fn calibrated(radar: &Radar, scene: &Scene, floor: Floor) -> Result<LogMap, Scen
 /// Place of a reflector in a map: (column, range bin), neither rounded, and the index of its object.
 type Spot = ([f64; 2], usize);
 
-impl Facts {
-    fn of(radar: &Radar, scene: &Scene) -> Facts {
-        let of_objects = scene.objects.iter().enumerate().map(|(i, object)| (i, object.marks()));
-        let reflectors: Vec<(usize, Reflector)> =
-            of_objects.flat_map(|(i, all)| all.into_iter().map(move |r| (i, r))).collect();
-        let range = |r: &Reflector| r.x_metres.hypot(r.y_metres);
-        let ranges = reflectors.iter().map(|(_, r)| range(r));
-        // Strengths as seen from the middle of the array; a reflector of reflectivity 0 has no echo.
-        let echoes = reflectors.iter().map(|(_, r)| r.reflectivity.abs() / range(r).powi(2)).filter(|e| *e > 0.0);
-        let (weakest, strongest) = echoes.fold((f64::INFINITY, 0.0f64), |(a, b), e| (a.min(e), b.max(e)));
-        let half = radar.elements as f64 / 2.0;
-        let spots = reflectors.iter().map(|(object, r)| {
-            let cosine = r.x_metres / range(r).max(f64::MIN_POSITIVE);
-            ([half * (1.0 + cosine), range(r) / radar.range_resolution_metres()], *object)
-        });
-        Facts {
-            objects: scene.objects.len(),
-            reflectors: reflectors.len(),
-            nearest_pair: nearest_pair(spots.collect()),
-            min_range_metres: ranges.reduce(f64::min),
-            strongest_over_weakest_db: (strongest > 0.0).then(|| 20.0 * (strongest / weakest).log10()),
-        }
+/// `row` with the figures that are known of a scene before a method answers.
+fn with_facts(row: Row, radar: &Radar, scene: &Scene) -> Row {
+    let of_objects = scene.objects.iter().enumerate().map(|(i, object)| (i, object.marks()));
+    let reflectors: Vec<(usize, Reflector)> =
+        of_objects.flat_map(|(i, all)| all.into_iter().map(move |r| (i, r))).collect();
+    let range = |r: &Reflector| r.x_metres.hypot(r.y_metres);
+    // Strengths as seen from the middle of the array; a reflector of reflectivity 0 has no echo.
+    let echoes = reflectors.iter().map(|(_, r)| r.reflectivity.abs() / range(r).powi(2)).filter(|e| *e > 0.0);
+    let (weakest, strongest) = echoes.fold((f64::INFINITY, 0.0f64), |(a, b), e| (a.min(e), b.max(e)));
+    let half = radar.elements as f64 / 2.0;
+    let spots = reflectors.iter().map(|(object, r)| {
+        let cosine = r.x_metres / range(r).max(f64::MIN_POSITIVE);
+        ([half * (1.0 + cosine), range(r) / radar.range_resolution_metres()], *object)
+    });
+    let (columns, bins) = nearest_pair(spots.collect()).map(|[columns, bins]| (columns, bins)).unzip();
+    Row {
+        objects: scene.objects.len(),
+        reflectors: reflectors.len(),
+        nearest_pair_columns: columns,
+        nearest_pair_bins: bins,
+        min_range_metres: reflectors.iter().map(|(_, r)| range(r)).reduce(f64::min),
+        strongest_over_weakest_db: (strongest > 0.0).then(|| 20.0 * (strongest / weakest).log10()),
+        ..row
     }
 }
 
@@ -238,13 +215,11 @@ mod tests {
         let point = |x: f64, y: f64, reflectivity| Object::Point(Point { reflectivity, ..Point::new(x, y) });
         // At broadside a column is 1 / 512 of the cosine.
         let objects = vec![point(0.0, 100.0 * bin, 1.0), point(0.0, 103.0 * bin, 1.0), point(0.0, 200.0 * bin, 0.04)];
-        let facts = Facts::of(&radar, &Scene { objects, ..Scene::default() });
-        let [columns, bins] = facts.nearest_pair.unwrap();
-        assert!(columns == 0.0 && (bins - 3.0).abs() < 1e-9);
+        let facts = with_facts(Row::default(), &radar, &Scene { objects, ..Scene::default() });
+        assert!(facts.nearest_pair_columns == Some(0.0) && (facts.nearest_pair_bins.unwrap() - 3.0).abs() < 1e-9);
         assert!((facts.min_range_metres.unwrap() - 100.0 * bin).abs() < 1e-9);
         assert!((facts.strongest_over_weakest_db.unwrap() - 40.0).abs() < 1e-9, "a factor of 100 in amplitude");
-        let empty = Facts::of(&radar, &Scene::default());
-        assert_eq!((empty.nearest_pair, empty.min_range_metres, empty.strongest_over_weakest_db), (None, None, None));
+        assert_eq!(with_facts(Row::default(), &radar, &Scene::default()), Row::default());
     }
 
     #[test]

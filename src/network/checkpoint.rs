@@ -53,15 +53,6 @@ pub fn save<S: Student>(
     fs::rename(&next, folder).map_err(file(&next))
 }
 
-/// The progress of a run, and the hash of its weights.
-#[derive(Debug)]
-pub struct Checkpoint {
-    /// The run's progress.
-    pub progress: RunProgress,
-    /// SHA-256 of the file of weights.
-    pub weights_sha256: String,
-}
-
 /// The recipe of the run whose checkpoint is at `folder`.
 /// # Errors
 /// [`TrainError`] when there is no checkpoint or its recipe can't be read.
@@ -82,7 +73,7 @@ fn there(folder: &Path) -> PathBuf {
     if !folder.exists() && old.exists() { old } else { folder.to_owned() }
 }
 
-/// Loads the checkpoint at `folder` into network and optimizer.
+/// Loads the checkpoint at `folder` into network and optimizer; the progress of its run, and the SHA-256 of its weights.
 /// # Errors
 /// [`TrainError`] when it is missing, damaged, or of another recipe.
 pub fn load<S: Student>(
@@ -90,7 +81,7 @@ pub fn load<S: Student>(
     recipe: &Recipe,
     network: &mut S,
     optimizer: &mut ModuleOptimizer,
-) -> Result<Checkpoint, TrainError> {
+) -> Result<(RunProgress, String), TrainError> {
     let folder = there(folder);
     let bad = |reason: String| TrainError::Checkpoint { path: folder.clone(), reason };
     let read = |name: &str| {
@@ -106,5 +97,5 @@ pub fn load<S: Student>(
     let mut store = BurnpackStore::from_file(model);
     network.load_from(&mut store).map_err(|e| bad(format!("{MODEL}: {e}")))?;
     *optimizer = recipe.optimizer.fresh().load(folder.join(OPTIMIZER)).map_err(|e| bad(format!("{OPTIMIZER}: {e}")))?;
-    Ok(Checkpoint { progress, weights_sha256 })
+    Ok((progress, weights_sha256))
 }

@@ -1,6 +1,6 @@
 //! The radars for which a network was trained.
 
-use crate::radar::{Antennas, Carrier, LinkBudget, Radar, WindowFunction};
+use crate::radar::{Carrier, Radar, WindowFunction};
 use crate::reconstruct::ReconstructError;
 use serde::{Deserialize, Serialize};
 
@@ -49,8 +49,6 @@ type Difference = [String; 2];
 
 impl Domain {
     /// The domain as JSON, for an entry of a weight file.
-    /// # Errors
-    /// [`serde_json::Error`] for numbers that JSON can't express.
     pub fn json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string(self)
     }
@@ -66,10 +64,14 @@ impl Domain {
     }
 
     /// Refuses a radar whose samples differ from those that `method` was trained with, since the network's answer for them has no meaning.
-    /// # Errors
-    /// [`ReconstructError::Unusable`] names the quantities that differ.
     pub fn check(&self, method: &'static str, radar: &Radar) -> Result<(), ReconstructError> {
-        refused(method, &self.differences(radar))
+        let differences = self.differences(radar);
+        if differences.is_empty() {
+            return Ok(());
+        }
+        let list = |which: usize| differences.iter().map(|d| d[which].as_str()).collect::<Vec<_>>().join(", ");
+        let reason = format!("the network was trained for {}; this radar has {}", list(0), list(1));
+        Err(ReconstructError::Unusable { method, reason })
     }
 
     /// Samples and elements of the domain's radars.
@@ -88,15 +90,6 @@ impl Domain {
     }
 }
 
-fn refused(method: &'static str, differences: &[Difference]) -> Result<(), ReconstructError> {
-    if differences.is_empty() {
-        return Ok(());
-    }
-    let list = |which: usize| differences.iter().map(|d| d[which].as_str()).collect::<Vec<_>>().join(", ");
-    let reason = format!("the network was trained for {}; this radar has {}", list(0), list(1));
-    Err(ReconstructError::Unusable { method, reason })
-}
-
 pub(super) fn is_alike(trained: &Radar, radar: &Radar) -> bool {
     differences(trained, radar).is_empty()
 }
@@ -106,89 +99,71 @@ pub(super) fn migration_bins(radar: &Radar) -> f64 {
     radar.aperture_metres() / radar.range_resolution_metres()
 }
 
-fn count(trained: usize, found: usize, what: &str) -> Option<Difference> {
-    (trained != found).then(|| [trained, found].map(|n| format!("{n} {what}")))
-}
-
-fn antennas(trained: Option<&Antennas>, found: Option<&Antennas>) -> Option<Difference> {
-    let name = |antennas: Option<&Antennas>| match antennas {
-        None => "one antenna an element",
-        Some(_) => "transmitters apart from receivers",
-    };
-    named(name(trained), name(found))
-}
-
-fn named(trained: &str, found: &str) -> Option<Difference> {
-    (trained != found).then(|| [trained.to_owned(), found.to_owned()])
-}
-
-fn pattern(budget: Option<LinkBudget>) -> String {
-    match budget.and_then(|b| b.half_power_width_degrees) {
-        None => "isotropic elements".to_owned(),
-        Some(degrees) => format!("elements of {degrees:.1} degrees"),
-    }
-}
-
 /// The quantities by which the samples of `radar` differ from those of `trained`. The transmit power only scales samples, and networks normalise
 /// them; the chirp's duration changes no echo, and of a link budget only the pattern of an element does.
 fn differences(trained: &Radar, radar: &Radar) -> Vec<Difference> {
     // A new constant of the radar must be listed here, or networks would accept any value of it.
     let Radar {
         transmit_power_watts: _,
-        bandwidth_hz,
-        carrier_hz,
-        element_spacing_metres,
-        elements,
-        end_elements,
-        samples,
+        bandwidth_hz: _,
+        carrier_hz: _,
+        element_spacing_metres: _,
+        elements: _,
+        end_elements: _,
+        samples: _,
         chirp_seconds: _,
-        carrier,
-        window,
-        antennas: found_antennas,
+        carrier: _,
+        window: _,
+        antennas: _,
         focus_off_line: _,
         // Networks get samples of one chirp.
         chirps: _,
         chirp_interval_seconds: _,
-        budget,
+        budget: _,
     } = radar;
-    let convention = |carrier: &Carrier| match carrier {
-        Carrier::OneWay => "the thesis' convention (one-way carrier)",
-        Carrier::TwoWay => "the physical convention (two-way carrier)",
+    let named = |name: &dyn Fn(&Radar) -> String| {
+        let [trained, found] = [trained, radar].map(name);
+        (trained != found).then_some([trained, found])
     };
-    let quantity = |a: f64, b: f64, scale: f64, what: &str| {
+    let quantity = |of: fn(&Radar) -> f64, scale: f64, what: &str| {
+        let [a, b] = [trained, radar].map(of);
         ((a - b).abs() > SAME_QUANTITY * a.abs()).then(|| [a, b].map(|v| format!("{:.4} {what}", v / scale)))
     };
-    [
-        count(trained.elements, *elements, "elements"),
-        count(trained.end_elements, *end_elements, "elements an end"),
-        count(trained.samples, *samples, "samples"),
-        quantity(trained.bandwidth_hz, *bandwidth_hz, 1e9, "GHz of bandwidth"),
-        quantity(trained.carrier_hz, *carrier_hz, 1e9, "GHz of carrier"),
-        quantity(trained.element_spacing_metres, *element_spacing_metres, 1e-3, "mm between elements"),
-        named(convention(&trained.carrier), convention(carrier)),
-        antennas(trained.antennas.as_ref(), found_antennas.as_ref()),
-        named(&pattern(trained.budget), &pattern(*budget)),
-        named(&format!("the {} window", trained.window.name()), &format!("the {} window", window.name())),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let convention = |radar: &Radar| match radar.carrier {
+        Carrier::OneWay => "the thesis' convention (one-way carrier)".to_owned(),
+        Carrier::TwoWay => "the physical convention (two-way carrier)".to_owned(),
+    };
+    let antennas = |radar: &Radar| match radar.antennas {
+        None => "one antenna an element".to_owned(),
+        Some(_) => "transmitters apart from receivers".to_owned(),
+    };
+    let pattern = |radar: &Radar| match radar.budget.and_then(|b| b.half_power_width_degrees) {
+        None => "isotropic elements".to_owned(),
+        Some(degrees) => format!("elements of {degrees:.1} degrees"),
+    };
+    let found = [
+        named(&|radar| format!("{} elements", radar.elements)),
+        named(&|radar| format!("{} elements an end", radar.end_elements)),
+        named(&|radar| format!("{} samples", radar.samples)),
+        quantity(|radar| radar.bandwidth_hz, 1e9, "GHz of bandwidth"),
+        quantity(|radar| radar.carrier_hz, 1e9, "GHz of carrier"),
+        quantity(|radar| radar.element_spacing_metres, 1e-3, "mm between elements"),
+        named(&convention),
+        named(&antennas),
+        named(&pattern),
+        named(&|radar| format!("the {} window", radar.window.name())),
+    ];
+    found.into_iter().flatten().collect()
 }
 
 impl RadarLimits {
     pub(super) fn has_shape(&self, radar: &Radar) -> bool {
-        self.shape(radar).next().is_none()
+        self.of_shape(radar).is_empty()
     }
 
-    fn shape(&self, radar: &Radar) -> impl Iterator<Item = Difference> {
-        [
-            count(self.elements, radar.elements, "elements"),
-            count(self.end_elements, radar.end_elements, "elements an end"),
-            count(self.samples, radar.samples, "samples"),
-            antennas(None, radar.antennas.as_ref()),
-        ]
-        .into_iter()
-        .flatten()
+    fn of_shape(&self, radar: &Radar) -> Vec<Difference> {
+        let RadarLimits { elements, end_elements, samples, .. } = *self;
+        differences(&Radar { elements, end_elements, samples, antennas: None, ..radar.clone() }, radar)
     }
 
     fn differences(&self, radar: &Radar) -> Vec<Difference> {
@@ -215,13 +190,14 @@ impl RadarLimits {
         let windows = || self.windows.iter().map(|window| window.name()).collect::<Vec<_>>().join(" or ");
         let window =
             (!known).then(|| [format!("the {} window", windows()), format!("the {} window", radar.window.name())]);
-        self.shape(radar).chain(quantities.into_iter().flatten()).chain(window).collect()
+        self.of_shape(radar).into_iter().chain(quantities.into_iter().flatten()).chain(window).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radar::LinkBudget;
 
     fn refused(domain: &Domain, radar: &Radar) -> Option<String> {
         domain.check("live", radar).err().map(|e| e.to_string())

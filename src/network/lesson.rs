@@ -7,18 +7,15 @@ use crate::scene::generate::{Generator, Kind};
 use crate::signal::{Floor, simulate};
 
 /// Input and target of scene `number` of a kind over the thesis' floor.
-/// # Errors
-/// [`TrainError`] when the scene can't be simulated or the network can't use its samples.
 pub(super) fn lesson<S: Student>(
-    tables: &S::Tables,
     config: &S::Config,
     run: &TrainingRun,
     generator: &Generator,
     (kind, number): (Kind, u32),
-) -> Result<(S::Input, RangeAngleMap), TrainError> {
+) -> Result<(Vec<f32>, RangeAngleMap), TrainError> {
     let scene = generator.scene(kind, number);
     let signal = simulate(&run.radar, &scene, Floor::Thesis, scene.noise_seed)?;
-    let input = S::input(tables, &signal.two_ends(&run.radar))?;
+    let input = S::input(config, &run.radar, &signal.two_ends(&run.radar))?;
     Ok((input, S::target(config, &run.radar, &signal)))
 }
 
@@ -45,8 +42,7 @@ mod tests {
         };
         let config = ThesisConfig { filters: 2, levels: 2, alive_output: false };
         let generator = |purpose| Generator::new(&radar, Reading::Program, purpose, 0);
-        let target =
-            |purpose| lesson::<Thesis>(&radar, &config, &run, &generator(purpose), (Kind::Set1, 0)).unwrap().1.lambda;
+        let target = |purpose| lesson::<Thesis>(&config, &run, &generator(purpose), (Kind::Set1, 0)).unwrap().1.lambda;
         let scene = |purpose| generator(purpose).scene(Kind::Set1, 0);
         assert_ne!(scene(Purpose::Training).noise_seed, scene(Purpose::Test).noise_seed);
         let plain = simulate(&radar, &scene(Purpose::Training), Floor::Thesis, 0).unwrap();

@@ -1,19 +1,4 @@
 //! Neural networks: the thesis' own encoder-decoder and its failing U-Net on burn, and the live network.
-//!
-//! | file | content |
-//! |---|---|
-//! | [`live`] | the live network: features, examples to train on, an engine without a framework |
-//! | [`kernels`] | convolutions of both engines without a framework |
-//! | [`floors`] | floors of training scenes |
-//! | [`domain`] | the radars for which a network was trained |
-//! | [`thesis`], [`thesis_method`] | the thesis' encoder-decoder, and its reconstruction method |
-//! | [`thesis_engine`] | its forward pass without a framework |
-//! | [`unet`] | the thesis' failing U-Net |
-//! | [`recipe`], [`losses`], [`students`], `lesson` | training: recipes, losses, networks that can be trained, and examples |
-//! | [`run`], [`train`], [`checkpoint`] | a run with its origin, its steps, and its continuation |
-//! | [`validation`] | figures of the trained network, and its weight file |
-//! | [`backend`] | the choice of burn's backend |
-//! | [`weights`], [`pytorch`] | weight files: checking, loading, provenance |
 
 #[cfg(feature = "network")]
 pub mod backend;
@@ -100,8 +85,7 @@ const MAX_LIVE_BYTES: u64 = 256 << 20;
 /// [`WeightsError`] when the file can't be read, is damaged, or belongs to another network.
 pub fn live_from_file(path: &Path, name: &str) -> Result<LiveMethod, WeightsError> {
     let file = path.display().to_string();
-    let bytes = read_bounded(path, MAX_LIVE_BYTES)
-        .map_err(|e| WeightsError::File { file: file.clone(), reason: e.to_string() })?;
+    let bytes = read_bounded(path, MAX_LIVE_BYTES).map_err(|e| WeightsError(format!("{file}: {e}")))?;
     LiveMethod::named(WeightFile::parse(&file, &bytes)?, name)
 }
 

@@ -13,7 +13,6 @@ const MAX_BYTES: u64 = 1 << 30;
 /// Keys under which programs keep a network's state beside an optimizer's and others; the first that a file has counts. `training` keeps the
 /// averaged weights, which it validates and ships, under `average`.
 const STATES: [&str; 6] = ["average", "model_state_dict", "state_dict", "model", "network", "net"];
-/// Deepest nesting of states that is searched.
 const DEEPEST_STATE: usize = 4;
 /// Prefix that `DataParallel` adds to every name.
 const PARALLEL: &str = "module.";
@@ -22,11 +21,10 @@ const PARALLEL: &str = "module.";
 /// which holds a `state_dict` by itself or under one of [`STATES`], translated. Names, shapes and types stay PyTorch's; tensors beside
 /// the state, such as an optimizer's, are not read.
 /// # Errors
-/// [`WeightsError::File`] when it can't be read, [`WeightsError::NotPytorch`] when it is neither.
+/// [`WeightsError`] when it can't be read, and when it is neither.
 pub fn read_weights(path: &Path) -> Result<Vec<u8>, WeightsError> {
-    let file = path.display().to_string();
-    let bytes =
-        read_bounded(path, MAX_BYTES).map_err(|e| WeightsError::File { file: file.clone(), reason: e.to_string() })?;
+    let file = path.display();
+    let bytes = read_bounded(path, MAX_BYTES).map_err(|e| WeightsError(format!("{file}: {e}")))?;
     if !is_pytorch(&bytes) {
         return Ok(bytes);
     }
@@ -35,7 +33,7 @@ pub fn read_weights(path: &Path) -> Result<Vec<u8>, WeightsError> {
             Some(kind) if !kind.contains("PyTorch") => format!("it is {kind} ({reason})"),
             _ => reason,
         };
-        WeightsError::NotPytorch { file, reason }
+        WeightsError(format!("{file} is not a PyTorch checkpoint that can be read: {reason}"))
     })
 }
 

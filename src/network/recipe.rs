@@ -7,6 +7,7 @@ use crate::scene::generate::Kind;
 use burn::optim::momentum::MomentumConfig;
 use burn::optim::{AdamWConfig, ModuleOptimizer, SgdConfig};
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 
 /// The recipes that come with the program, by name.
 pub const SHIPPED: [(&str, &str); 5] = [
@@ -128,17 +129,17 @@ pub struct Recipe {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum RecipeError {
-    /// The text is not TOML, or misses or misspells an entry.
     #[error("recipe {name}: {reason}")]
     Syntax { name: String, reason: String },
     #[error("recipe {name}: {field} is {value}; expected {expected}")]
     Value { name: String, field: &'static str, value: String, expected: &'static str },
 }
 
+/// Whether an entry is usable, its name, its value, and what was expected.
+type Check<'a> = (bool, &'static str, &'a dyn Display, &'static str);
+
 impl Recipe {
     /// Reads and checks a recipe; messages call it `name`.
-    /// # Errors
-    /// [`RecipeError`] names the fault and its place.
     pub fn parse(name: &str, text: &str) -> Result<Recipe, RecipeError> {
         let syntax = |e: toml::de::Error| RecipeError::Syntax { name: name.to_owned(), reason: e.to_string() };
         let recipe: Recipe = toml::from_str(text).map_err(syntax)?;
@@ -152,65 +153,46 @@ impl Recipe {
     }
 
     fn check(&self, name: &str) -> Result<(), RecipeError> {
-        let fail = |field, value: &dyn std::fmt::Display, expected| {
-            Err(RecipeError::Value { name: name.to_owned(), field, value: value.to_string(), expected })
-        };
         let rate = self.optimizer.learning_rate();
-        if !(rate.is_finite() && rate > 0.0) {
-            return fail("optimizer.learning_rate", &rate, "a number above 0");
-        }
-        if let Optimizer::Sgd { momentum, .. } = self.optimizer
-            && !(0.0..1.0).contains(&momentum)
-        {
-            return fail("optimizer.momentum", &momentum, "at least 0 and below 1");
-        }
-        if !(1..=MAX_BATCH).contains(&self.batch) {
-            return fail("batch", &self.batch, "1 to 1024");
-        }
-        if self.epochs == 0 {
-            return fail("epochs", &self.epochs, "at least 1");
-        }
-        if let Some(decay) = &self.decay {
-            if decay.epochs == 0 {
-                return fail("decay.epochs", &decay.epochs, "at least 1");
-            }
-            if !(decay.factor > 0.0 && decay.factor <= 1.0) {
-                return fail("decay.factor", &decay.factor, "above 0 and at most 1");
-            }
-        }
+        let momentum = if let Optimizer::Sgd { momentum, .. } = self.optimizer { momentum } else { 0.0 };
+        let decay = self.decay.clone().unwrap_or(Decay { epochs: 1, factor: 1.0 });
         let total: u64 = self.scenes.iter().map(|s| u64::from(s.count)).sum();
-        if total < self.batch as u64 {
-            return fail("scenes", &total, "at least one batch in all");
-        }
-        if total > MAX_SCENES {
-            return fail("scenes", &total, "at most 10000000 in all");
-        }
-        if self.validation_scenes > MAX_VALIDATION_SCENES {
-            return fail("validation_scenes", &self.validation_scenes, "at most 10000");
-        }
-        self.check_network(name)
-    }
-
-    fn check_network(&self, name: &str) -> Result<(), RecipeError> {
-        let fail = |field, value: &dyn std::fmt::Display, expected| {
-            Err(RecipeError::Value { name: name.to_owned(), field, value: value.to_string(), expected })
+        let of_all: Vec<Check> = vec![
+            (rate.is_finite() && rate > 0.0, "optimizer.learning_rate", &rate, "a number above 0"),
+            ((0.0..1.0).contains(&momentum), "optimizer.momentum", &momentum, "at least 0 and below 1"),
+            ((1..=MAX_BATCH).contains(&self.batch), "batch", &self.batch, "1 to 1024"),
+            (self.epochs > 0, "epochs", &self.epochs, "at least 1"),
+            (decay.epochs > 0, "decay.epochs", &decay.epochs, "at least 1"),
+            (decay.factor > 0.0 && decay.factor <= 1.0, "decay.factor", &decay.factor, "above 0 and at most 1"),
+            (total >= self.batch as u64, "scenes", &total, "at least one batch in all"),
+            (total <= MAX_SCENES, "scenes", &total, "at most 10000000 in all"),
+            (
+                self.validation_scenes <= MAX_VALIDATION_SCENES,
+                "validation_scenes",
+                &self.validation_scenes,
+                "at most 10000",
+            ),
+        ];
+        let of_network: Vec<Check> = match &self.network {
+            Network::Thesis(ThesisConfig { filters, levels, .. }) => vec![
+                ((1..=ThesisConfig::MAX_FILTERS).contains(filters), "network.filters", filters, "1 to 512"),
+                ((1..=ThesisConfig::MAX_LEVELS).contains(levels), "network.levels", levels, "1 to 8"),
+            ],
+            Network::Unet(UnetConfig { channels, levels, rows }) => {
+                let is_halved = (1..=6).contains(levels) && *rows > 0 && rows.is_multiple_of(1 << *levels);
+                vec![
+                    ((1..=6).contains(levels), "network.levels", levels, "1 to 6"),
+                    ((1..=256).contains(channels), "network.channels", channels, "1 to 256"),
+                    (is_halved, "network.rows", rows, "a multiple of two to the levels"),
+                    (*rows <= 1 << 12, "network.rows", rows, "at most 4096"),
+                ]
+            }
         };
-        match &self.network {
-            Network::Thesis(c) if !(1..=ThesisConfig::MAX_FILTERS).contains(&c.filters) => {
-                fail("network.filters", &c.filters, "1 to 512")
+        match of_all.into_iter().chain(of_network).find(|(is_usable, ..)| !is_usable) {
+            None => Ok(()),
+            Some((_, field, value, expected)) => {
+                Err(RecipeError::Value { name: name.to_owned(), field, value: value.to_string(), expected })
             }
-            Network::Thesis(c) if !(1..=ThesisConfig::MAX_LEVELS).contains(&c.levels) => {
-                fail("network.levels", &c.levels, "1 to 8")
-            }
-            Network::Unet(c) if !(1..=6).contains(&c.levels) => fail("network.levels", &c.levels, "1 to 6"),
-            Network::Unet(c) if c.channels == 0 || c.channels > 256 => {
-                fail("network.channels", &c.channels, "1 to 256")
-            }
-            Network::Unet(c) if c.rows == 0 || !c.rows.is_multiple_of(1 << c.levels) => {
-                fail("network.rows", &c.rows, "a multiple of two to the levels")
-            }
-            Network::Unet(c) if c.rows > 1 << 12 => fail("network.rows", &c.rows, "at most 4096"),
-            _ => Ok(()),
         }
     }
 

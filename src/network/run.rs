@@ -108,10 +108,8 @@ impl RunProgress {
 pub enum TrainError {
     #[error("the loss is {loss} at step {step}; the last good checkpoint is kept in {}", folder.display())]
     NotFinite { step: u64, loss: f32, folder: PathBuf },
-    /// A file could not be read or written.
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: std::io::Error },
-    /// A checkpoint can't be used.
     #[error("checkpoint {}: {reason}", path.display())]
     Checkpoint { path: PathBuf, reason: String },
     #[error(
@@ -120,13 +118,10 @@ pub enum TrainError {
     Untrained,
     #[error("{} already holds a run; go on with it with --resume, or choose another folder", folder.display())]
     Occupied { folder: PathBuf },
-    /// The recipe is unsound.
     #[error(transparent)]
     Recipe(#[from] RecipeError),
-    /// A scene could not be simulated.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The network can't use the samples.
     #[error(transparent)]
     Input(#[from] ReconstructError),
 }

@@ -4,6 +4,8 @@
 //! train 16 filters (3.4 GMAC). Follows the author's published program: dilation 2, circular padding on both axes, no bias.
 
 use super::weights::{WeightFile, WeightsError};
+use crate::radar::Radar;
+use crate::reconstruct::ReconstructError;
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig, ConvTranspose2d, ConvTranspose2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig};
@@ -38,6 +40,18 @@ impl ThesisConfig {
     pub const MAX_FILTERS: usize = 512;
     /// Most levels that a recipe or a weight file may ask for.
     pub const MAX_LEVELS: usize = 8;
+
+    /// Refuses a radar whose maps can't be halved so often.
+    pub(super) fn check(&self, radar: &Radar) -> Result<(), ReconstructError> {
+        let (Radar { samples, elements, .. }, levels, least) = (radar, self.levels, 1 << self.levels);
+        if samples.is_multiple_of(least) && elements.is_multiple_of(least) {
+            return Ok(());
+        }
+        let reason = format!(
+            "{levels} levels need samples and elements to be multiples of {least}; the radar has {samples} and {elements}"
+        );
+        Err(ReconstructError::Unusable { method: "thesis", reason })
+    }
 }
 
 /// Mean and standard deviation of the output at the start of training with [`ThesisConfig::alive_output`].
@@ -118,34 +132,23 @@ impl Thesis {
     }
 
     /// Width and depth of the network whose weights `file` holds.
-    /// # Errors
-    /// [`WeightsError::Tensor`] when it lacks the first convolution.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
         let stage = |level: usize| {
             let ours = file.shape(&format!("down.layer3x3.{level}.conv.weight"));
             ours.or_else(|| file.shape(&format!("{FIRST_TOWER}.{level}.0.weight")))
         };
-        match stage(0) {
+        let problem = match stage(0) {
             Some(&[filters @ 1..=ThesisConfig::MAX_FILTERS, ..]) => {
                 let levels = (0..ThesisConfig::MAX_LEVELS).take_while(|level| stage(*level).is_some()).count();
-                Ok(ThesisConfig { filters, levels, alive_output: false })
+                return Ok(ThesisConfig { filters, levels, alive_output: false });
             }
-            Some(shape) => Err(WeightsError::Tensor {
-                file: file.name().to_owned(),
-                tensor: format!("{FIRST_TOWER}.0.0.weight"),
-                problem: format!("has shape {shape:?}; expected 1 to {} filters", ThesisConfig::MAX_FILTERS),
-            }),
-            _ => Err(WeightsError::Tensor {
-                file: file.name().to_owned(),
-                tensor: format!("{FIRST_TOWER}.0.0.weight"),
-                problem: "is missing; expected the state of the thesis' network".into(),
-            }),
-        }
+            Some(shape) => format!("has shape {shape:?}; expected 1 to {} filters", ThesisConfig::MAX_FILTERS),
+            None => "is missing; expected the state of the thesis' network".to_owned(),
+        };
+        Err(file.bad_tensor(&format!("{FIRST_TOWER}.0.0.weight"), problem))
     }
 
     /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()`.
-    /// # Errors
-    /// [`WeightsError`] when they don't fit.
     pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
         let mut network = Thesis::new(config, device);
         let renamed = Thesis::in_our_names(file)?;
@@ -154,8 +157,6 @@ impl Thesis {
     }
 
     /// The bytes of `file` with this crate's tensor names. The names of the author's PyTorch program are replaced.
-    /// # Errors
-    /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {
         file.renamed(from_pytorch)
     }
@@ -174,31 +175,30 @@ impl Thesis {
     /// The same function with every batch norm folded into its convolution, for inference.
     pub fn folded(mut self) -> Self {
         let Down { layer3x3, layer5x5 } = &mut self.down;
-        for stage in layer3x3.iter_mut().chain(layer5x5) {
-            if let Some(norm) = stage.norm.take() {
-                let (scale, shift) = scale_and_shift(&norm);
-                let filters = scale.dims()[0];
-                stage.conv.weight = stage.conv.weight.clone().map(|w| w * scale.clone().reshape([filters, 1, 1, 1]));
-                stage.conv.bias = Some(Param::from_tensor(shift));
-            }
+        for DownStage { conv, norm } in layer3x3.iter_mut().chain(layer5x5) {
+            fold(norm, &mut conv.weight, &mut conv.bias, 0);
         }
-        for stage in &mut self.up.upconv {
-            if let Some(norm) = stage.norm.take() {
-                let (scale, shift) = scale_and_shift(&norm);
-                let filters = scale.dims()[0];
-                stage.conv.weight = stage.conv.weight.clone().map(|w| w * scale.clone().reshape([1, filters, 1, 1]));
-                stage.conv.bias = Some(Param::from_tensor(shift));
-            }
+        for UpStage { conv, norm } in &mut self.up.upconv {
+            fold(norm, &mut conv.weight, &mut conv.bias, 1);
         }
         self
     }
 }
 
-/// Scale and shift of a batch norm at inference: `x * scale + shift` for each channel.
-fn scale_and_shift(norm: &BatchNorm) -> (Tensor<1>, Tensor<1>) {
+/// Takes a batch norm into the weights and the bias of the convolution before it, whose dimension `outputs` has the norm's channels.
+fn fold(
+    norm: &mut Option<BatchNorm>,
+    weight: &mut Param<Tensor<4>>,
+    bias: &mut Option<Param<Tensor<1>>>,
+    outputs: usize,
+) {
+    let Some(norm) = norm.take() else { return };
     let scale = norm.gamma.val() / (norm.running_var.value() + norm.epsilon).sqrt();
     let shift = norm.beta.val() - norm.running_mean.value() * scale.clone();
-    (scale, shift)
+    let mut shape = [1; 4];
+    shape[outputs] = scale.dims()[0];
+    *weight = weight.clone().map(|w| w * scale.reshape(shape));
+    *bias = Some(Param::from_tensor(shift));
 }
 
 impl DownStage {

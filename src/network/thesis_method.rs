@@ -2,7 +2,7 @@
 
 use super::backend::Backend;
 use super::domain::Domain;
-use super::students::{Student, ThesisInput, UnetTables};
+use super::students::Student;
 use super::thesis::{Thesis, ThesisConfig};
 use super::thesis_engine::{Buffers, ThesisEngine};
 use super::unet::{Unet, UnetConfig};
@@ -39,14 +39,17 @@ pub struct ThesisMethod {
 #[derive(Debug)]
 enum Network {
     /// The engine without a framework, with idle buffers. A pass takes them out and holds no lock while it runs: another thread makes its own.
-    Engine { engine: Box<ThesisEngine>, idle: Mutex<Option<Buffers>> },
-    /// burn, on a requested backend.
-    Burn { network: Box<Thesis>, device: Device },
+    Engine {
+        engine: Box<ThesisEngine>,
+        idle: Mutex<Option<Buffers>>,
+    },
+    Burn {
+        network: Box<Thesis>,
+        device: Device,
+    },
 }
 
 impl Network {
-    /// # Errors
-    /// [`WeightsError`] when `file` doesn't fit `config`.
     fn new(file: &WeightFile, config: &ThesisConfig, backend: Backend) -> Result<Self, WeightsError> {
         if backend == Backend::default() {
             let engine = Box::new(ThesisEngine::new(file, config)?);
@@ -56,15 +59,19 @@ impl Network {
         Ok(Network::Burn { network: Box::new(Thesis::load(file, config, &device)?.folded()), device })
     }
 
-    fn estimate(&self, method: &'static str, input: ThesisInput) -> Result<Array2<f32>, ReconstructError> {
-        let size = input.size;
+    fn estimate(
+        &self,
+        method: &'static str,
+        input: Vec<f32>,
+        size: [usize; 2],
+    ) -> Result<Array2<f32>, ReconstructError> {
         match self {
             Network::Engine { engine, idle } => {
                 // A panic elsewhere can't spoil the buffers: every pass overwrites them.
                 let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
                 let taken = idle().take();
                 let mut buffers = taken.unwrap_or_default();
-                let map = engine.forward(&input.values, size, &mut buffers);
+                let map = engine.forward(&input, size, &mut buffers);
                 *idle() = Some(buffers);
                 in_rows(method, size, map)
             }
@@ -76,8 +83,6 @@ impl Network {
 impl ThesisMethod {
     /// The network with the weights of `file`, whose tensors decide its width and depth: computed by an engine of its own, or by burn where
     /// `backend` is not the default one.
-    /// # Errors
-    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(
         name: &'static str,
         description: &'static str,
@@ -97,18 +102,10 @@ impl ThesisMethod {
     }
 
     /// The network's answer, with the threshold of its cells that equals the method's own after stretching to [0, 1].
-    fn answer(&self, input: ThesisInput) -> Result<Reconstruction, ReconstructError> {
-        let map = self.network.estimate(self.name, input)?;
-        let eta = unstretched(&map, self.eta);
-        Ok(Reconstruction {
-            lambda: Thesis::finish(map),
-            reflectors: Vec::new(),
-            confidences: Vec::new(),
-            eta: Some(eta),
-            least_eta: None,
-            doubt: None,
-            trace: Vec::new(),
-        })
+    fn answer(&self, input: Vec<f32>, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
+        let map = self.network.estimate(self.name, input, [radar.samples, radar.elements])?;
+        let eta = Some(unstretched(&map, self.eta));
+        Ok(Reconstruction { eta, ..Reconstruction::of_map(Thesis::finish(map)) })
     }
 }
 
@@ -138,22 +135,18 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
-        let tables = Thesis::tables(&self.config, radar)?;
-        let input = Thesis::input(&tables, ends)?;
-        self.answer(input)
+        self.answer(Thesis::input(&self.config, radar, ends)?, radar)
     }
 
     fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
         self.trained.check(self.name, radar)?;
-        let size = [radar.samples, radar.elements];
-        let expected = vec![4, size[0], size[1]];
+        let expected = vec![Thesis::CHANNELS, radar.samples, radar.elements];
         if input.shape() != expected {
             let what = "polar_partial_mag_phase";
             return Err(ReconstructError::Shape { what, found: input.shape().to_vec(), expected });
         }
-        Thesis::tables(&self.config, radar)?;
-        let input = ThesisInput { values: input.iter().map(|v| *v as f32).collect(), size };
-        self.answer(input)
+        self.config.check(radar)?;
+        self.answer(input.iter().map(|v| *v as f32).collect(), radar)
     }
 }
 
@@ -169,8 +162,6 @@ pub struct UnetMethod {
 
 impl UnetMethod {
     /// The shipped architecture with the weights of `file`, computed by `backend`.
-    /// # Errors
-    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
         let device = backend.device();
         let config = UnetConfig::default();
@@ -208,23 +199,20 @@ impl Reconstructor for UnetMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
-        let tables: UnetTables = Unet::tables(&self.config, radar)?;
-        let rows = self.config.rows;
-        let cartesian =
-            estimate(&self.network, Unet::NAME, Unet::input(&tables, ends)?, [rows, 2 * rows], &self.device)?;
-        let lambda = to_polar(radar, &cartesian);
-        Ok(Reconstruction::of_map(RangeAngleMap { lambda }))
+        let (rows, input) = (self.config.rows, Unet::input(&self.config, radar, ends)?);
+        let cartesian = estimate(&self.network, Unet::NAME, input, [rows, 2 * rows], &self.device)?;
+        Ok(Reconstruction::of_map(RangeAngleMap { lambda: to_polar(radar, &cartesian) }))
     }
 }
 
 fn estimate<S: Student>(
     network: &S,
     method: &'static str,
-    input: S::Input,
+    input: Vec<f32>,
     size: [usize; 2],
     device: &Device,
 ) -> Result<Array2<f32>, ReconstructError> {
-    let values = network.estimate(&[input], device).into_data().try_into_vec::<f32>();
+    let values = network.estimate(&[input], size, device).into_data().try_into_vec::<f32>();
     let unusable = |e| ReconstructError::Unusable { method, reason: format!("its output can't be read: {e:?}") };
     in_rows(method, size, values.map_err(unusable)?)
 }
@@ -275,25 +263,24 @@ mod tests {
         let method = ThesisMethod::new("thesis", "", file(), Backend::default()).unwrap();
         let (config, device) = (method.config, Backend::default().device());
         let burn = Thesis::load(&file(), &config, &device).unwrap().folded();
-        let input = Thesis::input(&radar, &ends).unwrap();
+        let input = Thesis::input(&config, &radar, &ends).unwrap();
+        let size = [radar.samples, radar.elements];
         let live = crate::network::live().unwrap();
         let request = Request::default();
         println!("{}, milliseconds a map:", crate::signal::simd::Simd::chosen());
         let print = |what: &str, work: &mut dyn FnMut()| println!("{what}: {:.1}", milliseconds(work));
         print("burn's forward pass", &mut || {
-            drop(black_box(burn.estimate(std::slice::from_ref(&input), &device).into_data()))
+            drop(black_box(burn.estimate(std::slice::from_ref(&input), size, &device).into_data()))
         });
-        print("the engine's", &mut || drop(black_box(method.network.estimate("thesis", input.clone()).unwrap())));
-        print("the network's input", &mut || drop(black_box(Thesis::input(&radar, &ends).unwrap())));
+        print("the engine's", &mut || drop(black_box(method.network.estimate("thesis", input.clone(), size).unwrap())));
+        print("the network's input", &mut || drop(black_box(Thesis::input(&config, &radar, &ends).unwrap())));
         print("thesis", &mut || drop(black_box(method.estimate(&radar, &ends, &request).unwrap())));
         print("live", &mut || drop(black_box(live.estimate(&radar, &ends, &request).unwrap())));
         let full = ThesisConfig::default();
         let bytes = crate::network::thesis_engine::tests::random(full.filters, full.levels);
         let wide = ThesisEngine::new(&WeightFile::parse("random", &bytes).unwrap(), &full).unwrap();
         let mut buffers = Buffers::default();
-        print("the engine's with 64 filters", &mut || {
-            drop(black_box(wide.forward(&input.values, input.size, &mut buffers)))
-        });
+        print("the engine's with 64 filters", &mut || drop(black_box(wide.forward(&input, size, &mut buffers))));
     }
 
     #[test]

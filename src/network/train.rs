@@ -16,13 +16,11 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Trains by `recipe` until the recipe or a limit of `run` ends it. `resume` continues from the folder's checkpoint; `watch` is called after every step.
-/// # Errors
-/// [`TrainError`].
 pub fn train<S: Student>(
     recipe: &Recipe,
     config: &S::Config,
@@ -39,8 +37,8 @@ pub fn train<S: Student>(
         return Err(TrainError::Occupied { folder: run.folder.clone() });
     }
     fs::create_dir_all(&run.folder).map_err(file(&run.folder))?;
-    let mut log = Log::open(&run.folder.join("log.csv"), resume)?;
-    let tables = S::tables(config, &run.radar)?;
+    let log_path = run.folder.join("log.csv");
+    let mut log = log_at(&log_path, resume).map_err(file(&log_path))?;
     let generator = Generator::new(&run.radar, Reading::Program, Purpose::Training, recipe.seed);
     let began = Instant::now();
     let before = progress.seconds;
@@ -58,7 +56,7 @@ pub fn train<S: Student>(
             }
             let lessons = scenes
                 .par_iter()
-                .map(|scene| lesson::<S>(&tables, config, run, &generator, *scene))
+                .map(|scene| lesson::<S>(config, run, &generator, *scene))
                 .collect::<Result<Vec<_>, _>>()?;
             let (moved, loss) = step(network, &mut optimizer, recipe, rate, lessons, &device);
             if !loss.is_finite() {
@@ -67,7 +65,9 @@ pub fn train<S: Student>(
             network = moved;
             let now = began.elapsed().as_secs_f64();
             progress.step(scenes.len() as u64, f64::from(loss), [before + now, now]);
-            log.line(&progress, f64::from(loss), rate)?;
+            let RunProgress { step, epoch, maps, seconds, loss: smoothed, .. } = &progress;
+            writeln!(log, "{step},{epoch},{maps},{seconds:.1},{rate},{},{smoothed}", f64::from(loss))
+                .map_err(file(&log_path))?;
             watch(&progress);
             if saved.elapsed() >= run.checkpoint_every {
                 checkpoint::save(&at, recipe, &network, &optimizer, &progress)?;
@@ -100,8 +100,8 @@ fn begin<S: Student>(
     let mut optimizer = recipe.optimizer.fresh();
     let (mut progress, mut initial) = (RunProgress::default(), None);
     if let Some(folder) = from {
-        let found = checkpoint::load(folder, recipe, &mut network, &mut optimizer)?;
-        (progress, initial) = (found.progress, Some(found.weights_sha256));
+        let (found, weights_sha256) = checkpoint::load(folder, recipe, &mut network, &mut optimizer)?;
+        (progress, initial) = (found, Some(weights_sha256));
     }
     progress.parts.push(RunPart::starting(run, initial, progress.maps));
     Ok((network, optimizer, progress))
@@ -112,12 +112,14 @@ fn step<S: Student>(
     optimizer: &mut ModuleOptimizer,
     recipe: &Recipe,
     rate: f64,
-    lessons: Vec<(S::Input, RangeAngleMap)>,
+    lessons: Vec<(Vec<f32>, RangeAngleMap)>,
     device: &Device,
 ) -> (S, f32) {
     let (inputs, targets): (Vec<_>, Vec<_>) = lessons.into_iter().unzip();
-    let output = network.estimate(&inputs, device);
-    let loss = recipe.loss.of(output, target_tensor(&targets, device));
+    let (rows, columns) = targets.first().map_or((0, 0), |target| target.lambda.dim());
+    let cells: Vec<f32> = targets.iter().flat_map(|target| &target.lambda).copied().collect();
+    let target = Tensor::from_data(TensorData::new(cells, [targets.len(), rows, columns]), device);
+    let loss = recipe.loss.of(network.estimate(&inputs, [rows, columns], device), target);
     let value = loss.clone().into_scalar::<f32>();
     if !value.is_finite() {
         return (network, value);
@@ -134,40 +136,14 @@ fn epoch_order(recipe: &Recipe, epoch: u32) -> Vec<(Kind, u32)> {
     order
 }
 
-fn target_tensor(targets: &[RangeAngleMap], device: &Device) -> Tensor<3> {
-    let (rows, columns) = targets.first().map_or((0, 0), |t| t.lambda.dim());
-    let values: Vec<f32> = targets.iter().flat_map(|t| t.lambda.iter().copied()).collect();
-    Tensor::from_data(TensorData::new(values, vec![targets.len(), rows, columns]), device)
-}
-
-struct Log {
-    path: PathBuf,
-    file: fs::File,
-}
-
-impl Log {
-    fn open(path: &Path, append: bool) -> Result<Self, TrainError> {
-        let exists = append && path.exists();
-        let mut options = fs::OpenOptions::new();
-        if exists {
-            options.append(true)
-        } else {
-            options.write(true).create(true).truncate(true)
-        };
-        let mut log = Log { path: path.to_owned(), file: options.open(path).map_err(file(path))? };
-        if !exists {
-            log.write("step,epoch,maps,seconds,learning_rate,loss,smoothed_loss")?;
-        }
-        Ok(log)
+/// The log at `path`, to which lines are added; without `goes_on` it begins anew.
+fn log_at(path: &Path, goes_on: bool) -> io::Result<fs::File> {
+    if goes_on && path.exists() {
+        return fs::OpenOptions::new().append(true).open(path);
     }
-
-    fn line(&mut self, p: &RunProgress, loss: f64, rate: f64) -> Result<(), TrainError> {
-        self.write(&format!("{},{},{},{:.1},{rate},{loss},{}", p.step, p.epoch, p.maps, p.seconds, p.loss))
-    }
-
-    fn write(&mut self, line: &str) -> Result<(), TrainError> {
-        writeln!(self.file, "{line}").map_err(file(&self.path))
-    }
+    let mut log = fs::File::create(path)?;
+    writeln!(log, "step,epoch,maps,seconds,learning_rate,loss,smoothed_loss")?;
+    Ok(log)
 }
 
 #[cfg(test)]

@@ -39,18 +39,18 @@ pub fn validate<S: Student>(
     config: &S::Config,
     run: &TrainingRun,
 ) -> Result<Validation, TrainError> {
-    let tables = S::tables(config, &run.radar)?;
     let generator = Generator::new(&run.radar, Reading::Program, Purpose::Validation, recipe.seed);
     let mut sets = Vec::new();
     let mut rocs = Vec::new();
     for (kind, printed) in Kind::TEST_SETS.into_iter().zip(PRINTED_EXPERIMENT_2) {
         let (mut roc, mut error) = (Roc::default(), 0.0);
         for number in 0..recipe.validation_scenes {
-            let (input, target) = lesson::<S>(&tables, config, run, &generator, (kind, number))?;
-            let estimate = network.estimate(&[input], &run.device);
+            let (input, target) = lesson::<S>(config, run, &generator, (kind, number))?;
+            let (rows, columns) = target.lambda.dim();
+            let estimate = network.estimate(&[input], [rows, columns], &run.device);
             let values = estimate.into_data().try_into_vec::<f32>().unwrap_or_default();
-            let answer = Array2::from_shape_vec(target.lambda.dim(), values)
-                .unwrap_or_else(|_| Array2::zeros(target.lambda.dim()));
+            let answer = Array2::from_shape_vec((rows, columns), values);
+            let answer = answer.unwrap_or_else(|_| Array2::zeros((rows, columns)));
             error += squared_error(&target, &S::finish(answer.clone())) / f64::from(recipe.validation_scenes);
             roc.add(&target, &S::thresholded(answer));
         }
@@ -61,12 +61,10 @@ pub fn validate<S: Student>(
     let sets_count = rocs.len() as f64;
     let wanted = PRINTED_EXPERIMENT_2.iter().map(|p| p.false_alarm).sum::<f64>() / sets_count;
     let mut alarms: Vec<(f32, f64)> = Vec::new();
-    for roc in &rocs {
-        for (i, point) in roc.points().enumerate() {
-            match alarms.get_mut(i) {
-                Some(sum) => sum.1 += point.false_alarm / sets_count,
-                None => alarms.push((point.eta, point.false_alarm / sets_count)),
-            }
+    for (i, point) in rocs.iter().flat_map(|roc| roc.points().enumerate()) {
+        match alarms.get_mut(i) {
+            Some(sum) => sum.1 += point.false_alarm / sets_count,
+            None => alarms.push((point.eta, point.false_alarm / sets_count)),
         }
     }
     let eta = alarms.iter().filter(|a| a.1 <= wanted).map(|a| a.0).fold(1.0, f32::min);
@@ -74,8 +72,6 @@ pub fn validate<S: Student>(
 }
 
 /// Writes `weights.safetensors`, with its record, into the run's folder.
-/// # Errors
-/// [`TrainError::Checkpoint`] when it can't be written.
 pub fn export<S: Student>(
     network: &S,
     recipe: &Recipe,
@@ -84,19 +80,14 @@ pub fn export<S: Student>(
     validation: &Validation,
 ) -> Result<(), TrainError> {
     let path = run.folder.join("weights.safetensors");
-    let figures: Vec<String> = validation
-        .sets
-        .iter()
-        .enumerate()
-        .map(|(i, set)| {
-            let detection = set.detection.map_or("-".into(), |d| format!("{:.2} %", 100.0 * d));
-            format!("set {}: SE {:.0}, P_D {detection} at the thesis' P_FA", i + 1, set.squared_error)
-        })
-        .collect();
-    let parts = serde_json::to_string(&progress.parts)
-        .map_err(|e| TrainError::Checkpoint { path: path.clone(), reason: e.to_string() })?;
-    let radar = serde_json::to_string(&run.radar)
-        .map_err(|e| TrainError::Checkpoint { path: path.clone(), reason: e.to_string() })?;
+    let bad = |reason: String| TrainError::Checkpoint { path: path.clone(), reason };
+    let of_set = |(number, set): (u32, &SetFigures)| {
+        let detection = set.detection.map_or("-".into(), |d| format!("{:.2} %", 100.0 * d));
+        format!("set {number}: SE {:.0}, P_D {detection} at the thesis' P_FA", set.squared_error)
+    };
+    let figures: Vec<String> = (1..).zip(&validation.sets).map(of_set).collect();
+    let parts = serde_json::to_string(&progress.parts).map_err(|e| bad(e.to_string()))?;
+    let radar = serde_json::to_string(&run.radar).map_err(|e| bad(e.to_string()))?;
     let mut store = SafetensorsStore::from_file(&path)
         .overwrite(true)
         .with_to_adapter(BurnToPyTorchAdapter)
@@ -117,5 +108,5 @@ pub fn export<S: Student>(
             "validation",
             format!("{}: {}", counted(recipe.validation_scenes, "scene a set", "scenes a set"), figures.join("; ")),
         );
-    network.save_into(&mut store).map_err(|e| TrainError::Checkpoint { path, reason: e.to_string() })
+    network.save_into(&mut store).map_err(|e| bad(e.to_string()))
 }

@@ -6,10 +6,10 @@
 use super::domain::Domain;
 use crate::files::kind::kind_of;
 use crate::files::sha256;
-use crate::radar::Radar;
 use crate::reconstruct::Weights;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt;
 
 #[cfg(feature = "network")]
 mod load;
@@ -46,21 +46,13 @@ impl Provenance {
     }
 
     /// The radars of the training scenes: those of the entry [`DOMAIN_ENTRY`], else that of [`RADAR_ENTRY`], else table 3.1's.
-    /// # Errors
-    /// [`WeightsError::Store`] where an entry of the file `name` can't be read.
     pub fn domain(&self, name: &str) -> Result<Domain, WeightsError> {
-        let wrong = |entry: &str, what: &str, error: serde_json::Error| WeightsError::Store {
-            file: name.to_owned(),
-            reason: format!("its entry \"{entry}\" is no {what}: {error}"),
+        let (entry, what, read) = match (self.get(DOMAIN_ENTRY), self.get(RADAR_ENTRY)) {
+            ("", "") => return Ok(Domain::Radar(Box::default())),
+            ("", text) => (RADAR_ENTRY, "radar", serde_json::from_str(text).map(Domain::Radar)),
+            (text, _) => (DOMAIN_ENTRY, "domain of radars", serde_json::from_str(text)),
         };
-        match (self.get(DOMAIN_ENTRY), self.get(RADAR_ENTRY)) {
-            ("", "") => Ok(Domain::Radar(Box::default())),
-            ("", text) => {
-                let radar: Radar = serde_json::from_str(text).map_err(|error| wrong(RADAR_ENTRY, "radar", error))?;
-                Ok(Domain::Radar(Box::new(radar)))
-            }
-            (text, _) => serde_json::from_str(text).map_err(|error| wrong(DOMAIN_ENTRY, "domain of radars", error)),
-        }
+        read.map_err(|error| WeightsError(format!("{name}: its entry \"{entry}\" is no {what}: {error}")))
     }
 
     /// The detection threshold chosen on validation scenes, if the file names a valid one.
@@ -69,32 +61,10 @@ impl Provenance {
     }
 }
 
-/// The reason why a weight file can't be used.
+/// The reason why a weight file can't be used; the message names the file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum WeightsError {
-    /// The file could not be read.
-    #[error("{file}: {reason}")]
-    File { file: String, reason: String },
-    #[error("{file} is not a safetensors file: {reason}")]
-    NotSafetensors { file: String, reason: String },
-    #[error("{file} is not a PyTorch checkpoint that can be read: {reason}")]
-    NotPytorch { file: String, reason: String },
-    #[error("{file} holds {found} bytes; its header promises {expected}; it was truncated or damaged")]
-    Length { file: String, found: usize, expected: usize },
-    #[error("{file} holds weights of \"{found}\"; expected \"{expected}\"")]
-    Foreign { file: String, found: String, expected: String },
-    #[error(
-        "{file} names no network, and none of ours has its tensors ({count} in all): {names}; expected weights of {expected}"
-    )]
-    Unknown { file: String, count: usize, names: String, expected: String },
-    /// A tensor that the network needs is missing, or one it doesn't know is there.
-    #[error("{file}: tensor \"{tensor}\" {problem}")]
-    Tensor { file: String, tensor: String, problem: String },
-    /// The store refused the file.
-    #[error("{file}: {reason}")]
-    Store { file: String, reason: String },
-}
+#[error("{0}")]
+pub struct WeightsError(pub(super) String);
 
 #[derive(Debug, Serialize, Deserialize)]
 struct TensorHeader {
@@ -133,10 +103,13 @@ pub struct WeightFile<'a> {
 
 impl<'a> WeightFile<'a> {
     /// Reads the header of the file called `name` and checks its length.
-    /// # Errors
-    /// [`WeightsError`] when it isn't safetensors or is cut short.
     pub fn parse(name: &str, bytes: &'a [u8]) -> Result<Self, WeightsError> {
-        let not = |reason: &str| WeightsError::NotSafetensors { file: name.to_owned(), reason: reason.to_owned() };
+        let not = |reason: &str| not_safetensors(name, reason);
+        let cut = |expected: usize| {
+            let found = bytes.len();
+            let told = format!("holds {found} bytes; its header promises {expected}; it was truncated or damaged");
+            WeightsError(format!("{name} {told}"))
+        };
         let (length, rest) = bytes.split_first_chunk::<8>().ok_or_else(|| not("it is shorter than 8 bytes"))?;
         let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
         if length > 16 << 20 {
@@ -144,7 +117,7 @@ impl<'a> WeightFile<'a> {
             return Err(not(&kind_of(bytes).map_or("its first 8 bytes are no header length".to_owned(), told)));
         }
         if length > rest.len() {
-            return Err(WeightsError::Length { file: name.to_owned(), found: bytes.len(), expected: length + 8 });
+            return Err(cut(length + 8));
         }
         let (header, data) = rest.split_at(length);
         let header: BTreeMap<String, serde_json::Value> =
@@ -166,21 +139,27 @@ impl<'a> WeightFile<'a> {
         }
         let end = tensors.values().map(|t| t.data_offsets[1]).max().unwrap_or(0);
         if end != data.len() {
-            let expected = end.saturating_add(length + 8);
-            return Err(WeightsError::Length { file: name.to_owned(), found: bytes.len(), expected });
+            return Err(cut(end.saturating_add(length + 8)));
         }
-        if let Some((tensor, _)) = tensors.iter().find(|(_, t)| !t.is_sound(data.len())) {
-            let problem = "has a place in the file that does not fit its shape and type".to_owned();
-            return Err(WeightsError::Tensor { file: name.to_owned(), tensor: tensor.clone(), problem });
-        }
-        Ok(WeightFile {
+        let file = WeightFile {
             name: name.to_owned(),
             #[cfg(feature = "network")]
             bytes,
             data,
             tensors,
             provenance,
-        })
+        };
+        match file.tensors.iter().find(|(_, t)| !t.is_sound(data.len())) {
+            Some((name, _)) => {
+                Err(file.bad_tensor(name, "has a place in the file that does not fit its shape and type"))
+            }
+            None => Ok(file),
+        }
+    }
+
+    /// The error of a tensor that the network needs and the file lacks, that the network doesn't know, or that it can't use.
+    pub(super) fn bad_tensor(&self, tensor: &str, problem: impl fmt::Display) -> WeightsError {
+        WeightsError(format!("{}: tensor \"{tensor}\" {problem}", self.name))
     }
 
     /// Shape of the tensor called `name`, if the file has it.
@@ -189,13 +168,10 @@ impl<'a> WeightFile<'a> {
     }
 
     /// Checks that `known` accepts every tensor of the file.
-    /// # Errors
-    /// [`WeightsError::Tensor`] names the first that it doesn't accept.
     #[cfg(feature = "network")]
     pub(super) fn expect_only(&self, known: impl Fn(&str) -> bool) -> Result<(), WeightsError> {
-        let Some(tensor) = self.tensors.keys().find(|name| !known(name)) else { return Ok(()) };
-        let (file, problem) = (self.name.clone(), "is not part of this network".to_owned());
-        Err(WeightsError::Tensor { file, tensor: tensor.clone(), problem })
+        let unknown = self.tensors.keys().find(|name| !known(name));
+        unknown.map_or(Ok(()), |name| Err(self.bad_tensor(name, "is not part of this network")))
     }
 
     /// Name of the network that the weights belong to, as recorded in the file; "" without a record.
@@ -209,8 +185,6 @@ impl<'a> WeightFile<'a> {
     }
 
     /// The file with other tensor names.
-    /// # Errors
-    /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {
         let tensors = self.tensors.iter().map(|(name, tensor)| (rename(name), tensor)).collect();
         write(&self.name, &tensors, &self.provenance, self.data)
@@ -222,30 +196,24 @@ impl<'a> WeightFile<'a> {
         Weights { sha256: sha256::short(&sha256).to_owned(), optimiser: self.provenance.optimiser().to_owned() }
     }
 
-    /// Checks that the file holds weights of `network`.
-    /// # Errors
-    /// [`WeightsError::Foreign`] otherwise.
-    pub fn expect_network(&self, network: &str) -> Result<(), WeightsError> {
-        match self.network() {
-            found if found == network => Ok(()),
-            _ => Err(self.foreign(network)),
-        }
-    }
-
     /// The error of a file that holds other weights than those of `expected`.
     pub fn foreign(&self, expected: &str) -> WeightsError {
-        let (file, expected) = (self.name.clone(), expected.to_owned());
-        match self.network() {
-            "" => {
-                let mut names: Vec<&str> = self.tensors.keys().map(String::as_str).take(3).collect();
-                if self.tensors.len() > names.len() {
-                    names.push("...");
-                }
-                WeightsError::Unknown { file, count: self.tensors.len(), names: names.join(", "), expected }
-            }
-            found => WeightsError::Foreign { file, found: found.to_owned(), expected },
+        let (file, count) = (&self.name, self.tensors.len());
+        if !self.network().is_empty() {
+            let found = self.network();
+            return WeightsError(format!("{file} holds weights of \"{found}\"; expected \"{expected}\""));
         }
+        let more = (count > 3).then_some("...");
+        let names: Vec<&str> = self.tensors.keys().map(String::as_str).take(3).chain(more).collect();
+        WeightsError(format!(
+            "{file} names no network, and none of ours has its tensors ({count} in all): {}; expected weights of {expected}",
+            names.join(", ")
+        ))
     }
+}
+
+fn not_safetensors(file: &str, reason: impl fmt::Display) -> WeightsError {
+    WeightsError(format!("{file} is not a safetensors file: {reason}"))
 }
 
 /// A safetensors file called `name`, for messages, with the header of `tensors` before their `data`.
@@ -255,7 +223,7 @@ fn write<T: Serialize>(
     record: &Provenance,
     data: &[u8],
 ) -> Result<Vec<u8>, WeightsError> {
-    let not = |e: serde_json::Error| WeightsError::NotSafetensors { file: name.to_owned(), reason: e.to_string() };
+    let not = |e: serde_json::Error| not_safetensors(name, e);
     let mut header = serde_json::Map::new();
     for (name, tensor) in tensors {
         header.insert(name.clone(), serde_json::to_value(tensor).map_err(not)?);
@@ -269,15 +237,16 @@ fn write<T: Serialize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::live::LiveConfig;
     use crate::network::live::engine::LiveEngine;
+    use crate::network::live::size::LiveSize;
+    use crate::radar::Radar;
 
     const WEIGHTS: &[u8] = include_bytes!("../../tests/data/live_reference_weights.safetensors");
 
     fn load(bytes: &[u8], channels: [usize; 4]) -> Result<(), WeightsError> {
-        let config = LiveConfig { channels, blocks: [1, 1, 1, 1], fine: 4 };
+        let size = LiveSize { channels, blocks: [1, 1, 1, 1], fine: 4, ..LiveSize::default() };
         let file = WeightFile::parse("test.safetensors", bytes)?;
-        LiveEngine::new(&file, &config.into()).map(drop)
+        LiveEngine::new(&file, &size).map(drop)
     }
 
     #[test]
@@ -301,7 +270,8 @@ mod tests {
         let end = bad.len();
         bad[end - 4..].copy_from_slice(&f32::NAN.to_le_bytes());
         says(&bad, good, "is not finite");
-        assert!(matches!(file.expect_network("thesis"), Err(WeightsError::Foreign { .. })));
+        let foreign = file.foreign("thesis").to_string();
+        assert_eq!(foreign, "test.safetensors holds weights of \"live\"; expected \"thesis\"");
         let stranger = include_bytes!("../../tests/data/thesis_reference.safetensors");
         says(stranger, good, "is missing");
     }

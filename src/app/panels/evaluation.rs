@@ -125,7 +125,7 @@ fn lines(rows: &[Row]) -> Vec<Line> {
     let sets = Kind::TEST_SETS.map(|kind| kind.to_string());
     let mut found: BTreeMap<(usize, &Text), Vec<&Row>> = BTreeMap::new();
     for row in rows {
-        if let Some(set) = sets.iter().position(|set| row.set == *set.as_str()) {
+        if let Some(set) = sets.iter().position(|set| row.set == set.as_str()) {
             found.entry((set, &row.method)).or_default().push(row);
         }
     }

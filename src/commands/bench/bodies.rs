@@ -16,7 +16,7 @@ pub fn run(repeats: usize, json: bool, output: Option<&Path>) -> Result<(), Comm
     let cases: Vec<BodyCase> =
         BodyCase::street().into_iter().chain(COUNTS.map(BodyCase::crowd)).chain(COUNTS.map(BodyCase::points)).collect();
     let bar = indicatif::ProgressBar::new(cases.len() as u64 * MapConvention::BOTH.len() as u64);
-    let times = bodies::measure(&Radar::default(), &cases, repeats, |_| bar.inc(1)).map_err(CommandError::failed)?;
+    let times = bodies::measure(&Radar::default(), &cases, repeats, |_| bar.inc(1))?;
     bar.finish_and_clear();
     if let Some(folder) = output {
         save(&chart(&times), folder, "bodies")?;
@@ -30,37 +30,23 @@ pub fn run(repeats: usize, json: bool, output: Option<&Path>) -> Result<(), Comm
 }
 
 fn heading(times: &BodyTimes) -> String {
+    let threads = counted(times.threads, "thread", "threads");
     format!(
-        "three maps on {}, {}; in brackets multiples of the bare transform on one thread, {:.3} ms in this run\n\
-         {:8} {:>7} {:>6}  {:16} {:>20} {:>20}  {}",
-        counted(times.threads, "thread", "threads"),
-        times.simd,
-        times.bare_fft_ms,
-        "scene",
-        "objects",
-        "echoes",
-        "drawn by",
-        "from scratch, ms",
-        "one dragged, ms",
-        "computed for a move"
+        "three maps on {threads}, {}; in brackets multiples of the bare transform on one thread, {:.3} ms in this run\n\
+         scene    objects echoes  drawn by             from scratch, ms      one dragged, ms  computed for a move",
+        times.simd, times.bare_fft_ms
     )
 }
 
 fn line(row: &BodyRow, bare_fft_ms: f64) -> String {
     let time = |ms: f64| format!("{ms:.3} ({:.1})", ms / bare_fft_ms);
+    let (convention, scratch, drag) = (row.convention.to_string(), time(row.scratch_ms), time(row.drag_ms));
     format!(
-        "{:8} {:>7} {:>6}  {:16} {:>20} {:>20}  {}",
-        row.scene,
-        row.objects,
-        row.echoes,
-        row.convention.to_string(),
-        time(row.scratch_ms),
-        time(row.drag_ms),
-        row.computed
+        "{:8} {:>7} {:>6}  {convention:16} {scratch:>20} {drag:>20}  {}",
+        row.scene, row.objects, row.echoes, row.computed
     )
 }
 
-/// Time over the number of objects, in bare transforms.
 fn chart(times: &BodyTimes) -> LineChart {
     let line = |scene: &str, time: fn(&BodyRow) -> f64, colour: RGBColor, name: &str| {
         let rows = times.rows.iter().filter(|r| r.scene == scene && r.convention == MapConvention::FIXED_RANGE);

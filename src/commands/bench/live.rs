@@ -1,6 +1,7 @@
 //! `apertura bench --live`: times of the live network's forward pass, sparse and dense, and of the features before it.
 
 use crate::commands::{CommandError, print, print_json};
+use crate::evaluate::upper_median;
 use crate::network;
 use crate::network::live::engine::LiveScratch;
 use crate::network::live::features::FeatureExtractor;
@@ -38,19 +39,19 @@ pub fn run(json: bool) -> Result<(), CommandError> {
 }
 
 fn measure(scenes: u32) -> Result<Pass, CommandError> {
-    let live = network::live().ok_or_else(|| CommandError::Usage("the live network's weights can't be used".into()))?;
+    let live = network::live().ok_or_else(|| CommandError("the live network's weights can't be used".into()))?;
     let radar = Radar::default();
-    let extractor = FeatureExtractor::new(&radar).map_err(CommandError::failed)?;
+    let extractor = FeatureExtractor::new(&radar)?;
     let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
     let mut scratch = LiveScratch::default();
     let mut times = [const { Vec::new() }; 3];
     // The first scene warms up, and isn't counted.
     for number in 0..=scenes {
         let scene = generator.scene(Kind::Set2, number);
-        let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).map_err(CommandError::failed)?;
+        let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed)?;
         let ends = signal.two_ends(&radar);
         let start = Instant::now();
-        let input = extractor.extract(&ends).map_err(CommandError::failed)?;
+        let input = extractor.extract(&ends)?;
         let features = start.elapsed();
         let start = Instant::now();
         let _map = live.engine().forward(&input, &mut scratch);
@@ -62,10 +63,8 @@ fn measure(scenes: u32) -> Result<Pass, CommandError> {
             times.iter_mut().zip([features, forward, dense]).for_each(|(t, d)| t.push(1e3 * d.as_secs_f64()));
         }
     }
-    let [features_milliseconds, forward_milliseconds, dense_forward_milliseconds] = times.map(|mut t| {
-        t.sort_by(f64::total_cmp);
-        t[t.len() / 2]
-    });
+    let [features_milliseconds, forward_milliseconds, dense_forward_milliseconds] =
+        times.map(|times| upper_median(times).unwrap_or_default());
     let threads = rayon::current_num_threads();
     Ok(Pass { threads, scenes, features_milliseconds, forward_milliseconds, dense_forward_milliseconds })
 }

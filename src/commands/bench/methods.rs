@@ -3,11 +3,11 @@
 use crate::commands::CommandError;
 use crate::commands::figure::{DrawingResult, Plot, save, save_numbers, tick};
 use crate::commands::{print, print_json};
-use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::SceneSet;
 use crate::evaluate::tables::Tally;
 use crate::evaluate::trial::Trial;
+use crate::evaluate::{Estimate, upper_median};
 use crate::methods;
 use crate::radar::{Radar, counted};
 use crate::reconstruct::{Reconstructor, Request};
@@ -18,6 +18,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use serde::Serialize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The time of a crowded scene depends on how close its reflectors are; a few scenes give no median.
 const FEWEST_CROWDS: u32 = 20;
@@ -82,14 +83,9 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
     if json {
         return print_json(&report);
     }
-    print(&format!(
-        "{}, {}\n{:26} {:>24} {:>24}",
-        counted(count, "test scene a set", "test scenes a set"),
-        counted(report.threads, "thread", "threads"),
-        "method",
-        "SE, set 1 / 2 / 3",
-        "ms a map, set 1 / 2 / 3"
-    ))?;
+    let scenes = counted(count, "test scene a set", "test scenes a set");
+    print(&format!("{scenes}, {}", counted(report.threads, "thread", "threads")))?;
+    print(&format!("{:26} {:>24} {:>24}", "method", "SE, set 1 / 2 / 3", "ms a map, set 1 / 2 / 3"))?;
     for row in &report.methods {
         let [a, b, c] = row.squared_error.map(|e| e.mean);
         let [t, u, v] = row.median_milliseconds;
@@ -97,16 +93,12 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
         print(&format!("{:26} {errors:>24} {:>24}", row.method, format!("{t:.0} / {u:.0} / {v:.0}")))?;
     }
     for c in &report.crowds {
+        let Crowd { method, reflectors, what, median_milliseconds, worst_milliseconds, squared_error, .. } = c;
+        let Estimate { mean, standard_error, .. } = squared_error;
+        let scenes = counted(c.scenes, "scene", "scenes");
         print(&format!(
-            "{}, {} reflectors ({}): {:.0} ms a map, {:.0} ms at worst, SE {:.0} ± {:.0} ({})",
-            c.method,
-            c.reflectors,
-            c.what,
-            c.median_milliseconds,
-            c.worst_milliseconds,
-            c.squared_error.mean,
-            c.squared_error.standard_error,
-            counted(c.scenes, "scene", "scenes")
+            "{method}, {reflectors} reflectors ({what}): {median_milliseconds:.0} ms a map, {worst_milliseconds:.0} ms at worst, SE {mean:.0} ± \
+             {standard_error:.0} ({scenes})"
         ))?;
     }
     Ok(())
@@ -115,7 +107,7 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
 fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) -> Result<Vec<MethodRow>, CommandError> {
     let campaign = Campaign { count, ..Campaign::default() };
     let sets = Kind::TEST_SETS.map(SceneSet::Generated);
-    let rows = campaign.run(&sets, methods, &Task::default(), |_| on_map()).map_err(CommandError::failed)?;
+    let rows = campaign.run(&sets, methods, &Task::default(), |_| on_map())?;
     let row = |method: &&dyn Reconstructor| {
         let tally = |set: &SceneSet| {
             let set = set.to_string();
@@ -139,40 +131,36 @@ fn crowds_of(
     on_map: impl Fn(),
 ) -> Result<Vec<Crowd>, CommandError> {
     let methods = SEARCHERS.map(methods::by_name).into_iter().collect::<Result<Vec<_>, _>>();
-    let methods = methods.map_err(CommandError::failed)?;
+    let methods = methods?;
     let (radar, request) = (Radar::default(), Request::default());
     let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
     let scenes = (0..).map(|number| generator.scene(kind, number)).filter(|s| s.reflector_count() == reflectors);
     let mut times = vec![Vec::new(); methods.len()];
     let mut errors = vec![Vec::new(); methods.len()];
     for (number, scene) in scenes.take(count as usize).enumerate() {
-        let trial = Trial::new(&radar, &scene, Floor::Thesis, request.normalisation).map_err(CommandError::failed)?;
+        let trial = Trial::new(&radar, &scene, Floor::Thesis, request.normalisation)?;
         for (method, (times, errors)) in methods.iter().zip(times.iter_mut().zip(&mut errors)) {
             if number == 0 {
                 // The method is warmed up here, as the methods above were.
-                trial.ask(&**method, &request).map_err(CommandError::failed)?;
+                trial.ask(&**method, &request)?;
             }
-            let answer = trial.ask(&**method, &request).map_err(CommandError::failed)?;
+            let answer = trial.ask(&**method, &request)?;
             times.push(answer.milliseconds);
             errors.push(answer.metrics.squared_error);
             on_map();
         }
     }
-    let figures = methods.iter().zip(times.iter_mut().zip(&errors));
-    Ok(figures
-        .map(|(method, (times, errors))| {
-            times.sort_by(f64::total_cmp);
-            Crowd {
-                method: method.name(),
-                reflectors,
-                what,
-                scenes: count,
-                median_milliseconds: times[times.len() / 2],
-                worst_milliseconds: times[times.len() - 1],
-                squared_error: Estimate::of(errors),
-            }
-        })
-        .collect())
+    let figures = methods.iter().zip(times.into_iter().zip(&errors));
+    let crowd = |(method, (times, errors)): (&Arc<dyn Reconstructor>, (Vec<f64>, &Vec<f64>))| Crowd {
+        method: method.name(),
+        reflectors,
+        what,
+        scenes: count,
+        worst_milliseconds: times.iter().copied().fold(0.0, f64::max),
+        median_milliseconds: upper_median(times).unwrap_or_default(),
+        squared_error: Estimate::of(errors),
+    };
+    Ok(figures.map(crowd).collect())
 }
 
 const LABEL: i32 = 15;

@@ -131,13 +131,13 @@ impl Args {
 fn measured(request: &FrontRequest) -> Result<Front, CommandError> {
     let bar = indicatif::ProgressBar::new(1000);
     let on_row = |part: f32, _: &FrontRow| bar.set_position((1e3 * part) as u64);
-    let front = front::measure(&Radar::default(), request, on_row, || false).map_err(CommandError::failed)?;
+    let front = front::measure(&Radar::default(), request, on_row, || false)?;
     bar.finish_and_clear();
     Ok(front)
 }
 
 fn one_thread(json: bool) -> Result<(), CommandError> {
-    let timed = measure().map_err(CommandError::failed)?;
+    let timed = measure().map_err(CommandError)?;
     if json {
         return print_json(&timed);
     }
@@ -145,27 +145,14 @@ fn one_thread(json: bool) -> Result<(), CommandError> {
 }
 
 fn heading(front: &Front, repeats: u32) -> String {
+    let (threads, runs) = (counted(front.threads, "thread", "threads"), counted(repeats, "run", "runs"));
     format!(
-        "bare 512 x 1024 c64 transform, one thread: {:.3} ms; maps on {}, {}; medians of at most {}\n\
+        "bare 512 x 1024 c64 transform, one thread: {:.3} ms; maps on {threads}, {}; medians of at most {runs}\n\
          from scratch: nothing of the scene is known, the floor's noise is made beforehand and scaled inside the time, by all algorithms\n\
          signal: largest error of a range cell, relative to the peak; Lambda: largest and rms error of the maps, drawn over no floor\n\
          and 100 dB (exact db=100) and as the thesis does (thesis min-max); * marks the one that was timed\n\
-         {:7} {:>10} {:11} {:4} {:>9} {:>9} {:>8} {:>7} {:>8} {:>18} {:>18}",
-        front.bare_fft_ms,
-        counted(front.threads, "thread", "threads"),
-        front.simd,
-        counted(repeats, "run", "runs"),
-        "task",
-        "reflectors",
-        "algorithm",
-        "",
-        "tolerance",
-        "median ms",
-        "spread",
-        "x bare",
-        "signal",
-        "exact db=100",
-        "thesis min-max",
+         task    reflectors algorithm        tolerance median ms   spread  x bare   signal       exact db=100     thesis min-max",
+        front.bare_fft_ms, front.simd
     )
 }
 
@@ -174,17 +161,10 @@ fn line(r: &FrontRow, bare_fft_ms: f64) -> String {
         let mark = if l.convention == r.convention { "*" } else { " " };
         format!(" {:>8.1e} {:>8.1e}{mark}", l.max, l.rms)
     });
+    let FrontRow { reflectors, algorithm, precision, tolerance, median_ms, spread_ms, signal_error, .. } = r;
+    let (task, times_bare, lambda) = (r.task.name(), median_ms / bare_fft_ms, lambda.collect::<String>());
     format!(
-        "{:7} {:>10} {:11} {:4} {:>9.0e} {:>9.3} {:>8.3} {:>7.2} {:>8.1e}{}",
-        r.task.name(),
-        r.reflectors,
-        r.algorithm,
-        r.precision,
-        r.tolerance,
-        r.median_ms,
-        r.spread_ms,
-        r.median_ms / bare_fft_ms,
-        r.signal_error,
-        lambda.collect::<String>(),
+        "{task:7} {reflectors:>10} {algorithm:11} {precision:4} {tolerance:>9.0e} {median_ms:>9.3} {spread_ms:>8.3} {times_bare:>7.2} \
+         {signal_error:>8.1e}{lambda}"
     )
 }

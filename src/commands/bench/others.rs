@@ -3,6 +3,7 @@
 use crate::benchmark::front::{MapConvention, scattered};
 use crate::commands::{CommandError, print};
 use crate::engine::{Engine, Forced, MapRequest};
+use crate::evaluate::upper_median;
 use crate::files::npz::write_npz;
 use crate::maps::channels_range_transform;
 use crate::radar::Radar;
@@ -52,8 +53,8 @@ struct Printed {
 /// Times this program on one thread and runs `script` beside it, for both tasks and every number of reflectors.
 pub fn measure(script: &Path, counts: &[usize], repeats: usize) -> Result<Equal, CommandError> {
     let radar = Radar::default();
-    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(CommandError::failed)?;
-    let folder = tempfile::tempdir().map_err(CommandError::failed)?;
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let folder = tempfile::tempdir()?;
     let mut references = Vec::new();
     for count in counts {
         references.push(Reference::write(&radar, *count, folder.path())?);
@@ -74,7 +75,6 @@ pub fn measure(script: &Path, counts: &[usize], repeats: usize) -> Result<Equal,
     Ok(Equal { tasks })
 }
 
-/// Runs the script; the error is the reason where it can't run.
 fn run(script: &Path, task: &str, folder: &Path, counts: &[usize]) -> Result<Printed, String> {
     let counts = counts.iter().map(usize::to_string);
     let output = Command::new("python3").arg(script).arg(task).arg(folder).args(counts).output();
@@ -105,8 +105,7 @@ impl Reference {
             out.add("y", &column(&|i| reflectors[i].y_metres, count))?;
             out.add("elements", &column(&|i| JUDGED_ELEMENTS[i] as f64, JUDGED_ELEMENTS.len()))?;
             out.add("samples", &samples)
-        })
-        .map_err(CommandError::failed)?;
+        })?;
         Ok(Reference { count, profiles: channels_range_transform(radar, samples.view()).profiles })
     }
 
@@ -132,12 +131,11 @@ impl Reference {
             };
             engine.forget();
             let start = Instant::now();
-            engine.update(&scene, &wanted).map_err(CommandError::failed)?;
+            engine.update(&scene, &wanted)?;
             if repeat > 0 {
                 times.push(1e3 * start.elapsed().as_secs_f64());
             }
         }
-        times.sort_by(f64::total_cmp);
         let peak = self.profiles.iter().fold(0.0f64, |m, v| m.max(v.norm()));
         let error = |(n, judged): (usize, ndarray::ArrayView1<'_, Complex64>)| {
             let found = engine.range_profile(n).unwrap_or_default();
@@ -147,7 +145,7 @@ impl Reference {
         Ok(Row {
             tool: "apertura".to_owned(),
             reflectors: self.count,
-            median_ms: times.get(times.len() / 2).copied().unwrap_or_default(),
+            median_ms: upper_median(times).unwrap_or_default(),
             signal_error: worst / peak,
         })
     }

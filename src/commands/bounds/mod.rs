@@ -3,12 +3,13 @@
 mod chart;
 mod report;
 
-use super::arguments::whole;
+use super::arguments::{decibels, usable, whole};
 use super::figure::{save, save_bitmap, save_numbers};
 use super::{CommandError, print_json};
 use crate::bounds::{Ambiguity, Gains, PositionBound, ambiguity, cramer_rao_of, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
 use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
+use crate::reconstruct::ReconstructError;
 use crate::scene::Reflector;
 use crate::task::Task;
 use chart::{AmbiguityFigure, of_bounds, of_placement};
@@ -36,7 +37,7 @@ pub struct Args {
 
     /// Place of the reflector, metres along the array and ahead of it
     #[arg(long, value_name = "X,Y", default_value = "5,18", value_parser = place, allow_hyphen_values = true)]
-    at: Place,
+    at: Reflector,
 
     /// Columns from the reflector to the second one, at the same range
     #[arg(long, value_name = "COLUMNS", default_value_t = 8.0, value_parser = apart, allow_hyphen_values = true)]
@@ -64,45 +65,26 @@ pub struct Args {
     output: Option<PathBuf>,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Place {
-    x_metres: f64,
-    y_metres: f64,
-}
-
-fn place(text: &str) -> Result<Place, String> {
-    let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    match parsed {
-        Some((x_metres, y_metres)) if f64::is_finite(x_metres) && f64::is_finite(y_metres) && y_metres > 0.0 => {
-            Ok(Place { x_metres, y_metres })
-        }
-        _ => Err("expected X,Y in metres with Y above 0, as in 5,18".to_owned()),
-    }
-}
-
-fn decibels(text: &str) -> Result<Decibels, String> {
-    match text.trim().parse() {
-        Ok(db) if (-200.0..=200.0).contains(&db) => Ok(Decibels(db)),
-        _ => Err("expected decibels between -200 and 200".to_owned()),
-    }
+fn place(text: &str) -> Result<Reflector, String> {
+    let expected = "expected X,Y in metres with Y above 0, as in 5,18";
+    let (x, y) = text.split_once(',').ok_or(expected)?;
+    let (x_metres, y_metres) = (usable(x, f64::is_finite, expected)?, usable(y, f64::is_finite, expected)?);
+    if y_metres > 0.0 { Ok(Reflector { x_metres, y_metres, reflectivity: 1.0 }) } else { Err(expected.to_owned()) }
 }
 
 fn apart(text: &str) -> Result<f64, String> {
-    match text.trim().parse() {
-        Ok(columns) if f64::is_finite(columns) && columns != 0.0 => Ok(columns),
-        _ => Err("expected a number of columns other than 0".to_owned()),
-    }
+    usable(text, |columns| columns.is_finite() && columns != 0.0, "expected a number of columns other than 0")
 }
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
-        let reflector = Reflector { x_metres: self.at.x_metres, y_metres: self.at.y_metres, reflectivity: 1.0 };
-        let centre = radar.polar_of(self.at.x_metres, self.at.y_metres);
+        let reflector = self.at;
+        let centre = radar.polar_of(reflector.x_metres, reflector.y_metres);
         let layouts: Vec<(LayoutKind, Layout)> = self
             .layout
             .iter()
-            .map(|kind| Ok((kind.clone(), kind.layout(&radar).map_err(CommandError::failed)?)))
+            .map(|kind| Ok((kind.clone(), kind.layout(&radar)?)))
             .collect::<Result<_, CommandError>>()?;
         let other = self.neighbour(&radar, centre)?;
         let report = BoundsReport {
@@ -125,10 +107,7 @@ impl Args {
                 save(&of_placement(&report.monte_carlo), folder, "monte-carlo")?;
             }
         }
-        if self.json {
-            return print_json(&report);
-        }
-        report.print()
+        if self.json { print_json(&report) } else { report.print() }
     }
 
     fn neighbour(&self, radar: &Radar, centre: Polar) -> Result<Reflector, CommandError> {
@@ -137,7 +116,7 @@ impl Args {
         if cos.abs() >= 1.0 {
             let [least, most] = [-1.0, 1.0].map(|end: f64| ((end - centre.cos_theta) / column).trunc());
             let columns = self.apart;
-            return Err(CommandError::Usage(format!(
+            return Err(CommandError(format!(
                 "--apart {columns} puts the second reflector beyond the array's axis; expected columns from {least} to {most}"
             )));
         }
@@ -181,13 +160,13 @@ impl Args {
         let Some(trials) = self.monte_carlo else { return Ok(Vec::new()) };
         let bar = indicatif::ProgressBar::new(self.snr.len() as u64);
         let place = |snr: &Decibels| {
-            let placed = placement(radar, reflector, *snr, trials, &Task::default()).map_err(CommandError::failed);
+            let placed = placement(radar, reflector, *snr, trials, &Task::default());
             bar.inc(1);
             placed
         };
-        let placed = self.snr.iter().map(place).collect();
+        let placed: Result<_, ReconstructError> = self.snr.iter().map(place).collect();
         bar.finish_and_clear();
-        placed
+        Ok(placed?)
     }
 }
 

@@ -74,38 +74,24 @@ fn cells(bound: Option<Bound>) -> String {
 
 impl BoundsReport {
     pub fn print(&self) -> Result<(), CommandError> {
-        print(&format!(
-            "One reflector at ({}, {}) m, and another {} beside it",
-            self.x_metres,
-            self.y_metres,
-            counted(self.apart_columns, "column", "columns")
-        ))?;
+        let (x, y, apart) = (self.x_metres, self.y_metres, counted(self.apart_columns, "column", "columns"));
+        print(&format!("One reflector at ({x}, {y}) m, and another {apart} beside it"))?;
         print(&format!(
             "\n{:12} {:>8} {:>16} {:>18} {:>16} {:>16}",
             "ambiguity", "elements", "main lobe, cols", "side lobe, dB", "at, columns", "rms side, dB"
         ))?;
-        let radar = Radar::default();
-        let db = |v: f64| format!("{:.2}", 20.0 * v.max(1e-9).log10());
-        for l in &self.layouts {
-            let Some(lobes) = &l.lobes else { continue };
-            let column = columns_to_cos(&radar);
-            print(&format!(
-                "{:12} {:>8} {:>16.2} {:>18} {:>16.2} {:>16}",
-                l.layout,
-                l.elements,
-                lobes.main_lobe_cos / column,
-                db(lobes.highest_side_lobe),
-                lobes.highest_side_lobe_offset / column,
-                db(lobes.side_lobe_rms)
-            ))?;
+        let column = columns_to_cos(&Radar::default());
+        let db = |v: f64| 20.0 * v.max(1e-9).log10();
+        for (LayoutReport { layout, elements, .. }, lobes) in self.layouts.iter().filter_map(|l| Some((l, l.lobes?))) {
+            let [main, offset] = [lobes.main_lobe_cos, lobes.highest_side_lobe_offset].map(|cos| cos / column);
+            let [highest, rms] = [lobes.highest_side_lobe, lobes.side_lobe_rms].map(db);
+            print(&format!("{layout:12} {elements:>8} {main:>16.2} {highest:>18.2} {offset:>16.2} {rms:>16.2}"))?;
         }
         print(&format!("\n{:12} {:>7} | {HEADINGS} | {HEADINGS}", "bound", "SNR, dB"))?;
-        for l in &self.layouts {
-            for b in &l.bounds {
-                print(&format!("{:12} {:>7} | {} | {}", l.layout, b.snr_db, cells(b.alone), cells(b.beside_another)))?;
-            }
-        }
         let rows = || self.layouts.iter().flat_map(|l| l.bounds.iter().map(move |b| (&l.layout, b)));
+        for (layout, b) in rows() {
+            print(&format!("{layout:12} {:>7} | {} | {}", b.snr_db, cells(b.alone), cells(b.beside_another)))?;
+        }
         if rows().any(|(_, b)| b.gain_per_end.is_some()) {
             print("\nAlone, with one unknown complex gain for either half of the layout")?;
             print(&format!("{:12} {:>7} | {HEADINGS}", "bound", "SNR, dB"))?;
@@ -125,15 +111,10 @@ impl BoundsReport {
             ))?;
         }
         for p in &self.monte_carlo {
+            let Placement { snr_db, trials, off_by_a_tooth, miscounted, .. } = p;
+            let (bound, error, ratio) = (1e3 * p.bound_metres, 1e3 * p.error_metres, p.ratio());
             print(&format!(
-                "{:7} {:>9} {:>10.4} {:>10.4} {:>13.3} {:>11} {:>11}",
-                p.snr_db,
-                p.trials,
-                1e3 * p.bound_metres,
-                1e3 * p.error_metres,
-                p.ratio(),
-                p.off_by_a_tooth,
-                p.miscounted
+                "{snr_db:7} {trials:>9} {bound:>10.4} {error:>10.4} {ratio:>13.3} {off_by_a_tooth:>11} {miscounted:>11}"
             ))?;
         }
         Ok(())

@@ -11,13 +11,8 @@ use std::fmt::Write;
 #[derive(Debug, Serialize)]
 pub struct DoubtReport {
     method: String,
-    rows: usize,
-    failures: usize,
-    least_squared_error: f64,
-    /// Area under the ROC curve; `None` where every row is a failure, or none.
-    area: Option<f64>,
-    /// Standard error of the area; `None` for fewer than two failures or two other rows.
-    standard_error: Option<f64>,
+    #[serde(flatten)]
+    found: DoubtArea,
 }
 
 impl DoubtReport {
@@ -25,10 +20,7 @@ impl DoubtReport {
     /// it the worst tenth of these rows are failures.
     pub fn of(method: &str, rows: &[&Row], limit: Option<f64>) -> Option<DoubtReport> {
         let own = rows.iter().copied().filter(|row| row.method == method);
-        let DoubtArea { rows, failures, least_squared_error, area } = DoubtArea::of(own, limit)?;
-        let standard_error = area.and_then(|area| area.standard_error);
-        let area = area.map(|area| area.area);
-        Some(DoubtReport { method: method.to_owned(), rows, failures, least_squared_error, area, standard_error })
+        Some(DoubtReport { method: method.to_owned(), found: DoubtArea::of(own, limit)? })
     }
 }
 
@@ -44,7 +36,8 @@ pub fn write_within<'a>(methods: impl IntoIterator<Item = (&'a String, &'a Estim
 }
 
 pub fn write<'a>(reports: impl IntoIterator<Item = &'a DoubtReport>, text: &mut String) {
-    for DoubtReport { method, rows, failures, least_squared_error, area, standard_error } in reports {
+    for DoubtReport { method, found } in reports {
+        let DoubtArea { rows, failures, least_squared_error, area, standard_error } = found;
         let area = area.map_or("-".to_owned(), |area| format!("{area:.3}"));
         let error = standard_error.map_or_else(String::new, |error| format!(" \u{b1} {error:.3}"));
         let failures = counted(*failures, "failure", "failures");

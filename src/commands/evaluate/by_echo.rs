@@ -8,20 +8,15 @@ use std::fmt::Write;
 pub struct EchoReport {
     /// Level at which each class begins, dB below the scene's strongest echo; the last class has no end.
     below_db: [usize; CLASSES],
-    there: [usize; CLASSES],
-    found: [usize; CLASSES],
+    #[serde(flatten)]
+    tally: EchoTally,
     /// Part of all echoes that were found; `None` without echoes.
     detection: Option<f64>,
 }
 
 impl EchoReport {
-    pub fn of(tally: &EchoTally) -> EchoReport {
-        EchoReport {
-            below_db: std::array::from_fn(|class| 10 * class),
-            there: tally.there,
-            found: tally.found,
-            detection: tally.part(),
-        }
+    pub fn of(tally: EchoTally) -> EchoReport {
+        EchoReport { below_db: std::array::from_fn(|class| 10 * class), tally, detection: tally.part() }
     }
 }
 
@@ -38,7 +33,7 @@ pub fn write(methods: &[(&str, &EchoReport)], width: usize, text: &mut String) {
     for (method, echoes) in methods {
         let all = echoes.detection.map_or("-".to_owned(), |part| format!("{:.1} %", 100.0 * part));
         let _ = write!(text, "{method:<width$} {all:>9}");
-        for (found, there) in echoes.found.iter().zip(&echoes.there) {
+        for (found, there) in echoes.tally.found.iter().zip(&echoes.tally.there) {
             let _ = write!(text, "{:>14}", format!("{found} of {there}"));
         }
         text.push('\n');

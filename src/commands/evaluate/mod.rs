@@ -1,6 +1,5 @@
 //! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values. Also writes rows, runs shards, and takes your own scenes.
 
-mod against;
 mod by_doubt;
 mod by_echo;
 mod percent;
@@ -161,7 +160,7 @@ impl Args {
 
     fn sets(&self) -> Result<Vec<SceneSet>, CommandError> {
         match &self.scenes {
-            Some(folder) => Ok(vec![SceneSet::Folder(Folder::open(folder).map_err(CommandError::failed)?)]),
+            Some(folder) => Ok(vec![SceneSet::Folder(Folder::open(folder)?)]),
             None => Ok(self.set.iter().copied().map(SceneSet::Generated).collect()),
         }
     }
@@ -183,9 +182,7 @@ impl Args {
         };
         let radar = match sets {
             // The folder's scenes name their own radars.
-            [folder @ SceneSet::Folder(_)] => {
-                folder.case(&campaign.radar, &campaign.generator(), 0).map_err(CommandError::failed)?.radar
-            }
+            [folder @ SceneSet::Folder(_)] => folder.case(&campaign.radar, &campaign.generator(), 0)?.radar,
             _ => campaign.radar.clone(),
         };
         Ok(match self.layout.numbers(&radar)? {
@@ -200,13 +197,13 @@ impl Args {
         let sets = self.sets()?;
         let campaign = self.campaign(&sets)?;
         let methods = hearing(&campaign, &methods)?;
-        let empty = campaign.empty_rows(&sets, &methods).map_err(CommandError::failed)?;
+        let empty = campaign.empty_rows(&sets, &methods)?;
         let scenes: u64 = sets.iter().map(|set| u64::from(campaign.scenes(set))).sum();
         if scenes == 0 {
             let message = format!("--shard {} has no scene; expected I below the number of scenes", self.shard);
-            return Err(CommandError::Usage(message));
+            return Err(CommandError(message));
         }
-        for said in campaign.untrained(&sets, &methods).map_err(CommandError::failed)? {
+        for said in campaign.untrained(&sets, &methods)? {
             eprintln!("apertura: {said}");
         }
         let wanted = RunRows::new(&empty);
@@ -227,10 +224,10 @@ impl Args {
         });
         progress.finish();
         match file {
-            None => found.map_err(CommandError::failed),
+            None => Ok(found?),
             Some(mut file) => match file.failure() {
                 Some(failure) => Err(told(failure)),
-                None => found.map_err(CommandError::failed).and_then(|_| file.finish().map_err(told)),
+                None => found.map_or_else(|error| Err(error.into()), |_| file.finish().map_err(told)),
             },
         }
     }
@@ -250,7 +247,7 @@ impl Args {
     fn merged(&self) -> Result<(Vec<Row>, Vec<Lack>), CommandError> {
         let (mut tables, mut problems) = (Vec::new(), Vec::new());
         for path in &self.merge {
-            let on_file = |source| CommandError::File { path: path.clone(), source };
+            let on_file = CommandError::on(&path);
             let file = File::open(path).map_err(on_file)?;
             let table = read_table(file).map_err(CommandError::on(path))?;
             if table.is_cut {
@@ -261,7 +258,7 @@ impl Args {
             }
             tables.push((path.display().to_string(), table.rows));
         }
-        let rows = merge(tables).map_err(CommandError::failed)?;
+        let rows = merge(tables)?;
         let missing = lacks(&rows);
         problems.extend(missing.iter().map(|lack| format!("missing: {lack}")));
         if rows.is_empty() || !(problems.is_empty() || self.partial) {
@@ -269,7 +266,7 @@ impl Args {
             let message = format!(
                 "the rows are not those of a whole run:\n  {listed}\n--partial prints the tables of what there is"
             );
-            return Err(CommandError::Usage(message));
+            return Err(CommandError(message));
         }
         problems.iter().for_each(|problem| eprintln!("note: {problem}"));
         if rows.iter().any(|row| row.version == Some(1)) {
@@ -287,7 +284,6 @@ impl Args {
     }
 }
 
-/// The methods that take samples of the campaign's layout; standard error names the others.
 fn hearing<'a>(
     campaign: &Campaign,
     methods: &'a [Arc<dyn Reconstructor>],
@@ -298,7 +294,7 @@ fn hearing<'a>(
         heard.map_or_else(|error| refusals.push(error), |()| hearing.push(method.as_ref()));
     }
     match refusals.pop() {
-        Some(refusal) if hearing.is_empty() => Err(CommandError::failed(refusal)),
+        Some(refusal) if hearing.is_empty() => Err(refusal.into()),
         last => {
             refusals.iter().chain(&last).for_each(|refusal| eprintln!("apertura: left out: {refusal}"));
             Ok(hearing)
@@ -307,12 +303,9 @@ fn hearing<'a>(
 }
 
 fn told(error: KeptError) -> CommandError {
-    match error {
-        KeptError::File { path, source } => CommandError::File { path, source },
-        KeptError::Other { .. } => {
-            CommandError::Usage(format!("{error}; name another file, or write over this one with --overwrite"))
-        }
-        KeptError::Busy(_) => CommandError::Usage(error.to_string()),
-        KeptError::Merge(error) => CommandError::failed(error),
-    }
+    let help = match error {
+        KeptError::Other { .. } => "; name another file, or write over this one with --overwrite",
+        _ => "",
+    };
+    CommandError(format!("{error}{help}"))
 }

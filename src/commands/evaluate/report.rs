@@ -1,12 +1,12 @@
 //! The tables of an evaluation, from its rows.
 
-use super::against::{self, Against};
 use super::by_doubt::{self, DoubtReport};
 use super::by_echo::{self, EchoReport};
 use super::percent::{percent, percent_of};
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::{Column, Lack, Row};
 use crate::evaluate::sets::{NOISE_LEVEL, false_alarm};
+use crate::evaluate::statistics::Paired;
 use crate::evaluate::tables::{
     PRINTED_BASELINE, PRINTED_EXPERIMENT_1, PRINTED_EXPERIMENT_2, Printed, Tally, part_near_best,
 };
@@ -39,8 +39,26 @@ struct SetReport {
     printed: Option<PrintedColumns>,
     false_alarm: f64,
     methods: Vec<MethodReport>,
-    /// The first method against each of the others.
     against: Vec<Against>,
+}
+
+#[derive(Debug, Serialize)]
+struct Against {
+    first: String,
+    second: String,
+    #[serde(flatten)]
+    paired: Paired,
+}
+
+impl Against {
+    fn of(methods: &[&str], rows: &[&Row]) -> Vec<Against> {
+        let Some((first, others)) = methods.split_first() else { return Vec::new() };
+        let against = |second: &&str| {
+            let paired = Paired::of(rows.iter().copied(), first, second)?;
+            Some(Against { first: (*first).to_owned(), second: (*second).to_owned(), paired })
+        };
+        others.iter().filter_map(against).collect()
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -106,7 +124,6 @@ struct AtPrinted {
     median: f64,
 }
 
-/// Description of scenes that are read from files.
 const OF_A_FOLDER: &str = "scenes of a folder";
 
 const LABEL: usize = 26;
@@ -161,30 +178,20 @@ impl EvaluationReport {
     }
 
     pub fn to_text(&self) -> String {
-        let mut text = counted(self.count, "scene a set", "scenes a set");
-        if let Some(seed) = self.seed {
-            let _ = write!(text, ", seed {seed}");
-        }
-        if let Some(floor) = &self.floor {
-            let _ = write!(text, ", floor {floor}");
-        }
-        if let Some(normalisation) = self.normalisation.as_ref().filter(|n| *n != "min-max") {
-            let _ = write!(text, ", normalisation {normalisation}");
-        }
-        match self.carrier {
-            Some(Carrier::OneWay) => text.push_str(", carrier one-way"),
-            Some(Carrier::TwoWay) => text.push_str(", carrier two-way"),
-            None => {}
-        }
-        if self.reading == Some(Reading::Text) {
-            text.push_str(", scenes of the thesis' text");
-        }
-        if let Some(radar) = self.radar.as_ref().filter(|radar| !radar.is_empty()) {
-            let _ = write!(text, ", radar {radar}");
-        }
-        if !self.layout.is_empty() {
-            let _ = write!(text, ", elements {} heard", self.layout);
-        }
+        let carrier = |carrier| if carrier == Carrier::OneWay { "carrier one-way" } else { "carrier two-way" };
+        let normalisation = self.normalisation.as_ref().filter(|n| *n != "min-max");
+        let of_text = self.reading == Some(Reading::Text);
+        let made_by = [
+            Some(counted(self.count, "scene a set", "scenes a set")),
+            self.seed.map(|seed| format!("seed {seed}")),
+            self.floor.as_ref().map(|floor| format!("floor {floor}")),
+            normalisation.map(|normalisation| format!("normalisation {normalisation}")),
+            self.carrier.map(|c| carrier(c).to_owned()),
+            of_text.then(|| "scenes of the thesis' text".to_owned()),
+            self.radar.as_ref().filter(|radar| !radar.is_empty()).map(|radar| format!("radar {radar}")),
+            (!self.layout.is_empty()).then(|| format!("elements {} heard", self.layout)),
+        ];
+        let mut text = made_by.into_iter().flatten().collect::<Vec<_>>().join(", ");
         text.push_str("; mean \u{b1} standard error, and beneath it the median\n");
         for lack in &self.missing {
             let _ = writeln!(text, "missing: {lack}");
@@ -257,11 +264,11 @@ impl SetReport {
         by_doubt::write_within(within, text);
         by_doubt::write(self.methods.iter().filter_map(|m| m.doubt.as_ref()), text);
         self.write_cfar(width, text);
-        against::write(&self.against, text);
+        for Against { first, second, paired } in &self.against {
+            let _ = writeln!(text, "{}", paired.told(first, second));
+        }
     }
-}
 
-impl SetReport {
     fn write_cfar(&self, width: usize, text: &mut String) {
         let Some(first) = self.methods.iter().find_map(|method| method.cfar.as_ref()) else { return };
         let _ = writeln!(text, "\n{:<width$} {:>20} {:>16}", format!("by {}", first.detector), "P_D %", "P_FA %");
@@ -310,7 +317,7 @@ impl MethodReport {
             missed: tally.estimate(Column::Missed),
             ghosts: tally.estimate(Column::Ghosts),
             cfar: CfarReport::of(rows, &tally),
-            echoes: tally.echoes().as_ref().map(EchoReport::of),
+            echoes: tally.echoes().map(EchoReport::of),
             doubt: DoubtReport::of(name, rows, limit),
             within_doubt: Some(tally.estimate(Column::WithinDoubt)).filter(|part| !part.mean.is_nan()),
             median_milliseconds: tally.median_milliseconds(),
@@ -330,31 +337,26 @@ impl MethodReport {
     }
 
     fn write(&self, count: usize, width: usize, text: &mut String) {
+        let MethodReport { squared_error, missed, ghosts, median_milliseconds, .. } = self;
         let at = &self.detection_at_printed_false_alarm;
+        let error = format!("{:.1} \u{b1} {:.1}", squared_error.mean, squared_error.standard_error);
+        let (detection, false_alarm) = (percent_of(&self.detection), percent_of(&self.false_alarm));
+        let at_printed = percent(at.detection, at.standard_error);
+        let near_best = self.near_best.map_or("-".to_owned(), |part| format!("{:.0}", 100.0 * part));
         let _ = writeln!(
             text,
-            "{:<width$} {:>20} {:>16} {:>16} {:>22} {:>7.2} {:>7.2} {:>11} {:>9.1}",
+            "{:<width$} {error:>20} {detection:>16} {false_alarm:>16} {at_printed:>22} {:>7.2} {:>7.2} {near_best:>11} {median_milliseconds:>9.1}",
             self.label(count),
-            format!("{:.1} \u{b1} {:.1}", self.squared_error.mean, self.squared_error.standard_error),
-            percent_of(&self.detection),
-            percent_of(&self.false_alarm),
-            percent(at.detection, at.standard_error),
-            self.missed.mean,
-            self.ghosts.mean,
-            self.near_best.map_or("-".to_owned(), |part| format!("{:.0}", 100.0 * part)),
-            self.median_milliseconds
+            missed.mean,
+            ghosts.mean
         );
         let median = |rate: f64| if rate.is_nan() { "-".to_owned() } else { format!("{:.2}", 100.0 * rate) };
+        let [detection, false_alarm, at_printed] =
+            [self.detection.median, self.false_alarm.median, at.median].map(median);
         let _ = writeln!(
             text,
-            "{:<width$} {:>20.1} {:>16} {:>16} {:>22} {:>7} {:>7}",
-            "  median",
-            self.squared_error.median,
-            median(self.detection.median),
-            median(self.false_alarm.median),
-            median(at.median),
-            self.missed.median,
-            self.ghosts.median
+            "{:<width$} {:>20.1} {detection:>16} {false_alarm:>16} {at_printed:>22} {:>7} {:>7}",
+            "  median", squared_error.median, missed.median, ghosts.median
         );
     }
 

@@ -1,10 +1,7 @@
 //! The errors of a campaign, and the names of its sets in messages.
 
-use crate::evaluate::rows::GivenTwice;
 use crate::evaluate::sets::{FolderError, SceneSet};
-use crate::maps::cfar::CfarError;
 use crate::reconstruct::ReconstructError;
-use crate::scene::SceneError;
 use crate::scene::file::SceneFileError;
 use crate::scene::generate::NoRoom;
 
@@ -12,26 +9,15 @@ use crate::scene::generate::NoRoom;
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum CampaignError {
-    /// A scene can't be simulated.
-    #[error("scene {index} of {set}: {source}")]
-    Scene { set: String, index: u32, source: SceneError },
-    /// A scene can't be read.
     #[error(transparent)]
     File(#[from] SceneFileError),
-    /// A folder's scenes can't be read.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// The objects of a kind of scenes find no room before the radar.
     #[error(transparent)]
     NoRoom(#[from] NoRoom),
-    /// A radar that has not the elements of the layout.
+    /// A layout that the radar has not, a set or method that is given twice, or a scene on which something fails.
     #[error("{0}")]
-    Layout(String),
-    /// A set or a method would count twice.
-    #[error(transparent)]
-    GivenTwice(#[from] GivenTwice),
-    #[error("the detector on scene {index} of {set}: {source}")]
-    Detector { set: String, index: u32, source: CfarError },
+    Refused(String),
     #[error("{method} on scene {index} of {set}: {source}")]
     Method { method: &'static str, set: String, index: u32, source: ReconstructError },
 }

@@ -4,7 +4,7 @@ use super::error::{CampaignError, set_name};
 use crate::evaluate::rows::Row;
 use crate::evaluate::sets::SceneSet;
 use crate::evaluate::trial::{TimedAnswer, Trial};
-use crate::maps::cfar::Cfar;
+use crate::maps::cfar::{Cfar, CfarError};
 use crate::reconstruct::{Reconstructor, Request};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -36,11 +36,10 @@ impl SceneJob<'_> {
         let empty = Row { index: self.index, ..empty.clone() };
         let row = self.trial.filled(empty, answer, self.set.false_alarm());
         let Some(cfar) = &self.cfar else { return Ok(row) };
-        let by_cfar = self.trial.cfar_metrics(answer, cfar).map_err(|source| CampaignError::Detector {
-            set: set_name(self.set),
-            index: self.index,
-            source,
-        })?;
+        let failed = |error: CfarError| {
+            CampaignError::Refused(format!("the detector on scene {} of {}: {error}", self.index, set_name(self.set)))
+        };
+        let by_cfar = self.trial.cfar_metrics(answer, cfar).map_err(failed)?;
         Ok(Row { cfar_detection: by_cfar.detection, cfar_false_alarm: Some(by_cfar.false_alarm), ..row })
     }
 

@@ -9,7 +9,8 @@ pub enum Predicate {
     Or(Box<[Predicate; 2]>),
     And(Box<[Predicate; 2]>),
     Not(Box<Predicate>),
-    Compare(Box<Term>, Comparison, Box<Term>),
+    /// One of the signs = != < <= > >= between two values.
+    Compare(Box<Term>, &'static str, Box<Term>),
 }
 
 /// A parsed expression with a value.
@@ -17,28 +18,10 @@ pub enum Predicate {
 pub enum Term {
     Number(f64),
     Text(String),
-    /// A column of the row itself, or of a method's row on the same scene.
     Column(Option<String>, Column),
-    Arithmetic(Box<Term>, Arithmetic, Box<Term>),
+    /// One of the signs + - * / between two numbers.
+    Arithmetic(Box<Term>, &'static str, Box<Term>),
     Negative(Box<Term>),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Comparison {
-    Equal,
-    Unequal,
-    Less,
-    LessOrEqual,
-    Greater,
-    GreaterOrEqual,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Arithmetic {
-    Plus,
-    Minus,
-    Times,
-    Over,
 }
 
 type Key<'a> = (&'a str, u64, u32);
@@ -71,29 +54,27 @@ impl Predicate {
             Predicate::Or(both) => both.iter().any(|t| t.holds(row, scenes)),
             Predicate::And(both) => both.iter().all(|t| t.holds(row, scenes)),
             Predicate::Not(inner) => !inner.holds(row, scenes),
-            Predicate::Compare(a, how, b) => how.holds(a.value(row, scenes), b.value(row, scenes)),
+            Predicate::Compare(a, sign, b) => compare(a.value(row, scenes), sign, b.value(row, scenes)),
         }
     }
 }
 
-impl Comparison {
-    fn holds(self, a: Value<'_>, b: Value<'_>) -> bool {
-        let order = match (a, b) {
-            (Value::Number(a), Value::Number(b)) => a.partial_cmp(&b),
-            (Value::Text(a), Value::Text(b)) => Some(a.cmp(&b)),
-            (Value::Missing, _) | (_, Value::Missing) => None,
-            // A set's number against another set's name.
-            _ => return self == Comparison::Unequal,
-        };
-        order.is_some_and(|order| match self {
-            Comparison::Equal => order.is_eq(),
-            Comparison::Unequal => order.is_ne(),
-            Comparison::Less => order.is_lt(),
-            Comparison::LessOrEqual => order.is_le(),
-            Comparison::Greater => order.is_gt(),
-            Comparison::GreaterOrEqual => order.is_ge(),
-        })
-    }
+fn compare(a: Value<'_>, sign: &str, b: Value<'_>) -> bool {
+    let order = match (a, b) {
+        (Value::Number(a), Value::Number(b)) => a.partial_cmp(&b),
+        (Value::Text(a), Value::Text(b)) => Some(a.cmp(&b)),
+        (Value::Missing, _) | (_, Value::Missing) => None,
+        // A set's number against another set's name.
+        _ => return sign == "!=",
+    };
+    order.is_some_and(|order| match sign {
+        "=" => order.is_eq(),
+        "!=" => order.is_ne(),
+        "<" => order.is_lt(),
+        "<=" => order.is_le(),
+        ">" => order.is_gt(),
+        _ => order.is_ge(),
+    })
 }
 
 impl Term {
@@ -104,11 +85,11 @@ impl Term {
             Term::Text(text) => return Value::Text(text.into()),
             Term::Column(method, column) => return scenes.value(row, method.as_deref(), *column),
             Term::Negative(inner) => number(inner).map(|v| -v),
-            Term::Arithmetic(a, sign, b) => number(a).zip(number(b)).map(|(a, b)| match sign {
-                Arithmetic::Plus => a + b,
-                Arithmetic::Minus => a - b,
-                Arithmetic::Times => a * b,
-                Arithmetic::Over => a / b,
+            Term::Arithmetic(a, sign, b) => number(a).zip(number(b)).map(|(a, b)| match *sign {
+                "+" => a + b,
+                "-" => a - b,
+                "*" => a * b,
+                _ => a / b,
             }),
         };
         found.map_or(Value::Missing, Value::Number)

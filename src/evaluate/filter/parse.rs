@@ -1,9 +1,8 @@
 //! The parser of expressions.
 
-use super::expression::{Arithmetic, Comparison, Predicate, Term};
-use super::tokens::{FilterError, OPERAND, SIGNS, Token, error, tokens};
+use super::expression::{Predicate, Term};
+use super::tokens::{FilterError, OPERAND, Token, error, tokens};
 use crate::evaluate::rows::Column;
-use std::fmt::Write;
 
 const DEEPEST_NESTING: usize = 50;
 /// Longest expression, characters.
@@ -64,47 +63,51 @@ impl Parser<'_> {
         self.tokens[self.next].0
     }
 
-    fn take(&mut self, sign: &str) -> bool {
-        let found = *self.peek() == Token::Sign(SIGNS.iter().find(|(s, _)| *s == sign).map_or("", |(s, _)| s));
-        self.next += usize::from(found);
-        found
+    /// Whether the next token is one of `signs`, which is then taken.
+    fn take(&mut self, signs: &[&str]) -> Option<&'static str> {
+        match self.peek() {
+            Token::Sign(sign) if signs.contains(sign) => {
+                let sign = *sign;
+                self.next += 1;
+                Some(sign)
+            }
+            _ => None,
+        }
     }
 
     /// `a | b`
     fn either(&mut self) -> Result<Part, FilterError> {
-        let start = self.at();
-        let mut found = self.both()?;
-        while self.at_sign("|") {
-            let left = found.truth(start, self.at())?;
-            self.next += 1;
-            let start = self.at();
-            let right = self.both()?.truth(start, self.at())?;
-            found = Part::Truth(Predicate::Or(Box::new([left, right])));
-        }
-        Ok(found)
+        self.joined("|", Self::both, Predicate::Or)
     }
 
     /// `a & b`
     fn both(&mut self) -> Result<Part, FilterError> {
-        let start = self.at();
-        let mut found = self.not()?;
-        while self.at_sign("&") {
-            let left = found.truth(start, self.at())?;
-            self.next += 1;
-            let start = self.at();
-            let right = self.not()?.truth(start, self.at())?;
-            found = Part::Truth(Predicate::And(Box::new([left, right])));
-        }
-        Ok(found)
+        self.joined("&", Self::not, Predicate::And)
     }
 
-    fn at_sign(&self, sign: &str) -> bool {
-        matches!(self.peek(), Token::Sign(s) if *s == sign)
+    fn joined(
+        &mut self,
+        sign: &str,
+        part: fn(&mut Self) -> Result<Part, FilterError>,
+        join: fn(Box<[Predicate; 2]>) -> Predicate,
+    ) -> Result<Part, FilterError> {
+        let start = self.at();
+        let mut found = part(self)?;
+        loop {
+            let end = self.at();
+            if self.take(&[sign]).is_none() {
+                return Ok(found);
+            }
+            let left = found.truth(start, end)?;
+            let start = self.at();
+            let right = part(self)?.truth(start, self.at())?;
+            found = Part::Truth(join(Box::new([left, right])));
+        }
     }
 
     /// `! a`
     fn not(&mut self) -> Result<Part, FilterError> {
-        if self.take("!") {
+        if self.take(&["!"]).is_some() {
             let start = self.at();
             let inner = self.deeper(Self::not)?.truth(start, self.at())?;
             return Ok(Part::Truth(Predicate::Not(Box::new(inner))));
@@ -116,17 +119,8 @@ impl Parser<'_> {
     fn comparison(&mut self) -> Result<Part, FilterError> {
         let start = self.at();
         let left = self.sum()?;
-        let how = match self.peek() {
-            Token::Sign("=") => Comparison::Equal,
-            Token::Sign("!=") => Comparison::Unequal,
-            Token::Sign("<") => Comparison::Less,
-            Token::Sign("<=") => Comparison::LessOrEqual,
-            Token::Sign(">") => Comparison::Greater,
-            Token::Sign(">=") => Comparison::GreaterOrEqual,
-            _ => return Ok(left),
-        };
+        let Some(sign) = self.take(&["=", "!=", "<", "<=", ">", ">="]) else { return Ok(left) };
         let left = left.term(start)?;
-        self.next += 1;
         let start = self.at();
         let right = self.sum()?.term(start)?;
         let text = |term: &Term| matches!(term, Term::Text(_) | Term::Column(_, Column::Method));
@@ -134,47 +128,45 @@ impl Parser<'_> {
         if (text(&left) && number(&right)) || (number(&left) && text(&right)) {
             return error(start, "a name and a number are never equal; names of methods stand in quotes");
         }
-        Ok(Part::Truth(Predicate::Compare(Box::new(left), how, Box::new(right))))
+        Ok(Part::Truth(Predicate::Compare(Box::new(left), sign, Box::new(right))))
     }
 
     fn sum(&mut self) -> Result<Part, FilterError> {
-        self.arithmetic(Self::product, &[("+", Arithmetic::Plus), ("-", Arithmetic::Minus)])
+        self.arithmetic(Self::product, &["+", "-"])
     }
 
     /// `a * b`
     fn product(&mut self) -> Result<Part, FilterError> {
-        self.arithmetic(Self::operand, &[("*", Arithmetic::Times), ("/", Arithmetic::Over)])
+        self.arithmetic(Self::operand, &["*", "/"])
     }
 
     fn arithmetic(
         &mut self,
         part: fn(&mut Self) -> Result<Part, FilterError>,
-        signs: &[(&str, Arithmetic)],
+        signs: &[&str],
     ) -> Result<Part, FilterError> {
         let mut start = self.at();
         let mut found = part(self)?;
-        while let Some((_, sign)) = signs.iter().find(|(s, _)| self.at_sign(s)) {
+        while let Some(sign) = self.take(signs) {
             let left = numeric(found.term(start)?, start)?;
-            self.next += 1;
             start = self.at();
             let right = numeric(part(self)?.term(start)?, start)?;
-            found = Part::Term(Term::Arithmetic(Box::new(left), *sign, Box::new(right)));
+            found = Part::Term(Term::Arithmetic(Box::new(left), sign, Box::new(right)));
         }
         Ok(found)
     }
 
     fn operand(&mut self) -> Result<Part, FilterError> {
         let start = self.at();
-        if self.take("-") {
+        if self.take(&["-"]).is_some() {
             let inner = self.deeper(Self::operand)?.term(start)?;
             return Ok(Part::Term(Term::Negative(Box::new(numeric(inner, start)?))));
         }
-        if self.take("(") {
+        if self.take(&["("]).is_some() {
             let inner = self.deeper(Self::either)?;
-            return if self.take(")") {
-                Ok(inner)
-            } else {
-                error(self.at(), "expected ) for the bracket that is open")
+            return match self.take(&[")"]) {
+                Some(_) => Ok(inner),
+                None => error(self.at(), "expected ) for the bracket that is open"),
             };
         }
         let term = match self.peek().clone() {
@@ -215,14 +207,10 @@ impl Parser<'_> {
                     format!("expected a dot and a column, as in {name}.squared_error; or quotes around \"{name}\""),
                 )
             }
+            None if name.is_empty() => error(at, "expected a column"),
             None => {
-                let mut message =
-                    if name.is_empty() { "expected a column".into() } else { format!("there is no column \"{name}\"") };
-                if let Some(near) = nearest(name) {
-                    // Writing to a string can't fail.
-                    let _ = write!(message, "; is {near} meant?");
-                }
-                error(at, message)
+                let meant = nearest(name).map_or_else(String::new, |near| format!("; is {near} meant?"));
+                error(at, format!("there is no column \"{name}\"{meant}"))
             }
         }
     }
@@ -235,11 +223,10 @@ fn numeric(term: Term, start: usize) -> Result<Term, FilterError> {
     }
 }
 
-/// The column whose name is most like `name`, if any is like it.
 fn nearest(name: &str) -> Option<&'static str> {
     let like = |column: &Column| (edits(name, column.name()), column.name());
     let (edits, column) = Column::FIGURES.iter().map(like).min()?;
-    (edits <= 1 + name.chars().count() / 4 && !name.is_empty()).then_some(column)
+    (edits <= 1 + name.chars().count() / 4).then_some(column)
 }
 
 /// Characters to add, drop or change between `a` and `b` (Levenshtein distance).

@@ -38,12 +38,6 @@ impl<T: Into<String>> From<T> for Text {
     }
 }
 
-impl PartialEq<str> for Text {
-    fn eq(&self, other: &str) -> bool {
-        **self == *other
-    }
-}
-
 impl PartialEq<&str> for Text {
     fn eq(&self, other: &&str) -> bool {
         **self == **other
@@ -106,7 +100,6 @@ impl fmt::Display for Value<'_> {
 
 pub(super) trait CellValue {
     const KIND: CellKind;
-    const IS_OPTIONAL: bool = false;
 
     fn value(&self) -> Value<'_>;
 
@@ -131,7 +124,6 @@ impl CellValue for Text {
 
 impl<T: CellValue> CellValue for Option<T> {
     const KIND: CellKind = T::KIND;
-    const IS_OPTIONAL: bool = true;
 
     fn value(&self) -> Value<'_> {
         self.as_ref().map_or(Value::Missing, T::value)

@@ -44,14 +44,6 @@ macro_rules! columns {
                 }
             }
 
-            /// Whether a table may lack the column: older tables do.
-            pub fn is_optional(self) -> bool {
-                match self {
-                    $(Column::$Figure => <$figure_type as CellValue>::IS_OPTIONAL,)+
-                    $(Column::$Origin)|+ => true,
-                }
-            }
-
             /// Whether two rows have the same cell in the column.
             pub fn is_same(self, a: &Row, b: &Row) -> bool {
                 match self {

@@ -13,8 +13,6 @@ pub fn header() -> String {
 
 /// A writer whose [`csv::Writer::serialize`] writes a row as a line; `begins` writes the names of the columns first. [`csv::Writer::flush`]
 /// after a row hands on whole lines, so that a run that is stopped keeps its rows.
-/// # Errors
-/// [`io::Error`] of `out`.
 pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<W>> {
     if begins {
         out.write_all(header().as_bytes())?;
@@ -23,33 +21,16 @@ pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<
 }
 
 /// Writes a whole table.
-/// # Errors
-/// [`io::Error`] of `out`.
 pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) -> io::Result<()> {
     let mut writer = row_writer(out, true)?;
     rows.into_iter().try_for_each(|row| writer.serialize(row))?;
     writer.flush()
 }
 
-/// The reason why a file's rows can't be used.
+/// The reason why a file's rows can't be used; the message names the line, and the column where there is one.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum RowError {
-    /// The file can't be read.
-    #[error("{0}")]
-    Io(io::Error),
-    #[error("line 1: there is no column \"{missing}\"; expected {}", header().trim_end())]
-    Header { missing: &'static str },
-    #[error("line {line}, column {column}: \"{found}\"; expected {expected}")]
-    Cell { line: u64, column: &'static str, found: String, expected: String },
-    #[error("line {line}: the row is of format {found}; this program reads up to format {FORMAT}")]
-    Later { line: u64, found: u32 },
-    /// A line is no row.
-    #[error("line {line}: {message}")]
-    Line { line: u64, message: String },
-    #[error("there are more than {MAX_ROWS} rows; split the file")]
-    TooMany,
-}
+#[error("{0}")]
+pub struct RowError(String);
 
 /// The rows of a file.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -64,15 +45,11 @@ pub struct RowTable {
 
 /// Reads a table of [`write_rows`], also in format 1 and before. Columns may stand in any order, and others beside them; those that are
 /// [optional](Column::is_optional) may be missing.
-/// # Errors
-/// [`RowError`] names the line and the column.
 pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
     read(ShortLines::new(input, false)).map(|table| table.rows)
 }
 
 /// [`read_rows`] without a last line that has no end, which may hold half a row.
-/// # Errors
-/// As [`read_rows`].
 pub fn read_table(input: impl Read) -> Result<RowTable, RowError> {
     read(ShortLines::new(input, true))
 }
@@ -81,16 +58,18 @@ fn read(mut lines: ShortLines<impl Read>) -> Result<RowTable, RowError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&mut lines);
     let header = reader.headers().map_err(of_csv)?.clone();
     if let Some(missing) = Column::all().find(|column| !column.is_optional() && place(&header, *column).is_none()) {
-        return Err(RowError::Header { missing: missing.name() });
+        let (missing, expected) = (missing.name(), self::header());
+        return Err(RowError(format!("line 1: there is no column \"{missing}\"; expected {}", expected.trim_end())));
     }
     let (mut rows, mut record, mut texts) = (Vec::new(), StringRecord::new(), HashSet::new());
     while reader.read_record(&mut record).map_err(of_csv)? {
         if rows.len() == MAX_ROWS {
-            return Err(RowError::TooMany);
+            return Err(RowError(format!("there are more than {MAX_ROWS} rows; split the file")));
         }
         let mut row: Row = record.deserialize(Some(&header)).map_err(|error| of_cells(&header, &record, error))?;
         if let Some(found) = row.version.filter(|version| *version > FORMAT) {
-            return Err(RowError::Later { line: line(&record), found });
+            let told = format!("the row is of format {found}; this program reads up to format {FORMAT}");
+            return Err(RowError(format!("line {}: {told}", line(&record))));
         }
         row.check().map_err(|(column, expected)| of_cell(&header, &record, column, expected))?;
         row.share(&mut texts);
@@ -110,8 +89,8 @@ fn line(record: &StringRecord) -> u64 {
 
 fn of_cell(header: &StringRecord, record: &StringRecord, column: Column, expected: &str) -> RowError {
     let found = place(header, column).and_then(|place| record.get(place)).unwrap_or_default();
-    let found = found.chars().take(40).collect();
-    RowError::Cell { line: line(record), column: column.name(), found, expected: expected.to_owned() }
+    let found: String = found.chars().take(40).collect();
+    RowError(format!("line {}, column {}: \"{found}\"; expected {expected}", line(record), column.name()))
 }
 
 fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> RowError {
@@ -130,24 +109,22 @@ fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> 
         };
         return of_cell(header, record, column, expected);
     }
-    RowError::Line { line: line(record), message: error.to_string() }
+    RowError(format!("line {}: {error}", line(record)))
 }
 
 fn of_csv(error: csv::Error) -> RowError {
     let line = error.position().map_or(1, csv::Position::line);
-    match error.into_kind() {
+    RowError(match error.into_kind() {
         csv::ErrorKind::Io(error) => match error.downcast::<LongLine>() {
-            Ok(LongLine { line }) => {
-                RowError::Line { line, message: format!("is longer than {MAX_LINE_BYTES} bytes; expected a row") }
-            }
-            Err(error) => RowError::Io(error),
+            Ok(LongLine { line }) => format!("line {line}: is longer than {MAX_LINE_BYTES} bytes; expected a row"),
+            Err(error) => error.to_string(),
         },
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            RowError::Line { line, message: format!("has {len} cells; expected {expected_len}, as in the first line") }
+            format!("line {line}: has {len} cells; expected {expected_len}, as in the first line")
         }
-        csv::ErrorKind::Utf8 { .. } => RowError::Line { line, message: "is not text; expected CSV in UTF-8".into() },
-        other => RowError::Line { line, message: format!("{other:?}") },
-    }
+        csv::ErrorKind::Utf8 { .. } => format!("line {line}: is not text; expected CSV in UTF-8"),
+        other => format!("line {line}: {other:?}"),
+    })
 }
 
 #[cfg(test)]

@@ -13,7 +13,6 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum KeptError {
-    /// The system's error.
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: io::Error },
     /// The file has content that would be lost. The caller adds how to overwrite it.
@@ -21,7 +20,6 @@ pub enum KeptError {
     Other { path: PathBuf, why: String },
     #[error("{}: another run writes it; wait for that run, or name another file", _0.display())]
     Busy(PathBuf),
-    /// The rows don't belong to one run.
     #[error(transparent)]
     Merge(#[from] MergeError),
 }
@@ -124,8 +122,6 @@ impl RowFile {
     }
 
     /// All rows, in the order of a run that was never stopped, in which they are also written to the file.
-    /// # Errors
-    /// [`KeptError`] for a file that can't be written.
     pub fn finish(self) -> Result<Vec<Row>, KeptError> {
         let RowFile { path, out, present, appended, .. } = self;
         drop(out);

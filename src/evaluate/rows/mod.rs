@@ -19,7 +19,7 @@ pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
 pub use merge::{MergeError, merge};
 pub use order::{Histogram, estimate, sorted_by};
-pub use whole::{GivenTwice, Whole};
+pub use whole::Whole;
 
 use super::echoes::{EchoCounts, EchoTally};
 use super::shard::Shard;
@@ -156,6 +156,11 @@ impl Column {
         Column::FIGURES.iter().copied().find(|column| column.name() == name)
     }
 
+    /// Whether a table may lack the column, as older tables do: an empty row has no figure there.
+    pub fn is_optional(self) -> bool {
+        !matches!(self, Column::Set | Column::Method) && self.cell(&Row::default()) == Value::Missing
+    }
+
     /// The cell of `row` in this column as text, for messages; empty where the figure is missing.
     pub fn text(self, row: &Row) -> String {
         match self {
@@ -197,9 +202,6 @@ impl Row {
         self.version.and_then(|_| Whole::read(&self.whole, &self.methods))
     }
 
-    /// Checks the values of cells beyond their types.
-    /// # Errors
-    /// The first column with a bad value, and what was expected there.
     fn check(&self) -> Result<(), (Column, &'static str)> {
         let is_finite = |column: &Column| column.cell(self).number().is_none_or(f64::is_finite);
         let endless = Column::FIGURES.iter().find(|column| !is_finite(column));

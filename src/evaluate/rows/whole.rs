@@ -13,27 +13,18 @@ pub struct Whole {
     pub methods: Vec<String>,
 }
 
-/// A set or method that is named twice: its scenes would count twice.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{what} \"{name}\" is given twice; expected each {what} once")]
-pub struct GivenTwice {
-    what: &'static str,
-    name: String,
-}
-
 impl Whole {
     /// The run over these sets, each with its number of scenes, by these methods.
     /// # Errors
-    /// [`GivenTwice`] names the first set or method that is given a second time.
-    pub fn new(sets: Vec<(String, u32)>, methods: Vec<String>) -> Result<Whole, GivenTwice> {
+    /// The first set or method that is given a second time: its scenes would count twice.
+    pub fn new(sets: Vec<(String, u32)>, methods: Vec<String>) -> Result<Whole, String> {
         let names: Vec<&String> = sets.iter().map(|(name, _)| name).collect();
-        if let Some(name) = first_repeated(&names) {
-            return Err(GivenTwice { what: "set", name: name.clone() });
+        for (what, names) in [("set", names), ("method", methods.iter().collect())] {
+            if let Some((_, name)) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+                return Err(format!("{what} \"{name}\" is given twice; expected each {what} once"));
+            }
         }
-        match first_repeated(&methods.iter().collect::<Vec<_>>()) {
-            Some(name) => Err(GivenTwice { what: "method", name: name.clone() }),
-            None => Ok(Whole { sets, methods }),
-        }
+        Ok(Whole { sets, methods })
     }
 
     /// The sets as text, for [`Row::whole`](super::Row::whole).
@@ -61,11 +52,6 @@ impl Whole {
     }
 }
 
-fn first_repeated<'a>(names: &[&'a String]) -> Option<&'a String> {
-    names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)).map(|(_, name)| *name)
-}
-
-/// A name in a list whose names are separated by semicolons.
 fn listed(name: &str) -> String {
     name.replace('%', "%25").replace(';', "%3B")
 }
@@ -84,9 +70,9 @@ mod tests {
         let methods = |names: [&str; 2]| names.map(str::to_owned).to_vec();
         assert!(Whole::new(sets(["1", "2"]), methods(["live", "nomp"])).is_ok());
         let twice = Whole::new(sets(["1", "1"]), methods(["live", "nomp"])).unwrap_err();
-        assert_eq!(twice.to_string(), "set \"1\" is given twice; expected each set once");
+        assert_eq!(twice, "set \"1\" is given twice; expected each set once");
         let twice = Whole::new(sets(["1", "2"]), methods(["live", "live"])).unwrap_err();
-        assert_eq!(twice.to_string(), "method \"live\" is given twice; expected each method once");
+        assert_eq!(twice, "method \"live\" is given twice; expected each method once");
     }
 
     #[test]

@@ -52,7 +52,7 @@ fn variance_of_mean(values: &[f64]) -> Option<f64> {
 }
 
 /// Area under the ROC curve of one method's doubt as a predictor of its failures.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct DoubtArea {
     /// Rows with a doubt.
     pub rows: usize,
@@ -60,8 +60,10 @@ pub struct DoubtArea {
     pub failures: usize,
     /// Rows with at least this squared error are failures.
     pub least_squared_error: f64,
-    /// The area; `None` where every row is a failure, or none.
-    pub area: Option<RocArea>,
+    /// [`RocArea::area`]; `None` where every row is a failure, or none.
+    pub area: Option<f64>,
+    /// [`RocArea::standard_error`].
+    pub standard_error: Option<f64>,
 }
 
 impl DoubtArea {
@@ -77,7 +79,9 @@ impl DoubtArea {
         let scores: Vec<(f64, bool)> =
             said.iter().map(|(doubt, error)| (*doubt, *error >= least_squared_error)).collect();
         let failures = scores.iter().filter(|(_, failed)| *failed).count();
-        Some(DoubtArea { rows: scores.len(), failures, least_squared_error, area: RocArea::of(&scores) })
+        let found = RocArea::of(&scores);
+        let (area, standard_error) = (found.map(|found| found.area), found.and_then(|found| found.standard_error));
+        Some(DoubtArea { rows: scores.len(), failures, least_squared_error, area, standard_error })
     }
 }
 

@@ -18,20 +18,23 @@ pub const MAX_RESAMPLED_SCENES: usize = 5000;
 const NORMAL_95: f64 = 1.96;
 
 /// The comparison of two methods on the scenes that both were tried on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Paired {
     /// Scenes that both were tried on.
     pub scenes: usize,
     /// Mean over these scenes of the first method's squared error less the second's.
+    #[serde(rename = "squared_error_difference")]
     pub difference: f64,
     /// Interval of 95 % of that mean: the paired percentile bootstrap over scenes (Efron and Tibshirani, An Introduction to the Bootstrap,
     /// 1993, chapter 13), or the normal one for more than [`MAX_RESAMPLED_SCENES`] scenes.
+    #[serde(rename = "interval_95")]
     pub interval: [f64; 2],
     /// Scenes in which the first finds every object and the second does not.
     pub first_alone: usize,
     /// Scenes in which the second finds every object and the first does not.
     pub second_alone: usize,
     /// Probability of counts as uneven as these two, or more, if neither method were better: McNemar's exact test, two-sided.
+    #[serde(rename = "mcnemar_p")]
     pub p_value: f64,
 }
 

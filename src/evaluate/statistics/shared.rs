@@ -47,15 +47,11 @@ pub struct Rule {
 impl Rule {
     /// The rule in words.
     pub fn told(&self) -> String {
-        let part = |bad: usize, rows: usize| 100.0 * bad as f64 / rows.max(1) as f64;
-        format!(
-            "{:.0} % of {} are bad, {:.0} % of the other {} (p = {})",
-            part(self.bad, self.rows),
-            self.rows,
-            part(self.other_bad, self.other_rows),
-            self.other_rows,
-            p_text(self.p_value)
-        )
+        let Rule { rows, bad, other_rows, other_bad, .. } = self;
+        let [own, other] =
+            [(bad, rows), (other_bad, other_rows)].map(|(bad, rows)| 100.0 * *bad as f64 / (*rows).max(1) as f64);
+        let p = p_text(self.p_value);
+        format!("{own:.0} % of {rows} are bad, {other:.0} % of the other {other_rows} (p = {p})")
     }
 }
 
@@ -76,8 +72,6 @@ pub struct SharedTrait {
 ///
 /// Scenes of even number suggest rules: of each column the cut, or the name, that separates best. Scenes of odd number test them. Of the rules
 /// that hold, at most [`DISCOVERY_RATE`] are expected to be chance (Benjamini and Hochberg, J. R. Statist. Soc. B 57, 1995).
-/// # Errors
-/// [`FilterError`] where `bad` is no filter.
 pub fn rules(rows: &[Row], bad: &str) -> Result<SharedTrait, FilterError> {
     let names: BTreeSet<&str> = rows.iter().map(|row| &*row.method).collect();
     let names: Vec<&str> = names.into_iter().collect();
@@ -96,7 +90,6 @@ pub fn rules(rows: &[Row], bad: &str) -> Result<SharedTrait, FilterError> {
     })
 }
 
-/// The tested rules that hold together at the rate of false discoveries, the surest first.
 fn held(mut tested: Vec<Rule>) -> Vec<Rule> {
     tested.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
     let all = tested.len() as f64;

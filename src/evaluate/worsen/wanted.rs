@@ -134,10 +134,8 @@ impl WorseningOutcome {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum WorsenError {
-    /// The start can't be simulated.
     #[error("{0}")]
     Scene(#[from] SceneError),
-    /// The method failed.
     #[error("{method}: {source}")]
     Method { method: &'static str, source: ReconstructError },
     #[error("the scene is empty; expected an object to move")]

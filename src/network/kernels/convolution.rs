@@ -153,7 +153,6 @@ struct Block<'a> {
     lanes: usize,
 }
 
-/// The loop over one line for one block of output channels.
 struct Line<'a, 'b> {
     job: &'a Job<'b>,
     block: Block<'a>,

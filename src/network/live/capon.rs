@@ -21,7 +21,6 @@ pub(super) struct Capon {
     lags: Vec<[Vec<f32>; 2]>,
 }
 
-/// Rows that are computed side by side.
 const ROWS_AT_ONCE: usize = LANES_F64;
 type Numbers = Lanes<f64, ROWS_AT_ONCE>;
 type Complexes = ComplexLanes<f64, ROWS_AT_ONCE>;

@@ -20,7 +20,6 @@ pub(super) struct Coarse {
     beams: Array2<Complex64>,
 }
 
-/// One end's map of 64 beams.
 #[derive(Debug)]
 struct BeamMap {
     /// `[rows, 64]` log10 amplitude.
@@ -101,11 +100,9 @@ fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mu
     plane.par_chunks_mut(COARSE_COLUMNS).with_min_len(MIN_ROWS).enumerate()
 }
 
-/// Splitting of beams into the magnitudes and phases of a [`BeamMap`].
 struct SplitBeams<'a> {
     beams: &'a [Complex64],
     even: &'a [Complex64],
-    /// Inverse of the strongest amplitude.
     per_strongest: f64,
     map: &'a mut BeamMap,
 }

@@ -17,7 +17,6 @@ use rayon::prelude::*;
 const PREFIX: &str = "doubt.";
 /// Exponents that the head gives for each coarse cell of the network's picture.
 const DOUBTS_PER_CELL: usize = FINE_COLUMNS / COARSE_COLUMNS;
-/// Columns of the map that share one exponent.
 const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE_COLUMNS;
 
 /// Limits of a cell's exponent.
@@ -96,23 +95,22 @@ fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::live::LiveConfig;
     use crate::network::live::engine::{LiveEngine, LiveScratch};
     use crate::network::live::grid::ROWS;
+    use crate::network::live::size::LiveSize;
     use crate::network::live::twin_tests::heard;
     use crate::radar::Radar;
 
     // `training/reference.py` writes these files.
     /// Weights of a tiny network that has the head.
     const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/doubt_reference_weights.safetensors");
-    /// Weights of the same network without the head.
     const WITHOUT: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
     /// Three reflectors, and PyTorch's results for them.
     const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
 
     fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {
-        let config = LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 };
-        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &config.into()).unwrap();
+        let size = LiveSize { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4, ..LiveSize::default() };
+        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &size).unwrap();
         let mut scratch = LiveScratch::default();
         engine.forward(&heard(&Radar::default(), reference, 1.0).1, &mut scratch);
         engine.doubt(&scratch)

@@ -77,9 +77,9 @@ impl LiveEngine {
     /// # Errors
     /// [`WeightsError`] names the tensor that is missing or of another shape.
     pub fn new(file: &WeightFile, size: &LiveSize) -> Result<Self, WeightsError> {
-        let LiveSize { config, rows, columns } = size;
-        let [c0, c1, c2, c3] = config.channels;
-        let [b0, b1, b2, b3] = config.blocks;
+        let LiveSize { channels, blocks, fine, rows, columns } = *size;
+        let [c0, c1, c2, c3] = channels;
+        let [b0, b1, b2, b3] = blocks;
         let layers = LiveLayers { file };
         Ok(LiveEngine {
             stem: layers.stem("stem.conv", INPUT_CHANNELS, c0)?,
@@ -101,17 +101,17 @@ impl LiveEngine {
                 layers.blocks("dec2", b2, c2, true)?,
             ],
             widen: layers.widened("widen.conv", c0, DECODER_CHANNELS)?,
-            fine1: layers.conv("fine1.conv", [DECODER_CHANNELS + FINE_CHANNELS; 2], config.fine)?,
-            fine2: layers.small("fine2", config.fine, 2 * COLUMNS_PER_FINE, 1)?,
+            fine1: layers.conv("fine1.conv", [DECODER_CHANNELS + FINE_CHANNELS; 2], fine)?,
+            fine2: layers.small("fine2", fine, 2 * COLUMNS_PER_FINE, 1)?,
             row_sources: layers.small("row_sources", c0, WIDE_COLUMNS / COARSE_COLUMNS, 1)?,
-            lobes: WindowLobes::all(file, *rows)?,
+            lobes: WindowLobes::all(file, rows)?,
             scalar1: layers.linear("scalar1", [2 * c3 + SCALARS + CONSTANTS, CONSTANTS], 64)?,
             scalar2: layers.linear("scalar2", [64, 0], 2)?,
             doubt: DoubtHead::new(file, c0)?,
-            channels: config.channels,
-            rows: *rows,
-            columns: *columns,
-            taps: ColumnTaps::new(*columns),
+            channels,
+            rows,
+            columns,
+            taps: ColumnTaps::new(columns),
         })
     }
 
@@ -274,7 +274,6 @@ fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>
     each(out, |v| power_of_ten((v * 3.0 - 3.0).clamp(-18.0, 4.0)));
 }
 
-/// Fills a line with the cells' own amplitudes and the side lobes in range.
 fn fill_line(heads: &Plane, lobes: &[f32], row: usize, line: &mut [f32]) {
     spread_out(heads.data[row * FINE_COLUMNS * heads.c..].chunks_exact(heads.c), 0..COLUMNS_PER_FINE, line);
     for (block, line) in line.chunks_exact_mut(PRODUCT_COLUMNS).enumerate() {

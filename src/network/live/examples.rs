@@ -12,14 +12,15 @@ use crate::network::domain::Domain;
 use crate::network::floors::Floors;
 use crate::radar::{BuiltArray, Radar, check_layout};
 use crate::reconstruct::ReconstructError;
-use crate::scene::generate::{Generator, Kind, Mixture, NoRoom, Purpose, Reading};
+use crate::scene::generate::{Generator, Kind, Mixture, Purpose, Reading};
 use crate::scene::{Disturbances, Scene};
-use crate::signal::{BeatSignal, Floor, TwoEnds, Unfinished, simulate_for};
+use crate::signal::{BeatSignal, Floor, TwoEnds, simulate_for};
 use crate::task::Task;
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::fmt;
 
 /// The examples to make.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,35 +124,17 @@ impl Example {
     }
 }
 
-/// The reason why a request gives no examples.
+/// The reason why a request gives no examples: it names the kind, radar or element that can't be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum ExamplesError {
-    #[error("{0} makes no scenes for tests; expected a purpose of training or validation")]
-    ForTests(Kind),
-    /// A kind whose objects find no room before a radar.
-    #[error(transparent)]
-    NoRoom(#[from] NoRoom),
-    /// The network can't use the radar.
-    #[error(transparent)]
-    Radar(#[from] ReconstructError),
-    /// The request is invalid.
-    #[error("{0}")]
-    Request(String),
-}
+#[error("{0}")]
+pub struct ExamplesError(String);
 
-/// The reason why an example can't be made.
+/// The reason why an example can't be made: its scene can't be simulated, the network can't use the samples, or the task was cancelled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum ExampleError {
-    /// The scene can't be simulated, or the task was cancelled.
-    #[error("example {index}: {source}")]
-    Scene { index: u32, source: Unfinished },
-    /// The network can't use the scene's samples.
-    #[error("example {index}: {source}")]
-    Input { index: u32, source: ReconstructError },
-    #[error("example {index}: the samples are silent; put a reflector into the scene")]
-    Silent { index: u32 },
+#[error("example {index}: {why}")]
+pub struct ExampleError {
+    index: u32,
+    why: String,
 }
 
 impl Examples {
@@ -161,28 +144,28 @@ impl Examples {
     pub fn new(mut request: ExamplesRequest) -> Result<Self, ExamplesError> {
         let kinds = || request.mixture.shares().iter().map(|(kind, _)| *kind);
         if request.purpose == Purpose::Test && kinds().any(|kind| kind == Kind::World) {
-            return Err(ExamplesError::ForTests(Kind::World));
+            let expected = "expected a purpose of training or validation";
+            return Err(refused(format!("{} makes no scenes for tests; {expected}", Kind::World)));
         }
         let found = request.radars.least_max_range_metres();
-        kinds().try_for_each(|kind| kind.check_room_within(found))?;
+        kinds().try_for_each(|kind| kind.check_room_within(found)).map_err(refused)?;
         if let Some(layout) = &request.layout {
-            check_layout(layout, request.radars.elements()).map_err(ExamplesError::Request)?;
+            check_layout(layout, request.radars.shape().elements).map_err(refused)?;
             match request.features {
                 Features::Needed => {
-                    let message = "the live network hears two ends; expected no layout, or no features";
-                    return Err(ExamplesError::Request(message.to_owned()));
+                    return Err(refused("the live network hears two ends; expected no layout, or no features"));
                 }
                 _ => request.features = Features::No,
             }
         }
-        let extractor = match (&request.radars, request.features) {
-            (Radars::Random, _) | (_, Features::No) => None,
-            (Radars::Fixed(radar), Features::Needed) => Some(FeatureExtractor::new(radar)?),
-            (Radars::Fixed(radar), Features::WherePossible) if !DRAWN_LIMITS.has_shape(radar) => None,
-            (Radars::Fixed(radar), Features::WherePossible) => Some(FeatureExtractor::new(radar)?),
-        };
-        if extractor.is_none() && matches!(request.radars, Radars::Fixed(_)) {
-            request.features = Features::No;
+        let mut extractor = None;
+        if let Radars::Fixed(radar) = &request.radars {
+            if request.features == Features::WherePossible && !DRAWN_LIMITS.has_shape(radar) {
+                request.features = Features::No;
+            }
+            if request.features != Features::No {
+                extractor = Some(FeatureExtractor::new(radar).map_err(refused)?);
+            }
         }
         Ok(Examples { request, extractor })
     }
@@ -213,14 +196,11 @@ impl Examples {
     }
 
     /// Example `index` of a given scene. Seed, purpose and `index` pick its noise.
-    /// # Errors
-    /// As [`Examples::example`].
     pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {
         let noise_seed = self.noise_seed(index);
         self.made(None, self.radar(index), Scene { noise_seed, ..scene }, index, task)
     }
 
-    /// Seed of the noise of a given scene.
     fn noise_seed(&self, index: u32) -> u64 {
         let mut key = [0u8; 32];
         key[..8].copy_from_slice(&self.request.seed.to_le_bytes());
@@ -242,9 +222,9 @@ impl Examples {
         let ExamplesRequest { floors, arrays, targets, layout, .. } = &self.request;
         let floor = floors.of(scene.noise_seed);
         let floor = kind.map_or(floor, |kind| SceneSet::Generated(kind).floor(floor));
+        let failed = |why: String| ExampleError { index, why };
         let simulated = |scene: &Scene, floor: Floor| {
-            simulate_for(task, &radar, scene, floor, scene.noise_seed)
-                .map_err(|source| ExampleError::Scene { index, source })
+            simulate_for(task, &radar, scene, floor, scene.noise_seed).map_err(|e| failed(e.to_string()))
         };
         let drawn = arrays.of(scene.noise_seed, &radar, targets.contains(&Target::Measured));
         if !drawn.is_ideal() {
@@ -255,8 +235,9 @@ impl Examples {
             None => EndSamples::Ends(measured.two_ends(&radar)),
             Some(layout) => EndSamples::Elements(measured.samples.select(Axis(0), layout)),
         };
-        let gain = heard.gain().ok_or(ExampleError::Silent { index })?;
-        let input = self.input(&radar, &heard).map_err(|source| ExampleError::Input { index, source })?;
+        let silent = || failed("the samples are silent; put a reflector into the scene".to_owned());
+        let gain = heard.gain().ok_or_else(silent)?;
+        let input = self.input(&radar, &heard).map_err(|e| failed(e.to_string()))?;
         let elements = &scene.disturbances.elements;
         let is_measured =
             |target: &Target| *target == Target::Measured || (*target == Target::Calibrated && elements.is_ideal());
@@ -283,6 +264,10 @@ impl Examples {
             None => FeatureExtractor::new(radar)?.extract(ends).map(Some),
         }
     }
+}
+
+fn refused(why: impl fmt::Display) -> ExamplesError {
+    ExamplesError(why.to_string())
 }
 
 impl EndSamples {

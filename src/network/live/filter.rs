@@ -3,7 +3,6 @@
 
 use crate::network::kernels::vector::{LANES, Loop, Vector};
 
-/// Neighbouring outputs of one filter.
 pub(super) const OUTPUTS: usize = 4;
 /// Products for these outputs, and as many inputs.
 pub(super) const PRODUCTS: usize = 6;
@@ -37,7 +36,6 @@ impl Groups {
         self.steps.map(|step| if self.many == 0 { 0 } else { (self.many - 1) * step + self.vectors * LANES })
     }
 
-    /// Calls `of` with the offset of each vector in the source and in the destination.
     #[inline(always)]
     fn each(&self, mut of: impl FnMut([usize; 2])) {
         for group in 0..self.many {

@@ -45,18 +45,14 @@ pub struct LiveMethod {
 
 impl LiveMethod {
     /// The network of the weights of `file`.
-    /// # Errors
-    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
         LiveMethod::named(file, NAME)
     }
 
     /// The network under a name of its own, beside the shipped weights. The name is never freed.
-    /// # Errors
-    /// As [`LiveMethod::new`].
     pub fn named(file: WeightFile, name: &str) -> Result<Self, WeightsError> {
-        if !file.network().is_empty() {
-            file.expect_network(NAME)?;
+        if !["", NAME].contains(&file.network()) {
+            return Err(file.foreign(NAME));
         }
         let size = LiveSize::of(&file)?;
         let trained = file.provenance.domain(file.name())?;
@@ -78,7 +74,6 @@ impl LiveMethod {
         LiveMethod { other_radars: others, ..self }
     }
 
-    /// The network that answers samples of `radar`.
     fn on(&self, radar: &Radar) -> &LiveMethod {
         if self.trained.holds(radar) {
             return self;
@@ -104,7 +99,6 @@ impl LiveMethod {
         Ok(made)
     }
 
-    /// The map in decades, and the estimated error of Lambda.
     fn with_doubt(&self, radar: &Radar, ends: &TwoEnds) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
         let input = self.extractor(radar)?.extract(ends)?;
         // A panic elsewhere can't spoil the buffers: every pass overwrites them.
@@ -132,7 +126,6 @@ impl LiveMethod {
 /// Signal-to-noise ratios of the third of the training scenes that had thermal noise (`--snr` of `training/train_live.py`).
 const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
-/// Step between the cells of which the median is taken.
 const CELLS_A_LOOK: usize = 17;
 
 /// A level that no noise cell exceeds, decades of the network's own map. It lies above the median cell, which is the network's mean of noise
@@ -201,13 +194,7 @@ impl Reconstructor for LiveMethod {
         let lambda = Array2::from_shape_vec((radar.samples, radar.elements), map)
             .map_err(|e| ReconstructError::Unusable { method: self.name, reason: e.to_string() })?;
         let lambda = RangeAngleMap { lambda };
-        let eta = own_threshold(&lambda, doubt.as_ref());
-        Ok(Reconstruction {
-            lambda,
-            eta: Some(eta),
-            least_eta: Some(least_eta),
-            doubt,
-            ..Reconstruction::silence(radar)
-        })
+        let (eta, least_eta) = (Some(own_threshold(&lambda, doubt.as_ref())), Some(least_eta));
+        Ok(Reconstruction { eta, least_eta, doubt, ..Reconstruction::of_map(lambda) })
     }
 }

@@ -8,16 +8,6 @@
 //! Angles wrap around (column 0 follows column 1023), ranges do not. Row and column means mix at the two coarsest levels.
 //!
 //! `python/apertura/live.py` is the network in PyTorch, with the same names and shapes, for training.
-//!
-//! | file | content |
-//! |---|---|
-//! | [`grid`], [`features`], [`constants`], `capon`, `coarse`, `registration`, `floors` | raw samples of the two ends to the network's tensors |
-//! | [`examples`], [`arrays`], [`radars`] | inputs and targets of random scenes |
-//! | [`dataset`] | the same as files |
-//! | `config`, [`size`], `columns` | the size of the network; a radar of another shape has its samples as rows, and its map is resampled to its elements |
-//! | [`engine`], `reading`, `planes`, `winograd`, `filter`, `lobes`, `range_lobes` | the network over [`kernels`](super::kernels), which runs during a drag |
-//! | [`doubt`] | the network's estimate of its error |
-//! | [`method`] | the network as a reconstruction method |
 
 pub mod arrays;
 mod capon;
@@ -45,5 +35,4 @@ pub mod size;
 mod twin_tests;
 mod winograd;
 
-pub use config::LiveConfig;
 pub use method::LiveMethod;

@@ -76,11 +76,6 @@ impl Radars {
         }
     }
 
-    /// Elements of the whole array.
-    pub fn elements(&self) -> usize {
-        self.shape().elements
-    }
-
     /// Least maximum range of the radars, metres.
     pub fn least_max_range_metres(&self) -> f64 {
         match self {

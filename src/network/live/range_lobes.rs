@@ -108,7 +108,6 @@ impl RangeLobes {
 
 type Vector = Lanes<f32, LANES_F32>;
 
-/// Kernel that sums each [`TILE_SOURCE_ROWS`] rows of sources.
 struct Sums<'a> {
     sources: &'a [f32],
     sums: &'a mut Vec<f32>,

@@ -1,6 +1,6 @@
 //! The size of a live network: its widths, and the shape of its radar's maps.
 
-use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, LiveConfig, WIDE_COLUMNS};
+use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, WIDE_COLUMNS};
 use super::constants::WINDOWS;
 use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS, ROWS};
 use crate::network::domain::Domain;
@@ -29,63 +29,37 @@ const CHANNELS: RangeInclusive<usize> = 1..=512;
 const BLOCKS: RangeInclusive<usize> = 1..=16;
 const ELEMENTS: RangeInclusive<usize> = 2..=65_536;
 
-/// Widths of a network, and the shape of its maps.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Widths of a network, and the shape of its maps. `training/train_live.py` writes the same names into [`SIZE_ENTRY`].
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct LiveSize {
-    /// Channels and blocks of its levels.
-    pub config: LiveConfig,
+    /// Channels of the four levels, finest first.
+    #[serde(rename = "c")]
+    pub channels: [usize; 4],
+    /// Residual blocks of the four levels; the encoder has half as many (rounded up) at the middle two.
+    pub blocks: [usize; 4],
+    /// Channels of the fine convolution.
+    pub fine: usize,
     /// Samples of the radar: range rows of every tensor.
     pub rows: usize,
     /// Elements of the radar's whole array: columns of the map. The network's inner pictures have 64, 256 and 1024 for any radar.
     pub columns: usize,
 }
 
-/// The entry as `training/train_live.py` writes it.
-#[derive(Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct SizeEntry {
-    c: [usize; 4],
-    blocks: [usize; 4],
-    fine: usize,
-    rows: usize,
-    columns: usize,
-}
-
-impl Default for SizeEntry {
-    fn default() -> Self {
-        let LiveConfig { channels: c, blocks, fine } = LiveConfig::default();
-        SizeEntry { c, blocks, fine, rows: ROWS, columns: COLUMNS }
-    }
-}
-
 impl Default for LiveSize {
     fn default() -> Self {
-        LiveConfig::default().into()
-    }
-}
-
-impl From<LiveConfig> for LiveSize {
-    /// A network of these widths for the shape of table 3.1's radar.
-    fn from(config: LiveConfig) -> Self {
-        LiveSize { config, rows: ROWS, columns: COLUMNS }
+        LiveSize { channels: [16, 32, 64, 96], blocks: [1, 2, 2, 3], fine: 16, rows: ROWS, columns: COLUMNS }
     }
 }
 
 impl LiveSize {
     /// The size of the network of `file`.
-    /// # Errors
-    /// [`WeightsError::Store`] names the entry where it can't be read, and the number that is out of bounds.
     pub fn of(file: &WeightFile) -> Result<Self, WeightsError> {
-        let wrong = |reason: String| WeightsError::Store {
-            file: file.name().to_owned(),
-            reason: format!("its entry \"{SIZE_ENTRY}\" {reason}"),
-        };
-        let entry = match file.provenance.get(SIZE_ENTRY) {
-            "" => SizeEntry::default(),
+        let wrong = |told: String| WeightsError(format!("{}: its entry \"{SIZE_ENTRY}\" {told}", file.name()));
+        let size: LiveSize = match file.provenance.get(SIZE_ENTRY) {
+            "" => LiveSize::default(),
             text => serde_json::from_str(text).map_err(|e| wrong(format!("is no size of a network: {e}")))?,
         };
-        let SizeEntry { c: channels, blocks, fine, rows, columns } = entry;
-        let size = LiveSize { config: LiveConfig { channels, blocks, fine }, rows, columns };
         size.check().map_err(wrong)?;
         Ok(size)
     }
@@ -97,31 +71,25 @@ impl LiveSize {
         if radar.end_elements < 2 {
             return Err("an end of one element sees no direction".to_owned());
         }
-        let shipped = LiveSize::default();
-        let is_small = 2 * radar.samples * radar.elements <= ROWS * COLUMNS;
-        let channels = if is_small { SMALL_CHANNELS } else { shipped.config.channels };
-        let config = LiveConfig { channels, ..shipped.config };
-        let size = LiveSize { config, rows: radar.samples, columns: radar.elements };
+        let mut size = LiveSize { rows: radar.samples, columns: radar.elements, ..LiveSize::default() };
+        if 2 * size.rows * size.columns <= ROWS * COLUMNS {
+            size.channels = SMALL_CHANNELS;
+        }
         size.check().map(|()| size).map_err(|why| format!("its network {why}"))
     }
 
-    /// Checks that the radars of the weight file called `name` have this shape.
-    /// # Errors
-    /// [`WeightsError::Store`] with both shapes.
     pub(super) fn check_domain(&self, name: &str, domain: &Domain) -> Result<(), WeightsError> {
-        let [samples, elements] = domain.shape();
-        if [samples, elements] == [self.rows, self.columns] {
+        let ([samples, elements], LiveSize { rows, columns, .. }) = (domain.shape(), self);
+        if [samples, elements] == [*rows, *columns] {
             return Ok(());
         }
-        let (file, LiveSize { rows, columns, .. }) = (name.to_owned(), self);
-        let reason = format!(
-            "its entry \"{SIZE_ENTRY}\" says {rows} samples and {columns} elements; its radars have {samples} and {elements}"
-        );
-        Err(WeightsError::Store { file, reason })
+        Err(WeightsError(format!(
+            "{name}: its entry \"{SIZE_ENTRY}\" says {rows} samples and {columns} elements; its radars have {samples} and {elements}"
+        )))
     }
 
     fn check(&self) -> Result<(), String> {
-        let LiveSize { config: LiveConfig { channels, blocks, fine }, rows, columns } = self;
+        let LiveSize { channels, blocks, fine, rows, columns } = self;
         let within = |name: &str, number: usize, range: &RangeInclusive<usize>| match range.contains(&number) {
             true => Ok(()),
             false => Err(format!("has {name} of {number}; expected {} to {}", range.start(), range.end())),
@@ -143,13 +111,13 @@ impl LiveSize {
 
     /// Processor seconds of a map in `training/train_live.py`: its pictures have as many rows as the radar has samples, and the same columns for any radar.
     pub fn training_seconds_a_map(&self) -> f64 {
-        let seconds = if self.config.channels == SMALL_CHANNELS { SMALL_MAP_SECONDS } else { MAP_SECONDS };
+        let seconds = if self.channels == SMALL_CHANNELS { SMALL_MAP_SECONDS } else { MAP_SECONDS };
         seconds * self.rows as f64 / ROWS as f64
     }
 
     /// Upper bound on the bytes of the weights as they are packed, and of the tables, pictures and maps of one pass.
     pub fn memory_bytes(&self) -> u64 {
-        let LiveConfig { channels, blocks, fine } = &self.config;
+        let LiveSize { channels, blocks, fine, .. } = self;
         let wide = |count: usize| padded(count) as u64;
         // A 3x3 convolution is packed as 36 products.
         let conv = |input: usize, output: usize| 36 * wide(input) * wide(output);
@@ -190,9 +158,9 @@ mod tests {
         assert_eq!(of(""), Ok(LiveSize::default()));
         assert_eq!(of("{}"), Ok(LiveSize::default()));
         let small = of(r#"{"c": [12, 24, 44, 60], "rows": 128, "columns": 192}"#).unwrap();
-        assert_eq!((small.rows, small.columns, small.config.channels), (128, 192, [12, 24, 44, 60]));
+        assert_eq!((small.rows, small.columns, small.channels), (128, 192, [12, 24, 44, 60]));
         assert_eq!(of(r#"{"rows": 4096}"#).unwrap().rows, MAX_ROWS);
-        assert_eq!(small.config.blocks, LiveConfig::default().blocks);
+        assert_eq!(small.blocks, LiveSize::default().blocks);
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Tests of the engine and its features against the same network in PyTorch.
 
-use super::LiveConfig;
 use super::engine::{LiveEngine, LiveScratch};
 use super::features::{FeatureExtractor, LiveInput};
 use super::grid::{COARSE_COLUMNS, COLUMNS, CONSTANTS, FINE_COLUMNS, ROWS};
+use super::size::LiveSize;
 use crate::network::weights::WeightFile;
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -13,8 +13,8 @@ use crate::signal::{TwoEnds, exact};
 const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
 const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
 
-fn tiny() -> LiveConfig {
-    LiveConfig { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4 }
+fn tiny() -> LiveSize {
+    LiveSize { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4, ..LiveSize::default() }
 }
 
 /// The samples of a reference's three reflectors, and the network's input.
@@ -65,7 +65,7 @@ fn weights_of_version_0_1_answer_as_they_did() {
     let weights = include_bytes!("../../../tests/data/program-0.1.0/live_reference_weights.safetensors");
     let reference = include_bytes!("../../../tests/data/program-0.1.0/live_reference.safetensors");
     let reference = WeightFile::parse("reference", reference).unwrap();
-    let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &tiny().into()).unwrap();
+    let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &tiny()).unwrap();
     let found = engine.forward(&input(&reference, 1.0), &mut LiveScratch::default());
     let (mean, largest) = distance(&found.map, &reference.tensor("log", &[16, 64]).unwrap(), ROWS, COLUMNS, 32, 16);
     assert!(mean < 1e-4 && largest < 1e-2, "mean {mean}, largest {largest}");
@@ -76,7 +76,7 @@ fn the_engine_agrees_with_the_twin() {
     let reference = WeightFile::parse("reference", REFERENCE).unwrap();
     let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
     let input = input(&reference, 1.0);
-    let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
+    let engine = LiveEngine::new(&weights, &tiny()).unwrap();
     let fast = engine.forward(&input, &mut LiveScratch::default());
     let expected = reference.tensor("log", &[16, 64]).unwrap();
     let (mean, largest) = distance(&fast.map, &expected, ROWS, COLUMNS, 32, 16);
@@ -98,7 +98,7 @@ fn the_engine_agrees_with_the_twin() {
 fn a_louder_receiver_changes_nothing_but_the_gain() {
     let reference = WeightFile::parse("reference", REFERENCE).unwrap();
     let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
-    let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
+    let engine = LiveEngine::new(&weights, &tiny()).unwrap();
     let (soft, loud) = (input(&reference, 1.0), input(&reference, 1e6));
     assert!((loud.gain - soft.gain - 6.0).abs() < 1e-9);
     let mut scratch = LiveScratch::default();
@@ -111,7 +111,7 @@ fn a_louder_receiver_changes_nothing_but_the_gain() {
 fn a_second_pass_over_used_buffers_gives_the_same_bits() {
     let reference = WeightFile::parse("reference", REFERENCE).unwrap();
     let weights = WeightFile::parse("weights", WEIGHTS).unwrap();
-    let engine = LiveEngine::new(&weights, &tiny().into()).unwrap();
+    let engine = LiveEngine::new(&weights, &tiny()).unwrap();
     let input = input(&reference, 1.0);
     let mut scratch = LiveScratch::default();
     assert_eq!(engine.forward(&input, &mut scratch), engine.forward(&input, &mut scratch));

@@ -103,7 +103,6 @@ impl Conv3x3 {
 }
 
 impl Band {
-    /// Reads lines and transforms them into the pictures, in which each strip of four lines becomes one line.
     fn spread(&mut self, simd: Simd, channels: usize, groups: usize, strips: usize, read: impl Fn(usize, &mut [f32])) {
         let cells = groups * OUTPUTS * channels;
         let size = groups * channels;

@@ -12,22 +12,13 @@ pub(super) struct ThesisLayers<'a> {
 }
 
 impl ThesisLayers<'_> {
-    /// Weights `[output, input, size, size]` and bias `[output]` of stage `name`, a convolution.
-    pub(super) fn conv(&self, name: &str, shape: [usize; 4]) -> Result<[Vec<f32>; 2], WeightsError> {
+    /// Weights and bias of stage `name`, a convolution of `shape` `[output, input, size, size]`, or with `outputs` 1 a transposed one of
+    /// `[input, output, size, size]`.
+    pub(super) fn conv(&self, name: &str, shape: [usize; 4], outputs: usize) -> Result<[Vec<f32>; 2], WeightsError> {
         let mut weights = self.file.tensor(&format!("{name}.conv.weight"), &shape)?;
-        let [scale, shift] = self.scale_and_shift(name, shape[0])?;
-        let each = shape[1] * shape[2] * shape[3];
-        for (of_output, scale) in weights.chunks_exact_mut(each).zip(&scale) {
-            of_output.iter_mut().for_each(|w| *w *= scale);
-        }
-        Ok([weights, shift])
-    }
-
-    /// Weights `[input, output, size, size]` and bias `[output]` of stage `name`, a transposed convolution.
-    pub(super) fn transposed(&self, name: &str, shape: [usize; 4]) -> Result<[Vec<f32>; 2], WeightsError> {
-        let mut weights = self.file.tensor(&format!("{name}.conv.weight"), &shape)?;
-        let [scale, shift] = self.scale_and_shift(name, shape[1])?;
-        for (of_output, scale) in weights.chunks_exact_mut(shape[2] * shape[3]).zip(scale.iter().cycle()) {
+        let [scale, shift] = self.scale_and_shift(name, shape[outputs])?;
+        let each = shape[outputs + 1..].iter().product();
+        for (of_output, scale) in weights.chunks_exact_mut(each).zip(scale.iter().cycle()) {
             of_output.iter_mut().for_each(|w| *w *= scale);
         }
         Ok([weights, shift])

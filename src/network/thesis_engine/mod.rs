@@ -1,12 +1,5 @@
 //! The forward pass of the thesis' network without a framework: channels-last, buffers kept, the same weights as [`super::thesis`], which is
 //! trained and which tests compare it with.
-//!
-//! | file | content |
-//! |---|---|
-//! | `layers` | weights with each batch norm folded into its convolution |
-//! | `pictures` | pictures with circular margins and with borders of zeros |
-//! | `towers` | the way down |
-//! | `upward` | the way up |
 
 mod layers;
 mod pictures;

@@ -16,7 +16,6 @@ const POOLED_OUTPUTS: usize = 4;
 #[derive(Debug)]
 pub(super) struct TowerLevel {
     kernel: Packed,
-    /// Rows and columns of the kernel.
     size: usize,
     output: usize,
 }
@@ -31,7 +30,7 @@ impl TowerLevel {
     ) -> Result<Vec<TowerLevel>, WeightsError> {
         let stage = |level: usize| {
             let input = if level == 0 { CHANNELS } else { filters };
-            let [weights, bias] = layers.conv(&format!("down.{name}.{level}"), [filters, input, size, size])?;
+            let [weights, bias] = layers.conv(&format!("down.{name}.{level}"), [filters, input, size, size], 0)?;
             Ok(TowerLevel { kernel: Packed::new(&weights, &bias, [input; 2], [size; 2], 1), size, output: filters })
         };
         (0..levels).map(stage).collect()

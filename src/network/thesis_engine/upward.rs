@@ -22,13 +22,12 @@ pub(super) struct UpwardLevel {
 }
 
 impl UpwardLevel {
-    /// Stage `level` with so many input and output channels.
     pub(super) fn new(
         layers: ThesisLayers<'_>,
         level: usize,
         [input, output]: [usize; 2],
     ) -> Result<UpwardLevel, WeightsError> {
-        let [weights, bias] = layers.transposed(&format!("up.upconv.{level}"), [input, output, SIZE, SIZE])?;
+        let [weights, bias] = layers.conv(&format!("up.upconv.{level}"), [input, output, SIZE, SIZE], 1)?;
         let part = |rows: [usize; 2], columns: [usize; 2]| {
             let weight = |o: usize, i: usize| {
                 let kernel = &weights[(i * output + o) * SIZE * SIZE..];
@@ -86,9 +85,8 @@ pub(super) struct Last {
 }
 
 impl Last {
-    /// Stage `level` with so many input channels.
     pub(super) fn new(layers: ThesisLayers<'_>, level: usize, input: usize) -> Result<Last, WeightsError> {
-        let [weights, bias] = layers.transposed(&format!("up.upconv.{level}"), [input, 1, SIZE, SIZE])?;
+        let [weights, bias] = layers.conv(&format!("up.upconv.{level}"), [input, 1, SIZE, SIZE], 1)?;
         let taps: Vec<f32> = (0..LANES).flat_map(|tap| weights.iter().skip(tap).step_by(LANES)).copied().collect();
         let products = Packed::new(&taps, &[0.0; LANES], [input, padded(input)], [1, 1], 1);
         Ok(Last { products, bias: bias.iter().sum() })

@@ -21,7 +21,7 @@ impl WeightFile<'_> {
         self.expect_only(|name| wanted.contains_key(name) || ignored(name))?;
         let mut store =
             SafetensorsStore::from_bytes(Some(self.in_single_precision()?)).with_from_adapter(PyTorchToBurnAdapter);
-        let store_error = |reason: String| WeightsError::Store { file: self.name.clone(), reason };
+        let store_error = |reason: String| WeightsError(format!("{}: {reason}", self.name));
         let result = module.load_from(&mut store).map_err(|e| store_error(e.to_string()))?;
         if !result.missing.is_empty() || !result.errors.is_empty() {
             return Err(store_error(format!("missing {:?}, errors {:?}", result.missing, result.errors)));

@@ -10,9 +10,9 @@ const HALF: &str = "F16";
 impl WeightFile<'_> {
     /// The values of one tensor.
     /// # Errors
-    /// [`WeightsError::Tensor`] when it is missing, of another shape or type, or not finite.
+    /// [`WeightsError`] when it is missing, of another shape or type, or not finite.
     pub fn tensor(&self, name: &str, shape: &[usize]) -> Result<Vec<f32>, WeightsError> {
-        let bad = |problem: String| WeightsError::Tensor { file: self.name.clone(), tensor: name.to_owned(), problem };
+        let bad = |problem: String| self.bad_tensor(name, problem);
         let found = self.tensors.get(name).ok_or_else(|| bad("is missing".into()))?;
         if found.shape != shape {
             return Err(bad(format!("has shape {:?}; expected {shape:?}", found.shape)));
@@ -44,8 +44,6 @@ impl WeightFile<'_> {
     }
 
     /// The same file with 32-bit floats in place of 16-bit ones, for readers that need them; other types stay.
-    /// # Errors
-    /// [`WeightsError::Tensor`] for a tensor that lies outside the file, [`WeightsError::NotSafetensors`] if the header can't be written.
     #[cfg(feature = "network")]
     pub(super) fn in_single_precision(&self) -> Result<Vec<u8>, WeightsError> {
         if self.tensors.values().all(|tensor| tensor.dtype != HALF) {
@@ -54,7 +52,7 @@ impl WeightFile<'_> {
         let mut data = Vec::new();
         let mut tensors = std::collections::BTreeMap::new();
         for (name, tensor) in &self.tensors {
-            let bad = |problem| WeightsError::Tensor { file: self.name.clone(), tensor: name.clone(), problem };
+            let bad = |problem: String| self.bad_tensor(name, problem);
             let (start, [from, to]) = (data.len(), tensor.data_offsets);
             let dtype = if tensor.dtype == HALF {
                 data.extend(self.values(tensor).map_err(bad)?.iter().flat_map(|v| v.to_le_bytes()));

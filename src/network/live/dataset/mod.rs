@@ -25,7 +25,7 @@ use crate::platform::fs;
 use crate::radar::Radar;
 use crate::scene::generate::{Kind, Mixture, Purpose};
 use crate::task::{Cancelled, Task};
-use manifest::{ArrayEntry, FileEntry, ShardEntry};
+use manifest::{FileEntry, ShardEntry};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -128,9 +128,6 @@ enum ArrayKind {
     Gain,
 }
 
-const SPLITS: [(&str, Purpose); 3] =
-    [("train", Purpose::Training), ("validation", Purpose::Validation), ("test", Purpose::Test)];
-
 /// The contents of a dataset to write.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DatasetRequest {
@@ -170,18 +167,12 @@ impl DatasetRequest {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum DatasetError {
-    /// The request is invalid.
     #[error("{0}")]
     Request(String),
-    /// A file or folder can't be written.
     #[error("{path}: {source}")]
     File { path: PathBuf, source: io::Error },
-    /// A scene can't be made.
     #[error(transparent)]
     Example(#[from] ExampleError),
-    /// There are no examples of this kind or radar.
-    #[error(transparent)]
-    Examples(#[from] ExamplesError),
     #[error("cancelled")]
     Cancelled(#[from] Cancelled),
 }
@@ -195,9 +186,11 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
         move |source| DatasetError::File { path, source }
     };
     check(request)?;
-    for ((_, purpose), _) in SPLITS.into_iter().zip(request.counts).filter(|(_, count)| *count > 0) {
-        makers(request, purpose)?;
-    }
+    // What can't be made is refused before anything is written.
+    let makers_of =
+        |(purpose, count): (Purpose, u32)| if count > 0 { makers(request, purpose) } else { Ok(Vec::new()) };
+    let purposes = [Purpose::Training, Purpose::Validation, Purpose::Test];
+    let makers = purposes.into_iter().zip(request.counts).map(makers_of).collect::<Result<Vec<_>, _>>()?;
     fs::create_dir_all(folder).map_err(on(folder))?;
     if fs::read_dir(folder).map_err(on(folder))?.next().is_some() {
         let message = format!("{} is not empty; expected an empty folder or a new one", folder.display());
@@ -208,16 +201,13 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
         request.parts.iter().flat_map(|part| part.arrays(heard)).chain([ArrayKind::Gain]).collect();
     let mut manifest = manifest_of(request, &arrays);
     let mut done = 0;
-    for ((split, purpose), count) in SPLITS.into_iter().zip(request.counts) {
-        if count == 0 {
-            manifest.splits.insert(split.to_owned(), Vec::new());
-            continue;
-        }
-        let makers = makers(request, purpose)?;
-        let of_split = folder.join(split);
-        fs::create_dir_all(&of_split).map_err(on(&of_split))?;
-        let total = count * makers.len() as u32;
+    for ((split, makers), count) in ["train", "validation", "test"].into_iter().zip(makers).zip(request.counts) {
         let mut shards = Vec::new();
+        let total = count * makers.len() as u32;
+        if total > 0 {
+            let of_split = folder.join(split);
+            fs::create_dir_all(&of_split).map_err(on(&of_split))?;
+        }
         for first in (0..total).step_by(request.shard as usize) {
             let last = total.min(first + request.shard);
             let examples: Result<Vec<Example>, DatasetError> = (first..last)
@@ -290,8 +280,9 @@ fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, D
         layout: request.layout.clone(),
         ..ExamplesRequest::default()
     };
-    let of = |kind: &Kind| Ok(Examples::new(ExamplesRequest { mixture: Mixture::of(*kind), ..of_all.clone() })?);
-    request.kinds.iter().map(of).collect()
+    let of = |kind: &Kind| Examples::new(ExamplesRequest { mixture: Mixture::of(*kind), ..of_all.clone() });
+    let made: Result<_, ExamplesError> = request.kinds.iter().map(of).collect();
+    made.map_err(|error| DatasetError::Request(error.to_string()))
 }
 
 fn write_shard(
@@ -302,14 +293,15 @@ fn write_shard(
     (arrays, radar): (&[ArrayKind], &Radar),
     precision: DatasetPrecision,
 ) -> Result<BTreeMap<String, FileEntry>, DatasetError> {
-    let name_of = |array: &ArrayKind| format!("{split}/{number:05}.{}.npy", array.name());
+    let called = |array: &ArrayKind| array.entry(radar, precision).0;
+    let name_of = |array: &ArrayKind| format!("{split}/{number:05}.{}.npy", called(array));
     let write = |array: &ArrayKind| {
         let name = name_of(array);
         let bytes = array.file(examples, radar, precision);
         let path = folder.join(&name);
         write_bytes(&path, &bytes).map_err(|source| DatasetError::File { path: path.clone(), source })?;
         let entry = FileEntry { name, bytes: bytes.len() as u64, sha256: sha256::of_bytes(&bytes) };
-        Ok((array.name().to_owned(), entry))
+        Ok((called(array).to_owned(), entry))
     };
     let written: Result<_, DatasetError> = arrays.par_iter().map(write).collect();
     if written.is_err() {
@@ -321,12 +313,8 @@ fn write_shard(
 fn manifest_of(request: &DatasetRequest, arrays: &[ArrayKind]) -> Manifest {
     let radar = &request.radars.shape();
     let entry = |array: &ArrayKind| {
-        let entry = ArrayEntry {
-            dtype: array.dtype(request.precision).to_owned(),
-            axes: array.axes().iter().map(|axis| (*axis).to_owned()).collect(),
-            shape: array.shape(radar),
-        };
-        (array.name().to_owned(), entry)
+        let (name, entry) = array.entry(radar, request.precision);
+        (name.to_owned(), entry)
     };
     Manifest {
         apertura_dataset: VERSION,

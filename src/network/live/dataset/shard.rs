@@ -1,5 +1,6 @@
 //! The arrays of some examples, as NumPy files.
 
+use super::manifest::ArrayEntry;
 use super::{ArrayKind, DatasetPrecision};
 use crate::network::live::examples::{EndSamples, Example};
 use crate::network::live::features::LiveInput;
@@ -11,75 +12,49 @@ use half::f16;
 use num_complex::Complex64;
 
 impl ArrayKind {
-    /// Name of the array's file behind the shard's number.
-    pub fn name(self) -> &'static str {
-        match self {
-            ArrayKind::Ends => "ends",
-            ArrayKind::Layout(_) => "heard",
-            ArrayKind::Fine => "fine",
-            ArrayKind::Coarse => "coarse",
-            ArrayKind::Rows => "rows",
-            ArrayKind::Scalars => "scalars",
-            ArrayKind::Constants => "constants",
-            ArrayKind::Target(target) => target.array(),
-            ArrayKind::Gain => "gain",
-        }
-    }
-
-    /// Names of the array's axes.
-    pub fn axes(self) -> &'static [&'static str] {
-        match self {
-            ArrayKind::Ends => &["example", "end", "element", "sample"],
-            ArrayKind::Layout(_) => &["example", "element", "sample"],
-            ArrayKind::Fine | ArrayKind::Coarse => &["example", "channel", "range_bin", "column"],
-            ArrayKind::Rows => &["example", "channel", "range_bin"],
-            ArrayKind::Scalars => &["example", "scalar"],
-            ArrayKind::Constants => &["example", "constant"],
-            ArrayKind::Target(_) => &["example", "range_bin", "column"],
-            ArrayKind::Gain => &["example"],
-        }
-    }
-
-    /// The array's shape behind the number of examples.
-    pub fn shape(self, radar: &Radar) -> Vec<usize> {
-        match self {
-            ArrayKind::Ends => vec![2, radar.end_elements, radar.samples],
-            ArrayKind::Layout(elements) => vec![elements, radar.samples],
-            ArrayKind::Fine => vec![FINE_CHANNELS, radar.samples, FINE_COLUMNS],
-            ArrayKind::Coarse => vec![COARSE_CHANNELS, radar.samples, COARSE_COLUMNS],
-            ArrayKind::Rows => vec![ROW_CHANNELS, radar.samples],
-            ArrayKind::Scalars => vec![SCALARS],
-            ArrayKind::Constants => vec![CONSTANTS],
-            ArrayKind::Target(_) => vec![radar.samples, radar.elements],
-            ArrayKind::Gain => Vec::new(),
-        }
-    }
-
-    /// NumPy's name of the array's type. Small arrays and samples keep all bits: the thesis' floor lies 230 dB below its echoes.
-    pub fn dtype(self, precision: DatasetPrecision) -> &'static str {
-        match (self, precision) {
-            (ArrayKind::Ends | ArrayKind::Layout(_), _) => "<c16",
-            (ArrayKind::Gain, _) => "<f8",
-            (ArrayKind::Scalars | ArrayKind::Constants, _) | (_, DatasetPrecision::Single) => "<f4",
-            (_, DatasetPrecision::Half) => "<f2",
-        }
+    /// Name of the array's files behind the shard's number, and the array's type, axes and shape. Small arrays and samples keep all bits: the thesis'
+    /// floor lies 230 dB below its echoes.
+    pub fn entry(self, radar: &Radar, precision: DatasetPrecision) -> (&'static str, ArrayEntry) {
+        let Radar { samples, elements, end_elements, .. } = *radar;
+        let cells = if precision == DatasetPrecision::Half { "<f2" } else { "<f4" };
+        let (name, dtype, axes, shape): (_, _, &[&str], _) = match self {
+            ArrayKind::Ends => ("ends", "<c16", &["end", "element", "sample"], vec![2, end_elements, samples]),
+            ArrayKind::Layout(heard) => ("heard", "<c16", &["element", "sample"], vec![heard, samples]),
+            ArrayKind::Fine => ("fine", cells, &PICTURE_AXES, vec![FINE_CHANNELS, samples, FINE_COLUMNS]),
+            ArrayKind::Coarse => ("coarse", cells, &PICTURE_AXES, vec![COARSE_CHANNELS, samples, COARSE_COLUMNS]),
+            ArrayKind::Rows => ("rows", cells, &["channel", "range_bin"], vec![ROW_CHANNELS, samples]),
+            ArrayKind::Scalars => ("scalars", "<f4", &["scalar"], vec![SCALARS]),
+            ArrayKind::Constants => ("constants", "<f4", &["constant"], vec![CONSTANTS]),
+            ArrayKind::Target(target) => (target.array(), cells, &["range_bin", "column"], vec![samples, elements]),
+            ArrayKind::Gain => ("gain", "<f8", &[], Vec::new()),
+        };
+        let axes = ["example"].iter().chain(axes).map(|axis| (*axis).to_owned()).collect();
+        (name, ArrayEntry { dtype: dtype.to_owned(), axes, shape })
     }
 
     /// The whole file of the array for these examples.
     pub fn file(self, examples: &[Example], radar: &Radar, precision: DatasetPrecision) -> Vec<u8> {
-        let shape: Vec<usize> = [examples.len()].into_iter().chain(self.shape(radar)).collect();
-        let mut bytes = header(self.dtype(precision), &shape);
+        let (_, ArrayEntry { dtype, shape, .. }) = self.entry(radar, precision);
+        let shape: Vec<usize> = [examples.len()].into_iter().chain(shape).collect();
+        let mut bytes = header(&dtype, &shape);
         for example in examples {
+            let input = |of: fn(&LiveInput) -> &[f32]| example.input.as_ref().map_or([].as_slice(), of);
             match self {
                 ArrayKind::Ends | ArrayKind::Layout(_) => put_heard(&mut bytes, example),
+                ArrayKind::Fine => put(&mut bytes, input(|input| &input.fine), precision),
+                ArrayKind::Coarse => put(&mut bytes, input(|input| &input.coarse), precision),
+                ArrayKind::Rows => put(&mut bytes, input(|input| &input.rows), precision),
+                ArrayKind::Scalars => put(&mut bytes, input(|input| &input.scalars), DatasetPrecision::Single),
+                ArrayKind::Constants => put(&mut bytes, input(|input| &input.constants), DatasetPrecision::Single),
                 ArrayKind::Target(target) => put(&mut bytes, example.target(target).into_iter().flatten(), precision),
                 ArrayKind::Gain => bytes.extend(example.gain.to_le_bytes()),
-                feature => example.input.iter().for_each(|input| put_feature(&mut bytes, feature, input, precision)),
             }
         }
         bytes
     }
 }
+
+const PICTURE_AXES: [&str; 3] = ["channel", "range_bin", "column"];
 
 fn put_heard(bytes: &mut Vec<u8>, example: &Example) {
     let scale = 10f64.powf(-example.gain);
@@ -90,17 +65,6 @@ fn put_heard(bytes: &mut Vec<u8>, example: &Example) {
     match &example.heard {
         EndSamples::Ends(ends) => ends.first.iter().chain(&ends.last).for_each(&mut put),
         EndSamples::Elements(samples) => samples.iter().for_each(&mut put),
-    }
-}
-
-fn put_feature(bytes: &mut Vec<u8>, feature: ArrayKind, input: &LiveInput, precision: DatasetPrecision) {
-    match feature {
-        ArrayKind::Fine => put(bytes, &input.fine, precision),
-        ArrayKind::Coarse => put(bytes, &input.coarse, precision),
-        ArrayKind::Rows => put(bytes, &input.rows, precision),
-        ArrayKind::Scalars => put(bytes, &input.scalars, DatasetPrecision::Single),
-        ArrayKind::Constants => put(bytes, &input.constants, DatasetPrecision::Single),
-        ArrayKind::Ends | ArrayKind::Layout(_) | ArrayKind::Target(_) | ArrayKind::Gain => {}
     }
 }
 
