@@ -27,7 +27,7 @@ pub(super) fn h5_shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize
 /// [`matlab::read_mat`], also for version 7.3.
 pub(super) fn read_mat(mut file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     if !is_new(&mut file)? {
-        return Ok(matlab::read_mat(file, key)?);
+        return matlab::read_mat(file, key);
     }
     Ok(match read_h5(file, key)? {
         Numbers::Real(values) => Numbers::Real(values.reversed_axes()),
@@ -38,7 +38,7 @@ pub(super) fn read_mat(mut file: impl Read + Seek, key: &str) -> Result<Numbers,
 /// [`matlab::shapes`], also for version 7.3.
 pub(super) fn mat_shapes(mut file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     if !is_new(&mut file)? {
-        return Ok(matlab::shapes(file)?);
+        return matlab::shapes(file);
     }
     Ok(h5_shapes(file)?.into_iter().map(|(key, shape)| (key, shape.into_iter().rev().collect())).collect())
 }

@@ -1,5 +1,6 @@
 //! Arrays of a file before their axes are named.
 
+use super::Fault;
 use ndarray::ArrayD;
 use num_complex::Complex64;
 
@@ -53,6 +54,11 @@ impl Numbers {
 /// Number of numbers in an array of `shape`; `None` above [`MAX_NUMBERS`].
 pub(super) fn bounded_count(shape: &[usize]) -> Option<usize> {
     shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len)).filter(|n| *n <= MAX_NUMBERS)
+}
+
+/// The error of an array of more than [`MAX_NUMBERS`].
+pub(super) fn too_large(what: &str, shape: &[usize]) -> Fault {
+    Fault::Data(format!("{what} has shape {shape:?}; expected at most {MAX_NUMBERS} numbers"))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::said_recording::{Covers, Table};
 use super::signs::Signs;
 use super::{AxisKind, Capture, Chirp, Fault, RadarProfile, Recorded, hdf5};
 use crate::radar::Radar;
-use crate::signal::{BeatSignal, TwoEnds};
+use crate::signal::BeatSignal;
 use ndarray::{Array2, Array3, Axis, concatenate};
 use num_complex::Complex64;
 use std::cell::RefCell;
@@ -49,7 +49,8 @@ fn read(
         None => read_arrays(table, radar, open)?,
     };
     if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
-        return Err(Fault::NotFinite { element, sample });
+        let message = format!("sample {sample} of element {element} is not finite; expected finite numbers only");
+        return Err(Fault::Data(message));
     }
     table.calibration.take_off(&mut rows)?;
     if signs.conjugates {
@@ -70,8 +71,7 @@ fn in_element_order(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Re
     let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
     if rows.nrows() != transmitters * receivers {
         let expected = format!("{transmitters} by {receivers}, as many as radar says places of antennas");
-        let (found, shape) = (rows.nrows(), rows.dim());
-        return Err(Fault::Count { what: "pairs of antennas", found, expected, shape });
+        return Err(Fault::count("pairs of antennas", rows.nrows(), &expected, rows.dim()));
     }
     let mut ordered = Array2::zeros((radar.elements, rows.ncols()));
     for (mut element, pair) in ordered.outer_iter_mut().zip(antennas.pairs()) {
@@ -224,8 +224,7 @@ fn read_arrays(table: &Table, radar: &Radar, open: Open<'_>) -> Result<(Array2<C
             let (first, last) = (array(Some(first))?, array(Some(last))?);
             if first.dim() != last.dim() {
                 let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
-                let (found, shape) = (last.len(), last.dim());
-                return Err(Fault::Count { what: "numbers in \"last\"", found, expected, shape });
+                return Err(Fault::count("numbers in \"last\"", last.len(), &expected, last.dim()));
             }
             // Equal shapes join.
             concatenate(Axis(0), &[first.view(), last.view()])
@@ -318,13 +317,13 @@ fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, 
     let extension = table.extension();
     let named = || key.ok_or_else(|| Fault::key("recording.array", "is missing", "the array's name in the file"));
     match extension.as_str() {
-        "npz" => Ok(read_npz(open(&table.file)?, named()?)?),
+        "npz" => read_npz(open(&table.file)?, named()?),
         "mat" => hdf5::read_mat(open(&table.file)?, named()?),
         "h5" | "hdf5" => hdf5::read_h5(open(&table.file)?, named()?),
         "npy" if key.is_some() => {
             Err(Fault::key("recording.array", "is there", "it not beside an .npy file, which holds one array"))
         }
-        "npy" => Ok(read_npy(open(&table.file)?)?),
+        "npy" => read_npy(open(&table.file)?),
         "bin" => Err(Fault::key("[recording.capture]", "is missing", "it beside a .bin file")),
         _ => Err(Fault::key(
             "recording.file",
@@ -338,7 +337,7 @@ fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, 
 fn sorted(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
     if rows.ncols() != radar.samples {
         let expected = format!("{} as radar.samples says", radar.samples);
-        return Err(Fault::Count { what: "samples", found: rows.ncols(), expected, shape: rows.dim() });
+        return Err(Fault::count("samples", rows.ncols(), &expected, rows.dim()));
     }
     let covered = table.covered(radar);
     let missing: HashSet<usize> = table.missing.iter().copied().collect();
@@ -351,12 +350,8 @@ fn sorted(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Recor
         };
         let whose =
             if table.covers() == Covers::All { "radar.elements says" } else { "radar.end_elements says for two ends" };
-        Fault::Count {
-            what: "elements",
-            found: rows.nrows(),
-            expected: format!("{} as {whose}{without}", covered.len()),
-            shape: rows.dim(),
-        }
+        let expected = format!("{} as {whose}{without}", covered.len());
+        Fault::count("elements", rows.nrows(), &expected, rows.dim())
     })?;
     let mut samples = Array2::zeros((radar.elements, radar.samples));
     for (element, row) in places.iter().zip(rows.outer_iter()).filter(|(element, _)| !missing.contains(element)) {
@@ -365,9 +360,6 @@ fn sorted(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Recor
     let signal = BeatSignal { samples };
     Ok(match table.covers() {
         Covers::All => Recorded::All(signal),
-        Covers::Ends => {
-            let TwoEnds { first, last } = signal.two_ends(radar);
-            Recorded::Ends(TwoEnds { first, last })
-        }
+        Covers::Ends => Recorded::Ends(signal.two_ends(radar)),
     })
 }

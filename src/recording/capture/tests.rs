@@ -13,7 +13,7 @@ fn capture(lanes: usize, receivers: ReceiverOrder) -> Capture {
     toml::from_str(&format!("lanes = {lanes}\nreceivers = \"{order}\"\nchirps = [0, 1]")).unwrap()
 }
 
-type Read = Result<(Array3<Complex64>, Vec<String>), CaptureError>;
+type Read = Result<(Array3<Complex64>, Vec<String>), Fault>;
 
 fn read(capture: &Capture, bytes: &[u8], profile: &RadarProfile) -> Read {
     capture.read(Cursor::new(bytes), &Meaning { profile: Some(profile), turns: &[], beat_rises: true })

@@ -1,7 +1,8 @@
 //! The commands of a `.cfg` that are read. The last of several equal commands holds, as on the radar's command line.
 
-use super::error::{MOST_CHIRPS, ProfileError};
+use super::MOST_CHIRPS;
 use super::lines::{Line, lines};
+use crate::recording::Fault;
 use std::collections::BTreeMap;
 
 /// A chirp of a `chirpCfg`.
@@ -35,7 +36,7 @@ pub(super) struct Commands<'a> {
 }
 
 impl<'a> Commands<'a> {
-    pub fn read(text: &'a str) -> Result<Self, ProfileError> {
+    pub fn read(text: &'a str) -> Result<Self, Fault> {
         let mut all = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() };
         for line in lines(text) {
             all.take(line)?;
@@ -43,7 +44,7 @@ impl<'a> Commands<'a> {
         Ok(all)
     }
 
-    fn take(&mut self, line: Line<'a>) -> Result<(), ProfileError> {
+    fn take(&mut self, line: Line<'a>) -> Result<(), Fault> {
         match line.command {
             "flushCfg" => *self = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() },
             "profileCfg" => {
@@ -69,7 +70,7 @@ impl<'a> Commands<'a> {
     }
 
     /// `chirpCfg start end profile dFrequency dSlope dIdle dAdcStart txMask`.
-    fn define_chirps(&mut self, line: &Line<'_>) -> Result<(), ProfileError> {
+    fn define_chirps(&mut self, line: &Line<'_>) -> Result<(), Fault> {
         let (first, last) =
             (line.count(0, "the first chirp", MOST_CHIRPS - 1)?, line.count(1, "the last chirp", MOST_CHIRPS - 1)?);
         let profile = line.count(2, "the profile's number", MOST_CHIRPS)?;
