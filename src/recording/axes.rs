@@ -5,7 +5,7 @@ use super::analytic::analytic;
 use super::numbers::Numbers;
 use ndarray::{Array2, Array4, ArrayD, Axis, IxDyn};
 use num_complex::Complex64;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
 
 /// Most numbers whose chirps are joined.
@@ -46,7 +46,7 @@ impl Display for AxisKind {
 }
 
 /// The chirp or loop that is taken of several, or the way to join them all.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a number from 0, \"mean\" or \"strongest\"")]
 pub enum Chirp {
     /// The chirp or loop of this number, from 0.
@@ -62,7 +62,7 @@ impl Default for Chirp {
 }
 
 /// A way to join chirps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Join {
     /// Their complex mean: echoes that stand still stay, moving ones fade.

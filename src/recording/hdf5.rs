@@ -2,7 +2,7 @@
 
 use super::numbers::{MAX_NUMBERS, Numbers};
 use super::{Fault, matlab};
-use crate::files::hdf5::{Hdf5, Hdf5Values};
+use crate::files::hdf5::Hdf5;
 use std::io::{self, Read, Seek, SeekFrom};
 
 /// The array called `key` of an HDF5 file; those in groups are `group.name`.
@@ -10,10 +10,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 /// # Errors
 /// [`Fault`] names the array, and what was expected of it.
 pub(super) fn read_h5(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
-    Ok(match Hdf5::open(file)?.values(key, MAX_NUMBERS)? {
-        Hdf5Values::Real(values) => Numbers::Real(values),
-        Hdf5Values::Complex(values) => Numbers::Complex(values),
-    })
+    Ok(Hdf5::open(file)?.values(key, MAX_NUMBERS)?)
 }
 
 /// Names and shapes of its arrays of numbers.

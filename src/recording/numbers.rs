@@ -1,20 +1,11 @@
 //! Arrays of a file before their axes are named.
 
 use super::Fault;
-use ndarray::ArrayD;
+pub(super) use crate::files::Numbers;
 use num_complex::Complex64;
 
 /// Most numbers that an array of a recording may hold: half a gigabyte of complex ones.
 pub const MAX_NUMBERS: usize = 1 << 25;
-
-/// An array of either kind.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Numbers {
-    /// Real numbers or integers.
-    Real(ArrayD<f64>),
-    /// Complex numbers.
-    Complex(ArrayD<Complex64>),
-}
 
 /// The largest number of 16 bits that has a sign.
 const MOST_SIGNED: f64 = i16::MAX as f64;
@@ -22,7 +13,7 @@ const MOST_SIGNED: f64 = i16::MAX as f64;
 impl Numbers {
     /// Gives 16-bit integers that lost their sign their sign again: 65535 is -1. Such numbers are whole, from 0 to 65535, and some lie beyond 32767.
     /// Returns a sentence where it was done.
-    pub fn mend_signs(&mut self) -> Option<String> {
+    pub(super) fn mend_signs(&mut self) -> Option<String> {
         let is_word = |v: f64| v.fract() == 0.0 && (0.0..=65535.0).contains(&v);
         let signed = |v: f64| if v > MOST_SIGNED { v - 65536.0 } else { v };
         let lost = match self {
@@ -43,7 +34,7 @@ impl Numbers {
     }
 
     /// Its shape.
-    pub fn shape(&self) -> &[usize] {
+    pub(super) fn shape(&self) -> &[usize] {
         match self {
             Numbers::Real(values) => values.shape(),
             Numbers::Complex(values) => values.shape(),

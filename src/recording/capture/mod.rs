@@ -20,7 +20,6 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use super::layout::ReceiverOrder;
 pub(super) use frame::Frame;
 pub(super) use plan::Plan;
 pub use table::{Capture, Part};

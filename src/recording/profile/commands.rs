@@ -22,17 +22,11 @@ pub(super) struct ChirpLine {
 #[derive(Default)]
 pub(super) struct Commands<'a> {
     pub profiles: BTreeMap<usize, Line<'a>>,
-    pub channels: Option<Line<'a>>,
-    pub frame: Option<Line<'a>>,
-    pub advanced: Option<Line<'a>>,
     pub sub_frames: BTreeMap<usize, Line<'a>>,
-    pub adc: Option<Line<'a>>,
-    pub buffer: Option<Line<'a>>,
-    pub stream: Option<Line<'a>>,
-    pub phases: Option<Line<'a>>,
     pub both: Vec<Line<'a>>,
-    pub geometry: [Option<Line<'a>>; 2],
     pub chirps: Vec<Option<ChirpLine>>,
+    /// The last line of each other command.
+    others: BTreeMap<&'a str, Line<'a>>,
 }
 
 impl<'a> Commands<'a> {
@@ -44,6 +38,10 @@ impl<'a> Commands<'a> {
         Ok(all)
     }
 
+    pub fn last(&self, command: &str) -> Option<&Line<'a>> {
+        self.others.get(command)
+    }
+
     fn take(&mut self, line: Line<'a>) -> Result<(), Fault> {
         match line.command {
             "flushCfg" => *self = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() },
@@ -53,18 +51,9 @@ impl<'a> Commands<'a> {
             "subFrameCfg" => {
                 self.sub_frames.insert(line.count(0, "the sub-frame's number", 3)?, line);
             }
-            "channelCfg" => self.channels = Some(line),
-            "frameCfg" => self.frame = Some(line),
-            "advFrameCfg" => self.advanced = Some(line),
-            "adcCfg" => self.adc = Some(line),
-            "adcbufCfg" => self.buffer = Some(line),
-            "lvdsStreamCfg" => self.stream = Some(line),
-            "compRangeBiasAndRxChanPhase" => self.phases = Some(line),
             "bpmCfg" => self.both.push(line),
-            "antGeometry0" => self.geometry[0] = Some(line),
-            "antGeometry1" => self.geometry[1] = Some(line),
             "chirpCfg" => self.define_chirps(&line)?,
-            _ => {}
+            other => _ = self.others.insert(other, line),
         }
         Ok(())
     }

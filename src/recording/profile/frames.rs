@@ -21,7 +21,7 @@ pub(super) struct Frame {
 
 /// The frames of the text: one, or the sub-frames in their order.
 pub(super) fn frames(commands: &Commands<'_>) -> Result<Vec<Frame>, Fault> {
-    match (&commands.frame, &commands.advanced) {
+    match (commands.last("frameCfg"), commands.last("advFrameCfg")) {
         (Some(frame), None) => Ok(vec![plain(frame)?]),
         (_, Some(advanced)) => {
             let count = advanced.count(0, "the number of sub-frames", 4)?;

@@ -10,14 +10,13 @@ pub(super) mod lines;
 pub(super) mod tests;
 
 use super::Fault;
-use crate::radar::Radar;
 use commands::Commands;
 use frames::{Frame, frames};
 use lines::Line;
 use num_complex::Complex64;
 
 /// The radar and the data format that a `.cfg` sets.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RadarProfile {
     /// Frequency at the start of the ramp, hertz.
     pub start_hz: f64,
@@ -107,7 +106,7 @@ impl RadarProfile {
         if commands.profiles.is_empty() {
             return Err(missing("profileCfg"));
         }
-        let channels = commands.channels.as_ref().ok_or_else(|| missing("channelCfg"))?;
+        let channels = commands.last("channelCfg").ok_or_else(|| missing("channelCfg"))?;
         let mask = channels.count(0, "the mask of receivers", 0xffff)?;
         if mask == 0 {
             return Err(channels.fault("no receiver is on"));
@@ -120,10 +119,7 @@ impl RadarProfile {
             let last = found - 1;
             Fault::Data(format!("has {found} sub-frames; expected recording.capture.sub_frame = 0 to {last}"))
         })?;
-        let mut parts = Vec::new();
-        for frame in &all {
-            parts.push(Part::of(&commands, frame)?);
-        }
+        let parts = all.iter().map(|frame| Part::of(&commands, frame)).collect::<Result<Vec<_>, _>>()?;
         let numbers: Vec<usize> =
             parts.iter().map(|p| p.numbers(receiver_numbers.len())).collect::<Option<_>>().unwrap_or_default();
         let part = &parts[chosen];
@@ -161,21 +157,21 @@ impl RadarProfile {
 
     /// Takes the commands on the data format and on corrections.
     fn said_of_data(&mut self, commands: &Commands<'_>) -> Result<(), Fault> {
-        if let Some(adc) = &commands.adc {
+        if let Some(adc) = commands.last("adcCfg") {
             adc.count(0, "the number of bits", 2)?;
             self.real = adc.count(1, "the format", 3)? == 0;
         }
-        if let Some(buffer) = &commands.buffer {
+        if let Some(buffer) = commands.last("adcbufCfg") {
             // The first SDKs had no sub-frames to name.
             let first = usize::from(buffer.values.len() != 4);
             self.q_first = buffer.may_count(first + 1, 1).map(|v| v == 1);
             self.interleaved = buffer.may_count(first + 2, 1).map(|v| v == 0);
         }
-        self.headers = commands.stream.as_ref().is_some_and(|s| s.may_count(1, 1) == Some(1));
+        self.headers = commands.last("lvdsStreamCfg").is_some_and(|s| s.may_count(1, 1) == Some(1));
         self.both_transmitters = commands.both.iter().any(|b| b.may_count(1, 1) == Some(1))
             && self.chirp_transmitters.len() == 2
             && self.chirp_transmitters.iter().all(|m| m.count_ones() == 2 && *m == self.chirp_transmitters[0]);
-        if let Some(phases) = &commands.phases {
+        if let Some(phases) = commands.last("compRangeBiasAndRxChanPhase") {
             let bias = phases.real(0, "the range bias in metres")?;
             if bias.is_nan() || bias.abs() > MOST_BIAS_METRES {
                 return Err(phases.fault(format!("the range bias is {bias}; expected metres")));
@@ -187,10 +183,10 @@ impl RadarProfile {
                 .filter(|v| v.is_finite())
                 .collect();
         }
-        for (places, line) in self.element_places.iter_mut().zip(&commands.geometry) {
-            *places =
-                line.as_ref().map_or(Vec::new(), |l| l.values.iter().copied().filter(|v| v.is_finite()).collect());
-        }
+        self.element_places = ["antGeometry0", "antGeometry1"].map(|command| {
+            let values = commands.last(command).into_iter().flat_map(|line| &line.values);
+            values.copied().filter(|v| v.is_finite()).collect()
+        });
         Ok(())
     }
 
@@ -218,14 +214,6 @@ impl RadarProfile {
     /// Whether the frequency rises from sample to sample.
     pub fn rises(&self) -> bool {
         self.slope_hz_per_second > 0.0
-    }
-
-    /// Writes carrier, bandwidth, samples and their duration into `radar`.
-    pub fn set(&self, radar: &mut Radar) {
-        radar.carrier_hz = self.carrier_hz();
-        radar.bandwidth_hz = self.bandwidth_hz();
-        radar.samples = self.complex_samples();
-        radar.chirp_seconds = self.chirp_seconds();
     }
 }
 
@@ -303,23 +291,12 @@ impl<'a> Part<'a> {
             slope_hz_per_second: 1e12 * line.not_zero(7, "the slope in MHz/us")?,
             samples_per_second: 1e3 * line.positive(10, "the sampling rate in ksps")?,
             samples,
-            real: false,
             receivers: receiver_numbers.len(),
             receiver_numbers,
             chirp_transmitters: self.transmitters.clone(),
-            chirp_interval_seconds: 0.0,
             loops: frame.loops,
             frames: frame.frames,
-            q_first: None,
-            interleaved: None,
-            headers: false,
-            both_transmitters: false,
-            range_bias_metres: 0.0,
-            channel_factors: Vec::new(),
-            element_places: [Vec::new(), Vec::new()],
-            numbers_before: 0,
-            frame_numbers: 0,
-            notes: Vec::new(),
+            ..RadarProfile::default()
         };
         // A ramp that ends before its samples do is a slip of the text: chirps can't overlap.
         profile.chirp_interval_seconds = (1e-6 * (idle + ramp)).max(profile.chirp_seconds());
