@@ -4,7 +4,7 @@ use super::input::load_board;
 use super::{CommandError, print};
 use crate::files::write_bytes;
 use crate::recording::Origin;
-use crate::recording::layout::{Candidate, Certainty, Kind};
+use crate::recording::layout::Candidate;
 use crate::recording::raw::{self, Imported};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ impl Args {
             check_output(output, &imported.origin.data)?;
         }
         // A file whose recording can't be read is no import.
-        let recording = imported.recording()?;
+        let recording = imported.origin.recording()?;
         if self.json {
             print(&described(&imported, &recording.doubts).to_string())?;
         } else {
@@ -91,11 +91,6 @@ fn check_output(output: &Path, data: &Path) -> Result<(), CommandError> {
 
 fn described(imported: &Imported, doubts: &[String]) -> Value {
     let Origin { data, config, offers, sentences, .. } = &imported.origin;
-    let certainty = match imported.certainty() {
-        Certainty::Sure => "sure",
-        Certainty::Likely => "likely",
-        Certainty::Open => "open",
-    };
     let layouts: Vec<Value> = match &imported.found {
         Some(found) => found.candidates.iter().take(MAX_LISTED_LAYOUTS).map(layout).collect(),
         None => offers.iter().map(|o| json!({ "axes": o.described, "log_odds": o.log_odds })).collect(),
@@ -103,8 +98,8 @@ fn described(imported: &Imported, doubts: &[String]) -> Value {
     json!({
         "data": data.display().to_string(),
         "config": config.as_ref().map(|c| c.display().to_string()),
-        "certainty": certainty,
-        "decided_by": imported.found.as_ref().map_or("axes", |found| kind(found.decided_by())),
+        "certainty": imported.certainty(),
+        "decided_by": imported.found.as_ref().map_or(json!("axes"), |found| json!(found.decided_by())),
         "log_odds_to_the_next": imported.margin(),
         "layouts": layouts,
         "sentences": sentences,
@@ -115,15 +110,11 @@ fn described(imported: &Imported, doubts: &[String]) -> Value {
 
 fn layout(candidate: &Candidate) -> Value {
     let Candidate { layout, counts, evidence, .. } = candidate;
-    let evidence: Vec<Value> = evidence
-        .iter()
-        .map(|e| json!({ "kind": kind(e.kind), "log_odds": e.log_odds, "sentence": e.sentence }))
-        .collect();
     json!({
-        "words": layout.words.name(),
-        "parts": layout.parts.name(),
+        "words": layout.words,
+        "parts": layout.parts,
         "q_first": layout.q_first,
-        "receivers": layout.receivers.name(),
+        "receivers": layout.receivers,
         "header_bytes": layout.header_bytes,
         "packets": layout.packets,
         "samples": counts.samples,
@@ -133,17 +124,4 @@ fn layout(candidate: &Candidate) -> Value {
         "log_odds": candidate.log_odds(),
         "evidence": evidence,
     })
-}
-
-fn kind(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Sharp => "spectrum",
-        Kind::Receivers => "receivers",
-        Kind::Rows => "rows",
-        Kind::Counts => "counts",
-        Kind::Half => "half",
-        Kind::Images => "images",
-        Kind::Config => "config",
-        Kind::Usual => "usual",
-    }
 }

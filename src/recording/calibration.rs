@@ -1,5 +1,6 @@
 //! Calibration: gains and phases of the elements are removed from the samples.
 
+use super::Fault;
 use ndarray::Array2;
 use num_complex::Complex64;
 use serde::Deserialize;
@@ -14,35 +15,6 @@ pub struct Calibration {
     pub phase_degrees: Vec<f64>,
 }
 
-/// A list that fits no array.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CalibrationError {
-    /// A list has another length than the file has elements.
-    #[error("recording.calibration.{list} has {found} numbers; expected {expected}, one for each element of the file")]
-    Length {
-        /// Name of the list.
-        list: &'static str,
-        /// Its length.
-        found: usize,
-        /// Elements of the file.
-        expected: usize,
-    },
-    /// A number is not finite or too large.
-    #[error(
-        "recording.calibration.{list} holds {value} for element {element}; expected a number from -{most} to {most}"
-    )]
-    Value {
-        /// Name of the list.
-        list: &'static str,
-        /// Index of the element.
-        element: usize,
-        /// The number.
-        value: f64,
-        /// Largest magnitude that is taken.
-        most: f64,
-    },
-}
-
 /// Largest gain that is taken off, decibels either way.
 const MOST_GAIN_DB: f64 = 200.0;
 /// Largest phase that is taken off, degrees either way.
@@ -52,18 +24,21 @@ impl Calibration {
     /// Takes gain and phase off the samples, `[elements, samples]`.
     ///
     /// # Errors
-    /// [`CalibrationError`] where a list fits another number of elements, or holds what is no gain or phase.
-    pub fn take_off(&self, samples: &mut Array2<Complex64>) -> Result<(), CalibrationError> {
+    /// [`Fault::Key`] where a list fits another number of elements, or holds what is no gain or phase.
+    pub fn take_off(&self, samples: &mut Array2<Complex64>) -> Result<(), Fault> {
         let elements = samples.nrows();
         let lists =
             [("gain_db", &self.gain_db, MOST_GAIN_DB), ("phase_degrees", &self.phase_degrees, MOST_PHASE_DEGREES)];
         for (list, values, most) in lists {
+            let key = format!("recording.calibration.{list}");
             if !values.is_empty() && values.len() != elements {
-                return Err(CalibrationError::Length { list, found: values.len(), expected: elements });
+                let expected = format!("{elements}, one for each element of the file");
+                return Err(Fault::key(&key, format!("has {} numbers", values.len()), expected));
             }
             // NaN is not within the bounds either.
             if let Some((element, value)) = values.iter().enumerate().find(|(_, v)| v.is_nan() || v.abs() > most) {
-                return Err(CalibrationError::Value { list, element, value: *value, most });
+                let found = format!("holds {value} for element {element}");
+                return Err(Fault::key(&key, found, format!("a number from -{most} to {most}")));
             }
         }
         let of = |values: &[f64], element: usize| values.get(element).copied().unwrap_or(0.0);

@@ -7,18 +7,31 @@ pub(super) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}
 
+/// The file `first` alone, or as one with `more` files that go on from it, or with those of the other `chips` of a cascade.
+///
+/// # Errors
+/// The error of `open`, or of a file whose size can't be read.
+pub(super) fn opened<T>(
+    first: &T,
+    more: &[T],
+    chips: &[T],
+    open: impl Fn(&T) -> io::Result<Box<dyn Source>>,
+) -> io::Result<Box<dyn Source>> {
+    if more.is_empty() && chips.is_empty() {
+        return open(first);
+    }
+    let files = std::iter::once(first).chain(more).chain(chips).map(open).collect::<io::Result<_>>()?;
+    Ok(if chips.is_empty() { Box::new(Chain::new(files)?) } else { Box::new(Chips::new(files)?) })
+}
+
 /// Files that are read as one, one after another.
-pub(super) struct Chain {
+struct Chain {
     files: Vec<(Box<dyn Source>, u64)>,
     at: u64,
 }
 
 impl Chain {
-    /// The files in order.
-    ///
-    /// # Errors
-    /// The error of a file whose size can't be read.
-    pub fn new(files: Vec<Box<dyn Source>>) -> io::Result<Self> {
+    fn new(files: Vec<Box<dyn Source>>) -> io::Result<Self> {
         let sized = |mut file: Box<dyn Source>| file.seek(SeekFrom::End(0)).map(|bytes| (file, bytes));
         Ok(Chain { files: files.into_iter().map(sized).collect::<io::Result<_>>()?, at: 0 })
     }
@@ -64,7 +77,7 @@ const CHIP_BYTES: u64 = 16;
 const MOST_SAMPLES: u64 = 4096;
 
 /// Files of the chips of a cascade, each four receivers sample by sample, as one file that has a sample of every receiver after the other.
-pub(super) struct Chips {
+struct Chips {
     files: Vec<Box<dyn Source>>,
     samples: u64,
     at: u64,
@@ -72,10 +85,7 @@ pub(super) struct Chips {
 
 impl Chips {
     /// The files in the order of the receivers. All are cut to the length of the shortest.
-    ///
-    /// # Errors
-    /// The error of a file whose size can't be read.
-    pub fn new(mut files: Vec<Box<dyn Source>>) -> io::Result<Self> {
+    fn new(mut files: Vec<Box<dyn Source>>) -> io::Result<Self> {
         let sizes = files.iter_mut().map(|file| file.seek(SeekFrom::End(0))).collect::<io::Result<Vec<u64>>>()?;
         Ok(Chips { files, samples: sizes.into_iter().min().unwrap_or(0) / CHIP_BYTES, at: 0 })
     }

@@ -143,7 +143,7 @@ pub(super) fn from_parts(
     let data = folder.join(&table.file);
     // Keys stand in the TOML, those about other files too.
     let place = |fault: Fault| match fault {
-        Fault::Key { .. } | Fault::Calibration(_) => fault.of(path),
+        Fault::Key { .. } => fault.of(path),
         fault => fault.of(&data),
     };
     let (samples, found) = read_samples(&table, &radar, open, profile.as_ref(), signs).map_err(place)?;

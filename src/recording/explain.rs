@@ -3,9 +3,9 @@
 use super::{Recorded, Recording};
 use crate::radar::{End, Pair, Radar};
 use crate::scene::{Reflector, Scene, SceneError};
+use crate::signal::BeatSignal;
 use crate::signal::echo::{ArrayEcho, add_echo};
 use crate::signal::phase::EchoModel;
-use crate::signal::{BeatSignal, TwoEnds};
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use ndarray::{Array2, Axis, s};
@@ -57,8 +57,8 @@ pub fn explain(recording: &Recording, scene: &Scene) -> Result<Explanation, Expl
         return Err(ExplainError::TooMany(count));
     }
     let reflectors = scene.reflectors();
-    let elements = heard(recording);
-    let mut rows = rows_of(recording, &elements);
+    let (mut signal, elements) = whole(recording);
+    let mut rows = signal.samples.select(Axis(0), &elements);
     let before = power(&rows);
     let gains = fit(radar, &reflectors, &elements, &rows)?;
     let model = EchoModel::new(radar);
@@ -70,7 +70,13 @@ pub fn explain(recording: &Recording, scene: &Scene) -> Result<Explanation, Expl
         }
     });
     let explained = if before > 0.0 { (1.0 - power(&rows) / before).clamp(0.0, 1.0) } else { 0.0 };
-    let residual = Recording { samples: with_rows(recording, &elements, &rows), ..recording.clone() };
+    signal.samples.fill(Complex64::default());
+    rows.outer_iter().zip(&elements).for_each(|(row, element)| signal.samples.row_mut(*element).assign(&row));
+    let samples = match recording.samples {
+        Recorded::All(_) => Recorded::All(signal),
+        Recorded::Ends(_) => Recorded::Ends(signal.two_ends(radar)),
+    };
+    let residual = Recording { samples, ..recording.clone() };
     Ok(Explanation { gains, explained, residual })
 }
 
@@ -78,48 +84,20 @@ fn power(samples: &Array2<Complex64>) -> f64 {
     samples.iter().map(Complex64::norm_sqr).sum()
 }
 
-/// Elements of the whole array that were recorded.
-fn heard(recording: &Recording) -> Vec<usize> {
+/// The samples of the whole array, silence where nothing was recorded; and the elements that were.
+fn whole(recording: &Recording) -> (BeatSignal, Vec<usize>) {
     let radar = &recording.radar;
-    let recorded: Vec<usize> = match recording.samples {
-        Recorded::All(_) => (0..radar.elements).collect(),
-        Recorded::Ends(_) => End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).collect(),
-    };
-    recorded.into_iter().filter(|n| !recording.missing.contains(n)).collect()
-}
-
-/// The samples of these elements, `[elements, samples]`.
-fn rows_of(recording: &Recording, elements: &[usize]) -> Array2<Complex64> {
-    let radar = &recording.radar;
-    match &recording.samples {
-        Recorded::All(signal) => signal.samples.select(Axis(0), elements),
+    let (signal, recorded) = match &recording.samples {
+        Recorded::All(signal) => (signal.clone(), (0..radar.elements).collect::<Vec<_>>()),
         Recorded::Ends(ends) => {
-            let mut rows = Array2::zeros((elements.len(), radar.samples));
-            for (mut row, element) in rows.outer_iter_mut().zip(elements) {
-                row.assign(&match element.checked_sub(radar.end_range(End::Last).start) {
-                    Some(within) => ends.last.row(within),
-                    None => ends.first.row(*element),
-                });
+            let mut signal = BeatSignal::silence(radar);
+            for end in End::BOTH {
+                signal.samples.slice_mut(s![radar.end_range(end), ..]).assign(ends.end(end));
             }
-            rows
+            (signal, End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).collect())
         }
-    }
-}
-
-/// The recording's samples with these rows in their places, silence elsewhere.
-fn with_rows(recording: &Recording, elements: &[usize], rows: &Array2<Complex64>) -> Recorded {
-    let radar = &recording.radar;
-    let mut signal = BeatSignal::silence(radar);
-    for (row, element) in rows.outer_iter().zip(elements) {
-        signal.samples.row_mut(*element).assign(&row);
-    }
-    match recording.samples {
-        Recorded::All(_) => Recorded::All(signal),
-        Recorded::Ends(_) => {
-            let end = |end| signal.samples.slice(s![radar.end_range(end), ..]).to_owned();
-            Recorded::Ends(TwoEnds { first: end(End::First), last: end(End::Last) })
-        }
-    }
+    };
+    (signal, recorded.into_iter().filter(|n| !recording.missing.contains(n)).collect())
 }
 
 /// The gains: normal equations of the unit echoes, whose inner products are known in closed form.

@@ -91,17 +91,7 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
 /// Reads the samples that a TOML describes, with their frames.
 fn of_toml(toml: String, path: &Path, [frames, frame]: [u64; 2]) -> Origin {
     let offer = Offer { described: "Read as its TOML says".to_owned(), log_odds: 0.0, power: Vec::new(), toml };
-    Origin {
-        data: path.to_owned(),
-        config: None,
-        offers: vec![offer],
-        taken: 0,
-        sentences: Vec::new(),
-        doubts: Vec::new(),
-        board: None,
-        frames,
-        frame,
-    }
+    Origin { data: path.to_owned(), offers: vec![offer], frames, frame, ..Origin::default() }
 }
 
 #[cfg(test)]

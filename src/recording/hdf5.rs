@@ -2,7 +2,7 @@
 
 use super::numbers::{MAX_NUMBERS, Numbers};
 use super::{Fault, matlab};
-use crate::files::hdf5::{Hdf5, Hdf5Values};
+use crate::files::hdf5::Hdf5;
 use std::io::{self, Read, Seek, SeekFrom};
 
 /// The array called `key` of an HDF5 file; those in groups are `group.name`.
@@ -10,10 +10,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 /// # Errors
 /// [`Fault`] names the array, and what was expected of it.
 pub(super) fn read_h5(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
-    Ok(match Hdf5::open(file)?.values(key, MAX_NUMBERS)? {
-        Hdf5Values::Real(values) => Numbers::Real(values),
-        Hdf5Values::Complex(values) => Numbers::Complex(values),
-    })
+    Ok(Hdf5::open(file)?.values(key, MAX_NUMBERS)?)
 }
 
 /// Names and shapes of its arrays of numbers.
@@ -27,7 +24,7 @@ pub(super) fn h5_shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize
 /// [`matlab::read_mat`], also for version 7.3.
 pub(super) fn read_mat(mut file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     if !is_new(&mut file)? {
-        return Ok(matlab::read_mat(file, key)?);
+        return matlab::read_mat(file, key);
     }
     Ok(match read_h5(file, key)? {
         Numbers::Real(values) => Numbers::Real(values.reversed_axes()),
@@ -38,7 +35,7 @@ pub(super) fn read_mat(mut file: impl Read + Seek, key: &str) -> Result<Numbers,
 /// [`matlab::shapes`], also for version 7.3.
 pub(super) fn mat_shapes(mut file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     if !is_new(&mut file)? {
-        return Ok(matlab::shapes(file)?);
+        return matlab::shapes(file);
     }
     Ok(h5_shapes(file)?.into_iter().map(|(key, shape)| (key, shape.into_iter().rev().collect())).collect())
 }

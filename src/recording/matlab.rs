@@ -4,54 +4,13 @@
 //! The crates that read them know no complex numbers (`mat5`) or inflate without a bound (`matfile`), so this reader is the
 //! program's own. It reads forward only. Before it asks for memory, it compares a size with the file's other sizes.
 
-use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
+use super::Fault;
+use super::numbers::{MAX_NUMBERS, Numbers, bounded_count, too_large};
 use flate2::read::ZlibDecoder;
 use ndarray::{ArrayD, Axis, IxDyn, ShapeBuilder, ShapeError, stack};
 use num_complex::Complex64;
+use std::fmt::Display;
 use std::io::{self, Read};
-
-/// An error of reading an array.
-#[derive(Debug, thiserror::Error)]
-pub enum MatError {
-    /// The system could not read.
-    #[error("{0}")]
-    Io(#[from] io::Error),
-    /// The header is that of another kind of file.
-    #[error("not a MATLAB file of version 5 or 7 ({0})")]
-    Header(&'static str),
-    /// The file lacks the array.
-    #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
-    Missing {
-        /// The name asked for.
-        key: String,
-        /// The names the file has.
-        found: String,
-    },
-    /// The array holds no numbers.
-    #[error("\"{key}\" is {found}; expected an array of numbers")]
-    Kind {
-        /// The name.
-        key: String,
-        /// The kind of the array, in words.
-        found: &'static str,
-    },
-    /// More numbers than are read.
-    #[error("array \"{key}\" has shape {shape:?}; expected at most {MAX_NUMBERS} numbers")]
-    TooLarge {
-        /// The name.
-        key: String,
-        /// Its shape.
-        shape: Vec<usize>,
-    },
-    /// The bytes contradict themselves or end too soon.
-    #[error("{what} can't be read: {reason}")]
-    Damaged {
-        /// The damaged part of the file.
-        what: String,
-        /// The fault.
-        reason: String,
-    },
-}
 
 const HEADER_BYTES: usize = 128;
 const MATRIX: u32 = 14;
@@ -75,19 +34,20 @@ const MAX_DEPTH: usize = 4;
 /// another along a first axis.
 ///
 /// # Errors
-/// [`MatError`] names the array, and what was expected of it.
-pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, MatError> {
+/// [`Fault`] names the array, and what was expected of it.
+pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
     let mut search = Search { want: Some(key), ..Search::default() };
     look_through(file, &mut search)?;
     let found = if search.names.is_empty() { "nothing".to_owned() } else { search.names.join(", ") };
-    search.wanted.ok_or_else(|| MatError::Missing { key: key.to_owned(), found })
+    let message = || format!("has no array \"{key}\"; expected it beside what is there: {found}");
+    search.wanted.ok_or_else(|| Fault::Data(message()))
 }
 
 /// Names and shapes of all arrays of numbers, those in structs and cells too.
 ///
 /// # Errors
-/// [`MatError`].
-pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, MatError> {
+/// [`Fault`].
+pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut search = Search::default();
     look_through(file, &mut search)?;
     Ok(search.shapes)
@@ -102,7 +62,7 @@ struct Search<'a> {
     shapes: Vec<(String, Vec<usize>)>,
 }
 
-fn look_through(mut file: impl Read, search: &mut Search<'_>) -> Result<(), MatError> {
+fn look_through(mut file: impl Read, search: &mut Search<'_>) -> Result<(), Fault> {
     let big_endian = header(&mut file)?;
     loop {
         let mut reader = Elements { file: &mut file, big_endian };
@@ -130,20 +90,23 @@ fn look_through(mut file: impl Read, search: &mut Search<'_>) -> Result<(), MatE
     }
 }
 
-fn damaged(what: &str, reason: impl ToString) -> MatError {
-    MatError::Damaged { what: what.to_owned(), reason: reason.to_string() }
+fn damaged(what: &str, reason: impl Display) -> Fault {
+    Fault::Data(format!("{what} can't be read: {reason}"))
+}
+
+fn no_numbers_in(key: &str, found: &str) -> Fault {
+    Fault::Data(format!("\"{key}\" is {found}; expected an array of numbers"))
 }
 
 /// Reads the header and says whether numbers stand with their high byte first.
-fn header(file: &mut impl Read) -> Result<bool, MatError> {
+fn header(file: &mut impl Read) -> Result<bool, Fault> {
     let mut header = [0; HEADER_BYTES];
-    file.read_exact(&mut header).map_err(|_| MatError::Header("it is shorter than the header"))?;
+    let unlike = |reason: &str| Fault::Data(format!("not a MATLAB file of version 5 or 7 ({reason})"));
+    file.read_exact(&mut header).map_err(|_| unlike("it is shorter than the header"))?;
     match &header[124..] {
         [0, 1, b'I', b'M'] => Ok(false),
         [1, 0, b'M', b'I'] => Ok(true),
-        _ => Err(MatError::Header(
-            "its header ends in neither byte order; a file of version 4 can be saved with the option -v7",
-        )),
+        _ => Err(unlike("its header ends in neither byte order; a file of version 4 can be saved with the option -v7")),
     }
 }
 
@@ -155,7 +118,7 @@ fn matrix(
     named: Option<&str>,
     depth: usize,
     search: &mut Search<'_>,
-) -> Result<(), MatError> {
+) -> Result<(), Fault> {
     let mut reader = Elements { file, big_endian };
     let unnamed = |e| damaged("a variable", e);
     let flags = reader.element(8).map_err(unnamed)?;
@@ -175,16 +138,16 @@ fn matrix(
         (_, None) => search.shapes.push((name, shape)),
         (STRUCT, _) if one && !is_wanted && depth < MAX_DEPTH => fields(&mut reader, &name, depth, search)?,
         (CELL, _) if depth < MAX_DEPTH => cells(&mut reader, &name, &shape, depth, search)?,
-        (_, Some(found)) if is_wanted => return Err(MatError::Kind { key: name, found }),
+        (_, Some(found)) if is_wanted => return Err(no_numbers_in(&name, found)),
         _ => {}
     }
     Ok(())
 }
 
 /// The numbers of an array of this shape.
-fn numbers_of(reader: &mut Elements<'_>, name: &str, shape: Vec<usize>, is_complex: bool) -> Result<Numbers, MatError> {
+fn numbers_of(reader: &mut Elements<'_>, name: &str, shape: Vec<usize>, is_complex: bool) -> Result<Numbers, Fault> {
     let what = format!("array \"{name}\"");
-    let Some(count) = bounded_count(&shape) else { return Err(MatError::TooLarge { key: name.to_owned(), shape }) };
+    let count = bounded_count(&shape).ok_or_else(|| too_large(&what, &shape))?;
     let mut part = || reader.numbers(count).map_err(|e| damaged(&what, e));
     let column_major = |e: ShapeError| damaged(&what, e);
     let real = part()?;
@@ -198,7 +161,7 @@ fn numbers_of(reader: &mut Elements<'_>, name: &str, shape: Vec<usize>, is_compl
 }
 
 /// The next array inside a struct or a cell.
-fn inner(reader: &mut Elements<'_>, named: &str, depth: usize, search: &mut Search<'_>) -> Result<(), MatError> {
+fn inner(reader: &mut Elements<'_>, named: &str, depth: usize, search: &mut Search<'_>) -> Result<(), Fault> {
     let what = format!("\"{named}\"");
     let tag = reader.tag().map_err(|e| damaged(&what, e))?.filter(|tag| tag.kind == MATRIX);
     let tag = tag.ok_or_else(|| damaged(&what, "it ends too soon or holds no array"))?;
@@ -211,7 +174,7 @@ fn inner(reader: &mut Elements<'_>, named: &str, depth: usize, search: &mut Sear
 }
 
 /// The members of a struct, as `name.member`.
-fn fields(reader: &mut Elements<'_>, name: &str, depth: usize, search: &mut Search<'_>) -> Result<(), MatError> {
+fn fields(reader: &mut Elements<'_>, name: &str, depth: usize, search: &mut Search<'_>) -> Result<(), Fault> {
     let what = format!("struct \"{name}\"");
     let length = reader.element(8).map_err(|e| damaged(&what, e))?;
     let length = length.bytes.first_chunk().map_or(0, |b| reader.word(*b) as usize);
@@ -237,13 +200,12 @@ fn cells(
     shape: &[usize],
     depth: usize,
     search: &mut Search<'_>,
-) -> Result<(), MatError> {
+) -> Result<(), Fault> {
     let is_wanted = search.want == Some(name);
     let count = bounded_count(shape).filter(|count| *count <= MAX_CELLS).unwrap_or(0);
     let mut all: Vec<ArrayD<Complex64>> = Vec::new();
     let mut is_complex = false;
-    let unlike =
-        || MatError::Kind { key: name.to_owned(), found: "a cell array whose cells are no arrays of one shape" };
+    let unlike = || no_numbers_in(name, "a cell array whose cells are no arrays of one shape");
     for n in 0..count {
         let mut one = Search { want: is_wanted.then_some(name), ..Search::default() };
         inner(reader, name, depth, &mut one)?;
@@ -262,7 +224,7 @@ fn cells(
         }
         let held = all[0].len().saturating_mul(count);
         if held > MAX_NUMBERS {
-            return Err(MatError::TooLarge { key: name.to_owned(), shape: [&[count], all[0].shape()].concat() });
+            return Err(too_large(&format!("array \"{name}\""), &[&[count], all[0].shape()].concat()));
         }
     }
     if is_wanted {

@@ -49,17 +49,15 @@ mod said_recording;
 mod samples;
 mod signs;
 
-pub use axes::{AxesError, AxisKind, Chirp};
-pub use calibration::{Calibration, CalibrationError};
-pub use capture::{Capture, CaptureError};
+pub use axes::{AxisKind, Chirp};
+pub use calibration::Calibration;
+pub use capture::Capture;
 pub use described::FrameLoops;
 pub use error::{Fault, RecordingError};
-pub use matlab::MatError;
 pub use numbers::MAX_NUMBERS;
-pub use numpy::NumpyError;
 pub use origin::{Offer, Origin};
+pub use profile::RadarProfile;
 pub use profile::lines::text_of as config_text;
-pub use profile::{ProfileError, RadarProfile};
 pub use signs::FORMAT;
 
 use crate::radar::Radar;

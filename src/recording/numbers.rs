@@ -1,19 +1,11 @@
 //! Arrays of a file before their axes are named.
 
-use ndarray::ArrayD;
+use super::Fault;
+pub(super) use crate::files::Numbers;
 use num_complex::Complex64;
 
 /// Most numbers that an array of a recording may hold: half a gigabyte of complex ones.
 pub const MAX_NUMBERS: usize = 1 << 25;
-
-/// An array of either kind.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Numbers {
-    /// Real numbers or integers.
-    Real(ArrayD<f64>),
-    /// Complex numbers.
-    Complex(ArrayD<Complex64>),
-}
 
 /// The largest number of 16 bits that has a sign.
 const MOST_SIGNED: f64 = i16::MAX as f64;
@@ -21,7 +13,7 @@ const MOST_SIGNED: f64 = i16::MAX as f64;
 impl Numbers {
     /// Gives 16-bit integers that lost their sign their sign again: 65535 is -1. Such numbers are whole, from 0 to 65535, and some lie beyond 32767.
     /// Returns a sentence where it was done.
-    pub fn mend_signs(&mut self) -> Option<String> {
+    pub(super) fn mend_signs(&mut self) -> Option<String> {
         let is_word = |v: f64| v.fract() == 0.0 && (0.0..=65535.0).contains(&v);
         let signed = |v: f64| if v > MOST_SIGNED { v - 65536.0 } else { v };
         let lost = match self {
@@ -42,7 +34,7 @@ impl Numbers {
     }
 
     /// Its shape.
-    pub fn shape(&self) -> &[usize] {
+    pub(super) fn shape(&self) -> &[usize] {
         match self {
             Numbers::Real(values) => values.shape(),
             Numbers::Complex(values) => values.shape(),
@@ -53,6 +45,11 @@ impl Numbers {
 /// Number of numbers in an array of `shape`; `None` above [`MAX_NUMBERS`].
 pub(super) fn bounded_count(shape: &[usize]) -> Option<usize> {
     shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len)).filter(|n| *n <= MAX_NUMBERS)
+}
+
+/// The error of an array of more than [`MAX_NUMBERS`].
+pub(super) fn too_large(what: &str, shape: &[usize]) -> Fault {
+    Fault::Data(format!("{what} has shape {shape:?}; expected at most {MAX_NUMBERS} numbers"))
 }
 
 #[cfg(test)]

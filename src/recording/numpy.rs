@@ -1,62 +1,29 @@
 //! NumPy's `.npy` and `.npz` files. The header's sizes are checked before any memory is asked for.
 
-use super::numbers::{MAX_NUMBERS, Numbers, bounded_count};
+use super::Fault;
+use super::numbers::{Numbers, bounded_count, too_large};
 use crate::files::hdf5::half_value;
 use crate::files::npy::header_bytes;
-use crate::files::npz::{Npz, NpzError};
+use crate::files::npz::Npz;
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 use ndarray_npy::npy::header::Header;
 use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
 use num_complex::{Complex32, Complex64};
 use std::io::{Cursor, Read, Seek};
 
-/// An error of reading an array.
-#[derive(Debug, thiserror::Error)]
-pub enum NumpyError {
-    /// The archive, or one of its keys, can't be read.
-    #[error("{0}")]
-    Archive(#[from] NpzError),
-    /// The header is none of NumPy's.
-    #[error("{what} can't be read: {reason}; expected what numpy.save writes")]
-    Damaged {
-        /// The array.
-        what: String,
-        /// The fault.
-        reason: String,
-    },
-    /// More numbers than are read.
-    #[error("{what} has shape {shape:?}; expected at most {MAX_NUMBERS} numbers")]
-    TooLarge {
-        /// The array.
-        what: String,
-        /// Its shape.
-        shape: Vec<usize>,
-    },
-    /// Numbers of another type.
-    #[error(
-        "{what} holds {found}; expected complex or real numbers, integers of 16 or more bits or int8, or pairs of int16"
-    )]
-    Type {
-        /// The array.
-        what: String,
-        /// NumPy's name of the type.
-        found: String,
-    },
-}
-
 /// Reads the array `key` of an archive.
 ///
 /// # Errors
-/// [`NumpyError`] names the key, and what was expected of it.
-pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, NumpyError> {
+/// [`Fault`] names the key, and what was expected of it.
+pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     read_array(Npz::of(file)?.entry(key)?, &format!("array \"{key}\""))
 }
 
 /// Names and shapes of the arrays of an archive, without their numbers; those that can't be read are left out.
 ///
 /// # Errors
-/// [`NumpyError`].
-pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, NumpyError> {
+/// [`Fault`].
+pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut archive = Npz::of(file)?;
     let keys = archive.keys().to_vec();
     let shape = |key: String| {
@@ -70,18 +37,17 @@ pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>
 /// Reads the one array of an `.npy` file.
 ///
 /// # Errors
-/// [`NumpyError`].
-pub(super) fn read_npy(file: impl Read) -> Result<Numbers, NumpyError> {
+/// [`Fault`].
+pub(super) fn read_npy(file: impl Read) -> Result<Numbers, Fault> {
     read_array(file, "the array")
 }
 
-fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, NumpyError> {
-    let damaged = |reason: String| NumpyError::Damaged { what: what.to_owned(), reason };
+fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, Fault> {
+    let damaged =
+        |reason: String| Fault::Data(format!("{what} can't be read: {reason}; expected what numpy.save writes"));
     let header_bytes = header_bytes(&mut file).map_err(|e| damaged(e.to_string()))?;
     let header = Header::from_reader(&mut header_bytes.as_slice()).map_err(|e| damaged(e.to_string()))?;
-    if bounded_count(&header.shape).is_none() {
-        return Err(NumpyError::TooLarge { what: what.to_owned(), shape: header.shape });
-    }
+    bounded_count(&header.shape).ok_or_else(|| too_large(what, &header.shape))?;
     let found = header.type_descriptor.to_string();
     let header_length = header_bytes.len();
     let whole = Cursor::new(header_bytes).chain(file);
@@ -104,7 +70,10 @@ fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, NumpyError> {
             let (second, first) = (parts.remove(1), parts.remove(0));
             Numbers::Complex(ndarray::Zip::from(&first).and(&second).map_collect(|re, im| Complex64::new(*re, *im)))
         }
-        _ => return Err(NumpyError::Type { what: what.to_owned(), found }),
+        _ => {
+            let expected = "complex or real numbers, integers of 16 or more bits or int8, or pairs of int16";
+            return Err(Fault::Data(format!("{what} holds {found}; expected {expected}")));
+        }
     };
     Ok(numbers)
 }

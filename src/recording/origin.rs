@@ -16,7 +16,7 @@ pub struct Offer {
 }
 
 /// The source of a recording whose file can be read in another way, or of which another frame can be taken.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Origin {
     /// The file with the samples, or the TOML that describes them.
     pub data: PathBuf,

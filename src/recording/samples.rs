@@ -2,14 +2,14 @@
 
 use super::axes::{Join, arrange, in_turn, loops, one_frame};
 use super::capture::{Meaning, strongest_of};
-use super::chain::{Chain, Chips, Source};
+use super::chain::{Source, opened};
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
 use super::signs::Signs;
 use super::{AxisKind, Capture, Chirp, Fault, RadarProfile, Recorded, hdf5};
 use crate::radar::Radar;
-use crate::signal::{BeatSignal, TwoEnds};
+use crate::signal::BeatSignal;
 use ndarray::{Array2, Array3, Axis, concatenate};
 use num_complex::Complex64;
 use std::cell::RefCell;
@@ -49,15 +49,11 @@ fn read(
         None => read_arrays(table, radar, open)?,
     };
     if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
-        return Err(Fault::NotFinite { element, sample });
+        let message = format!("sample {sample} of element {element} is not finite; expected finite numbers only");
+        return Err(Fault::Data(message));
     }
     table.calibration.take_off(&mut rows)?;
-    if signs.conjugates {
-        rows.mapv_inplace(|v| v.conj());
-    }
-    if signs.reverses_samples {
-        rows.invert_axis(Axis(1));
-    }
+    signs.apply(&mut rows);
     if table.reverse_elements && !table.counts_pairs() {
         rows.invert_axis(Axis(0));
     }
@@ -70,8 +66,7 @@ fn in_element_order(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Re
     let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
     if rows.nrows() != transmitters * receivers {
         let expected = format!("{transmitters} by {receivers}, as many as radar says places of antennas");
-        let (found, shape) = (rows.nrows(), rows.dim());
-        return Err(Fault::Count { what: "pairs of antennas", found, expected, shape });
+        return Err(Fault::count("pairs of antennas", rows.nrows(), &expected, rows.dim()));
     }
     let mut ordered = Array2::zeros((radar.elements, rows.ncols()));
     for (mut element, pair) in ordered.outer_iter_mut().zip(antennas.pairs()) {
@@ -114,12 +109,7 @@ pub(super) fn read_loops(
         }
         None => array_loops(table, open)?,
     };
-    if signs.conjugates {
-        loops.mapv_inplace(|v| v.conj());
-    }
-    if signs.reverses_samples {
-        loops.invert_axis(Axis(2));
-    }
+    signs.apply(&mut loops);
     Ok(loops)
 }
 
@@ -140,10 +130,10 @@ fn array_loops(table: &Table, open: Open<'_>) -> Result<Array3<Complex64>, Fault
     let rows = loops
         .into_shape_with_order((count, pairs, samples))
         .map_err(|e| Fault::key("recording.axes", e.to_string(), "others"))?;
-    let numbers = Array2::from_shape_fn((pairs, 1), |(pair, _)| Complex64::from(pair as f64));
-    let places: Vec<usize> =
-        taken(table, numbers, [transmitters, receivers])?.iter().map(|pair| pair.re as usize).collect();
-    Ok(rows.select(Axis(1), &places))
+    Ok(match taken(table, pairs, [transmitters, receivers])? {
+        Some(places) => rows.select(Axis(1), &places),
+        None => rows,
+    })
 }
 
 /// Number of frames in the arrays of a table.
@@ -156,17 +146,11 @@ pub(super) fn count_frames(table: &Table, open: Open<'_>) -> Result<u64, Fault> 
 
 /// The file of a capture, with those that go on from it.
 pub(super) fn open_capture(table: &Table, open: Open<'_>, capture: &Capture) -> Result<Box<dyn Source>, Fault> {
-    let first = open(&table.file)?;
-    let (more, chips) = (&capture.more_files, &capture.chips);
-    if more.is_empty() && chips.is_empty() {
-        return Ok(first);
-    }
-    if !(more.is_empty() || chips.is_empty()) {
+    let Capture { more_files, chips, .. } = capture;
+    if !(more_files.is_empty() || chips.is_empty()) {
         return Err(Fault::key("recording.capture.chips", "stands beside more_files", "one of the two"));
     }
-    let others = more.iter().chain(chips).map(|name| open(name)).collect::<io::Result<Vec<_>>>()?;
-    let files = std::iter::once(first).chain(others).collect();
-    Ok(if chips.is_empty() { Box::new(Chain::new(files)?) } else { Box::new(Chips::new(files)?) })
+    Ok(opened(&table.file, more_files, chips, |name| open(name))?)
 }
 
 /// Turns of phase across the array of each pair at a cosine of 1, transmitter by transmitter.
@@ -216,7 +200,10 @@ fn read_arrays(table: &Table, radar: &Radar, open: Open<'_>) -> Result<(Array2<C
         } else {
             arrange(numbers, &kinds, table.chirp)?
         };
-        taken(table, rows, sizes)
+        Ok(match taken(table, rows.nrows(), sizes)? {
+            Some(places) => rows.select(Axis(0), &places),
+            None => rows,
+        })
     };
     let rows = match (&table.array, &table.first, &table.last) {
         (array_key, None, None) => array(array_key.as_deref()),
@@ -224,8 +211,7 @@ fn read_arrays(table: &Table, radar: &Radar, open: Open<'_>) -> Result<(Array2<C
             let (first, last) = (array(Some(first))?, array(Some(last))?);
             if first.dim() != last.dim() {
                 let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
-                let (found, shape) = (last.len(), last.dim());
-                return Err(Fault::Count { what: "numbers in \"last\"", found, expected, shape });
+                return Err(Fault::count("numbers in \"last\"", last.len(), &expected, last.dim()));
             }
             // Equal shapes join.
             concatenate(Axis(0), &[first.view(), last.view()])
@@ -264,15 +250,11 @@ fn joined(
     Ok((arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)?, notes))
 }
 
-/// The rows of the transmitters and receivers that form the line, of those that the array counts.
-fn taken(
-    table: &Table,
-    rows: Array2<Complex64>,
-    [transmitters, receivers]: [usize; 2],
-) -> Result<Array2<Complex64>, Fault> {
+/// Places in `rows` of the transmitters and receivers that form the line, of those that the array counts; `None` for all.
+fn taken(table: &Table, rows: usize, [transmitters, receivers]: [usize; 2]) -> Result<Option<Vec<usize>>, Fault> {
     let Table { transmitters_taken, receivers_taken, .. } = table;
     if transmitters_taken.is_none() && receivers_taken.is_none() {
-        return Ok(rows);
+        return Ok(None);
     }
     let of = |key: &str, taken: &Option<Vec<usize>>, count: usize| match taken {
         None => Ok((0..count).collect::<Vec<_>>()),
@@ -283,11 +265,11 @@ fn taken(
     let of_one = |t: &usize| receivers_taken.iter().map(|r| t * receivers + r).collect::<Vec<usize>>();
     let transmitters = of("recording.transmitters_taken", transmitters_taken, transmitters)?;
     let places: Vec<usize> = transmitters.iter().flat_map(of_one).collect();
-    if places.iter().any(|place| *place >= rows.nrows()) {
+    if places.iter().any(|place| *place >= rows) {
         let expected = "it only where axes count transmitters and receivers";
         return Err(Fault::key("recording.transmitters_taken", "is there", expected));
     }
-    Ok(rows.select(Axis(0), &places))
+    Ok(Some(places))
 }
 
 fn no_such(key: &str, taken: &[usize], count: usize) -> Fault {
@@ -296,35 +278,29 @@ fn no_such(key: &str, taken: &[usize], count: usize) -> Fault {
 
 /// A note on real samples, or on complex ones whose imaginary parts are zero.
 fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
-    let stored = match numbers {
-        Numbers::Real(_) if !kinds.contains(&AxisKind::Iq) => {
-            return Some(
-                "Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned(),
-            );
+    let told = match numbers {
+        Numbers::Real(_) if kinds.contains(&AxisKind::Iq) => return None,
+        Numbers::Real(_) => "Samples are real: the positive half of their spectrum is taken (the analytic signal).",
+        Numbers::Complex(values) if values.iter().all(|v| v.im == 0.0) && values.iter().any(|v| v.re != 0.0) => {
+            "Every imaginary part is zero: these are real samples, stored as complex ones. Each echo has a mirror image in the far half of the \
+             range axis."
         }
-        Numbers::Complex(values) => {
-            !values.is_empty() && values.iter().all(|v| v.im == 0.0) && values.iter().any(|v| v.re != 0.0)
-        }
-        Numbers::Real(_) => false,
+        Numbers::Complex(_) => return None,
     };
-    stored.then(|| {
-        "Every imaginary part is zero: these are real samples, stored as complex ones. Each echo has a mirror image in the far half of the range \
-         axis."
-            .to_owned()
-    })
+    Some(told.to_owned())
 }
 
 fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, Fault> {
     let extension = table.extension();
     let named = || key.ok_or_else(|| Fault::key("recording.array", "is missing", "the array's name in the file"));
     match extension.as_str() {
-        "npz" => Ok(read_npz(open(&table.file)?, named()?)?),
+        "npz" => read_npz(open(&table.file)?, named()?),
         "mat" => hdf5::read_mat(open(&table.file)?, named()?),
         "h5" | "hdf5" => hdf5::read_h5(open(&table.file)?, named()?),
         "npy" if key.is_some() => {
             Err(Fault::key("recording.array", "is there", "it not beside an .npy file, which holds one array"))
         }
-        "npy" => Ok(read_npy(open(&table.file)?)?),
+        "npy" => read_npy(open(&table.file)?),
         "bin" => Err(Fault::key("[recording.capture]", "is missing", "it beside a .bin file")),
         _ => Err(Fault::key(
             "recording.file",
@@ -338,7 +314,7 @@ fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, 
 fn sorted(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
     if rows.ncols() != radar.samples {
         let expected = format!("{} as radar.samples says", radar.samples);
-        return Err(Fault::Count { what: "samples", found: rows.ncols(), expected, shape: rows.dim() });
+        return Err(Fault::count("samples", rows.ncols(), &expected, rows.dim()));
     }
     let covered = table.covered(radar);
     let missing: HashSet<usize> = table.missing.iter().copied().collect();
@@ -351,12 +327,8 @@ fn sorted(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Recor
         };
         let whose =
             if table.covers() == Covers::All { "radar.elements says" } else { "radar.end_elements says for two ends" };
-        Fault::Count {
-            what: "elements",
-            found: rows.nrows(),
-            expected: format!("{} as {whose}{without}", covered.len()),
-            shape: rows.dim(),
-        }
+        let expected = format!("{} as {whose}{without}", covered.len());
+        Fault::count("elements", rows.nrows(), &expected, rows.dim())
     })?;
     let mut samples = Array2::zeros((radar.elements, radar.samples));
     for (element, row) in places.iter().zip(rows.outer_iter()).filter(|(element, _)| !missing.contains(element)) {
@@ -365,9 +337,6 @@ fn sorted(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Recor
     let signal = BeatSignal { samples };
     Ok(match table.covers() {
         Covers::All => Recorded::All(signal),
-        Covers::Ends => {
-            let TwoEnds { first, last } = signal.two_ends(radar);
-            Recorded::Ends(TwoEnds { first, last })
-        }
+        Covers::Ends => Recorded::Ends(signal.two_ends(radar)),
     })
 }

@@ -14,6 +14,8 @@
 
 use super::Fault;
 use crate::radar::{Carrier, Radar};
+use ndarray::{Array, Axis, Dimension};
+use num_complex::Complex64;
 use serde::Deserialize;
 
 /// The format of today's texts; texts that name none are of format 1.
@@ -77,6 +79,18 @@ pub(super) struct Signs {
     pub reverses_samples: bool,
     /// The carrier of the maps' formula, hertz.
     pub carrier_hz: f64,
+}
+
+impl Signs {
+    /// Changes samples, whose last axis counts them within a chirp.
+    pub fn apply<D: Dimension>(self, samples: &mut Array<Complex64, D>) {
+        if self.conjugates {
+            samples.mapv_inplace(|v| v.conj());
+        }
+        if self.reverses_samples {
+            samples.invert_axis(Axis(samples.ndim() - 1));
+        }
+    }
 }
 
 impl Said {

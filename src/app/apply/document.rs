@@ -188,7 +188,7 @@ fn read_another_way(state: &mut State, way: Way) {
         Way::Layout(taken) => origin.with(taken, 0),
         Way::Frame(frame) => origin.with(origin.taken, frame),
         Way::Board(name) => raw::import(&origin.data, origin.config.as_deref(), boards::by_name(name))
-            .and_then(|imported| imported.recording()),
+            .and_then(|imported| imported.origin.recording()),
     };
     match read {
         Ok(recording) => {

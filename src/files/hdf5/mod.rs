@@ -16,6 +16,7 @@ mod tests;
 pub use number::half_value;
 pub use source::Hdf5Error;
 
+use super::Numbers;
 use ndarray::ArrayD;
 use num_complex::Complex64;
 use number::Member;
@@ -28,15 +29,6 @@ const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 const PLACES: [u64; 6] = [0, 512, 1024, 2048, 4096, 8192];
 /// Depth to which groups are read.
 const MOST_DEPTH: usize = 8;
-
-/// Numbers of an array, in the order of its axes.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Hdf5Values {
-    /// Real numbers or integers.
-    Real(ArrayD<f64>),
-    /// Complex numbers: compounds of two.
-    Complex(ArrayD<Complex64>),
-}
 
 /// An HDF5 file.
 #[derive(Debug)]
@@ -73,7 +65,7 @@ impl<R: Read + Seek> Hdf5<R> {
     ///
     /// # Errors
     /// [`Hdf5Error`] names the array, and what was expected of it.
-    pub fn values(&mut self, key: &str, most: usize) -> Result<Hdf5Values, Hdf5Error> {
+    pub fn values(&mut self, key: &str, most: usize) -> Result<Numbers, Hdf5Error> {
         let arrays = self.arrays()?;
         let Some((_, object)) = arrays.iter().find(|(name, _)| name == key) else {
             let found: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
@@ -89,7 +81,7 @@ impl<R: Read + Seek> Hdf5<R> {
         Ok(match number {
             Member::One(kind) => {
                 let all = bytes.chunks_exact(kind.bytes).map(|b| kind.value(b)).collect();
-                Hdf5Values::Real(ArrayD::from_shape_vec(shape, all).map_err(fits)?)
+                Numbers::Real(ArrayD::from_shape_vec(shape, all).map_err(fits)?)
             }
             Member::Two { bytes: size, parts } => {
                 let part = |b: &[u8], n: usize| {
@@ -97,7 +89,7 @@ impl<R: Read + Seek> Hdf5<R> {
                     b.get(*at..at + kind.bytes).map_or(0.0, |b| kind.value(b))
                 };
                 let all = bytes.chunks_exact(*size).map(|b| Complex64::new(part(b, 0), part(b, 1))).collect();
-                Hdf5Values::Complex(ArrayD::from_shape_vec(shape, all).map_err(fits)?)
+                Numbers::Complex(ArrayD::from_shape_vec(shape, all).map_err(fits)?)
             }
         })
     }

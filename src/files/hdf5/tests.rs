@@ -7,21 +7,21 @@ const ARRAYS: &[u8] = include_bytes!("../../../tests/data/hdf5/arrays.h5");
 const MATLAB: &[u8] = include_bytes!("../../../tests/data/hdf5/new.mat");
 const LATEST: &[u8] = include_bytes!("../../../tests/data/hdf5/latest.h5");
 
-fn values(bytes: &[u8], key: &str) -> Result<Hdf5Values, Hdf5Error> {
+fn values(bytes: &[u8], key: &str) -> Result<Numbers, Hdf5Error> {
     Hdf5::open(Cursor::new(bytes))?.values(key, 1000)
 }
 
 fn reals(bytes: &[u8], key: &str) -> ArrayD<f64> {
     match values(bytes, key).unwrap() {
-        Hdf5Values::Real(values) => values,
-        Hdf5Values::Complex(values) => panic!("{key} is complex: {values}"),
+        Numbers::Real(values) => values,
+        Numbers::Complex(values) => panic!("{key} is complex: {values}"),
     }
 }
 
 fn complex(bytes: &[u8], key: &str) -> ArrayD<Complex64> {
     match values(bytes, key).unwrap() {
-        Hdf5Values::Complex(values) => values,
-        Hdf5Values::Real(values) => panic!("{key} is real: {values}"),
+        Numbers::Complex(values) => values,
+        Numbers::Real(values) => panic!("{key} is real: {values}"),
     }
 }
 
@@ -72,7 +72,7 @@ proptest! {
         bytes[second] = byte.wrapping_mul(31);
         for bytes in [&bytes[..], &bytes[..cut]] {
             for key in ["cube", "summed", "radar.raw.adcData"] {
-                if let Ok(Hdf5Values::Real(values)) = values(bytes, key) {
+                if let Ok(Numbers::Real(values)) = values(bytes, key) {
                     prop_assert!(values.len() <= 1000);
                 }
             }

@@ -1,9 +1,9 @@
 //! One frame of a capture.
 
-use super::error::CaptureError;
 use super::plan::Plan;
 use super::quality::Quality;
 use super::table::{Capture, Part};
+use crate::recording::Fault;
 use crate::recording::analytic::all_analytic;
 use crate::recording::layout::Parts;
 use crate::recording::layout::stream::Stream;
@@ -22,7 +22,7 @@ pub(in crate::recording) struct Frame {
 
 impl Frame {
     /// Reads the loops of the plan, and takes out the parts that `capture` leaves out.
-    pub fn read<R: Read + Seek>(stream: &mut Stream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, CaptureError> {
+    pub fn read<R: Read + Seek>(stream: &mut Stream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, Fault> {
         let Plan { samples, receivers, chirps, loops, layout, .. } = *plan;
         let size = layout.chirp_bytes(samples, receivers);
         let mut all = Array4::zeros((loops, chirps, receivers, samples));

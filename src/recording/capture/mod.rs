@@ -13,7 +13,6 @@
 
 mod channels;
 mod doppler;
-mod error;
 mod frame;
 mod plan;
 mod quality;
@@ -21,12 +20,11 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use super::layout::ReceiverOrder;
-pub use error::CaptureError;
 pub(super) use frame::Frame;
 pub(super) use plan::Plan;
 pub use table::{Capture, Part};
 
+use super::Fault;
 use super::axes::{Chirp, Join};
 use super::layout::stream::Stream;
 use super::profile::RadarProfile;
@@ -62,12 +60,12 @@ impl Capture {
     /// Reads the chosen loops of the frame as `[chirps, receivers, samples]`, with sentences on doubts. No other frame is read.
     ///
     /// # Errors
-    /// [`CaptureError`] where the layout, the `.cfg` and the file don't fit each other.
+    /// [`Fault`] where the layout, the `.cfg` and the file don't fit each other.
     pub(super) fn read(
         &self,
         file: impl Read + Seek,
         meaning: &Meaning<'_>,
-    ) -> Result<(Array3<Complex64>, Vec<String>), CaptureError> {
+    ) -> Result<(Array3<Complex64>, Vec<String>), Fault> {
         let mut stream = Stream::new(file)?;
         let plan = Plan::new(self, meaning.profile, stream.bytes())?;
         let chosen = plan.chosen_chirps(self)?;
@@ -105,7 +103,7 @@ impl Capture {
         &self,
         file: impl Read + Seek,
         profile: Option<&RadarProfile>,
-    ) -> Result<Array3<Complex64>, CaptureError> {
+    ) -> Result<Array3<Complex64>, Fault> {
         let mut stream = Stream::new(file)?;
         let plan = Plan::new(self, profile, stream.bytes())?;
         let chosen = plan.chosen_chirps(self)?;
@@ -113,6 +111,6 @@ impl Capture {
         let (loops, chirps, receivers, len) = samples.dim();
         let whole = samples.as_standard_layout().into_owned();
         // The same numbers in the same order: the shape can't fail to fit.
-        whole.into_shape_with_order((loops, chirps * receivers, len)).map_err(|_| CaptureError::TooLarge)
+        whole.into_shape_with_order((loops, chirps * receivers, len)).map_err(|e| Fault::Data(e.to_string()))
     }
 }

@@ -1,11 +1,12 @@
 //! Counts, sizes and byte offsets of a capture, and its number of whole frames.
 
-use super::error::CaptureError;
 use super::table::Capture;
+use crate::recording::Fault;
 use crate::recording::axes::Chirp;
 use crate::recording::layout::{Layout, Parts};
-use crate::recording::numbers::bounded_count;
+use crate::recording::numbers::{MAX_NUMBERS, bounded_count};
 use crate::recording::profile::RadarProfile;
+use std::fmt::Display;
 
 /// Most samples of a frame that are held at once: a frame of more is read up to there.
 const MOST_FRAME_NUMBERS: usize = 1 << 23;
@@ -34,13 +35,16 @@ pub(in crate::recording) struct Plan {
 }
 
 impl Plan {
-    pub fn new(capture: &Capture, profile: Option<&RadarProfile>, bytes: u64) -> Result<Plan, CaptureError> {
+    pub fn new(capture: &Capture, profile: Option<&RadarProfile>, bytes: u64) -> Result<Plan, Fault> {
         let layout = layout(capture)?;
         let [samples, receivers, chirps, all_loops] = counts(capture, profile)?;
         let lanes = layout.parts.group();
-        let numbers = bounded_count(&[chirps, receivers, samples]).ok_or(CaptureError::TooLarge)?;
+        let numbers = bounded_count(&[chirps, receivers, samples])
+            .ok_or_else(|| Fault::Data(format!("a loop holds more than {MAX_NUMBERS} numbers")))?;
         if !(samples * receivers).is_multiple_of(lanes) {
-            return Err(CaptureError::Unfilled { receivers, samples, lanes });
+            let message =
+                format!("{receivers} receivers of {samples} samples don't fill {lanes} lanes; expected a multiple");
+            return Err(Fault::Data(message));
         }
         let header = layout.header_bytes.min(MOST_COUNT) as u64;
         let chirp_numbers = (samples * receivers) as u64;
@@ -65,22 +69,27 @@ impl Plan {
         if let Chirp::Number(asked) = capture.turn
             && asked >= plan.loops
         {
-            return Err(CaptureError::NoLoop { asked, loops: plan.loops.max(1) });
+            return Err(unfit("loop", format!("is {asked}"), &format!("0 to {}", plan.loops.saturating_sub(1))));
         }
         Ok(plan)
     }
 
     /// Chooses the loops that are read of the frame asked for.
-    fn take_frame(&mut self, capture: &Capture, bytes: u64, sizes: [u64; 3]) -> Result<(), CaptureError> {
+    fn take_frame(&mut self, capture: &Capture, bytes: u64, sizes: [u64; 3]) -> Result<(), Fault> {
         let [loop_bytes, frame_bytes, before] = sizes;
         let there = bytes.saturating_sub(before) / loop_bytes.max(1);
         if there == 0 {
             let Plan { chirps, receivers, samples, .. } = *self;
-            return Err(CaptureError::Size { bytes, expected: before + loop_bytes, chirps, receivers, samples });
+            let expected = before + loop_bytes;
+            return Err(Fault::Data(format!(
+                "has {bytes} bytes; expected at least {expected}: a loop has {chirps} chirps of {receivers} receivers and {samples} samples"
+            )));
         }
         let partial = self.frames == 0;
         if capture.frame as u64 >= self.frames.max(1) {
-            return Err(CaptureError::NoFrame { asked: capture.frame, frames: self.frames });
+            let last = self.frames.saturating_sub(1);
+            let expected = format!("0 to {last}, the file holds {} frames", self.frames);
+            return Err(unfit("frame", format!("is {}", capture.frame), &expected));
         }
         self.start = before + capture.frame as u64 * frame_bytes;
         let whole = if partial { there.min(self.all_loops as u64) as usize } else { self.all_loops };
@@ -116,24 +125,31 @@ impl Plan {
     }
 
     /// The chirps that form the line of elements.
-    pub fn chosen_chirps(&self, capture: &Capture) -> Result<Vec<usize>, CaptureError> {
+    pub fn chosen_chirps(&self, capture: &Capture) -> Result<Vec<usize>, Fault> {
         let last = self.chirps - 1;
-        match &capture.chirps {
-            None if last == 0 => Ok(vec![0]),
-            None => Err(CaptureError::Chirps { found: "missing".to_owned(), last }),
-            Some(chirps) if is_choice(chirps, last) => Ok(chirps.clone()),
-            Some(chirps) => Err(CaptureError::Chirps { found: format!("{chirps:?}"), last }),
-        }
+        let found = match &capture.chirps {
+            None if last == 0 => return Ok(vec![0]),
+            None => "is missing".to_owned(),
+            Some(chirps) if is_choice(chirps, last) => return Ok(chirps.clone()),
+            Some(chirps) => format!("is {chirps:?}"),
+        };
+        let of = "the chirps of a loop that form the line of elements, in order";
+        Err(unfit("chirps", found, &format!("some of 0 to {last}, each once: {of}")))
     }
 
     /// The receivers that form the line of elements.
-    pub fn taken(&self, taken: &[usize]) -> Result<Vec<usize>, CaptureError> {
+    pub fn taken(&self, taken: &[usize]) -> Result<Vec<usize>, Fault> {
         if is_choice(taken, self.receivers - 1) {
             return Ok(taken.to_vec());
         }
         let expected = "some of the receivers that are on, by place from 0, each once";
-        Err(CaptureError::Count { key: "receivers_taken", found: format!("is {taken:?}"), expected })
+        Err(unfit("receivers_taken", format!("is {taken:?}"), expected))
     }
+}
+
+/// A key of the table that doesn't fit the file or the `.cfg`.
+fn unfit(key: &str, found: impl Display, expected: &str) -> Fault {
+    Fault::Data(format!("recording.capture.{key} {found}; expected {expected}"))
 }
 
 /// Whether the numbers are some of 0 to `last`, each once.
@@ -144,32 +160,30 @@ fn is_choice(numbers: &[usize], last: usize) -> bool {
     !sorted.is_empty() && sorted.len() == numbers.len() && sorted.iter().all(|n| *n <= last)
 }
 
-fn layout(capture: &Capture) -> Result<Layout, CaptureError> {
+fn layout(capture: &Capture) -> Result<Layout, Fault> {
     let parts = match (capture.parts, capture.lanes) {
         (Some(parts), None) => parts,
         (None, Some(2)) => Parts::TwoLanes,
         (None, Some(4)) => Parts::FourLanes,
-        (None, Some(lanes)) => return Err(CaptureError::Lanes(lanes)),
-        (None, None) => return Err(CaptureError::Parts("parts is missing")),
-        (Some(_), Some(_)) => return Err(CaptureError::Parts("lanes stands beside parts")),
+        (None, Some(lanes)) => return Err(unfit("lanes", format!("is {lanes}"), "2 or 4")),
+        (None, None) => return Err(unfit("parts", "is missing", "one of lanes and parts")),
+        (Some(_), Some(_)) => return Err(unfit("lanes", "stands beside parts", "one of lanes and parts")),
     };
     let Capture { words, q_first, receivers, header_bytes, .. } = *capture;
     if header_bytes > MOST_COUNT {
-        let found = format!("is {header_bytes}");
-        return Err(CaptureError::Count { key: "header_bytes", found, expected: "at most 65536" });
+        return Err(unfit("header_bytes", format!("is {header_bytes}"), "at most 65536"));
     }
     Ok(Layout { words, parts, q_first, receivers, header_bytes, packets: false })
 }
 
 /// Samples, receivers, chirps and loops.
-fn counts(capture: &Capture, profile: Option<&RadarProfile>) -> Result<[usize; 4], CaptureError> {
+fn counts(capture: &Capture, profile: Option<&RadarProfile>) -> Result<[usize; 4], Fault> {
     let Capture { samples, receiver_count, loop_chirps, loops, .. } = *capture;
     let said =
         [("samples", samples), ("receiver_count", receiver_count), ("loop_chirps", loop_chirps), ("loops", loops)];
     if let Some(profile) = profile {
         if let Some((key, Some(value))) = said.into_iter().find(|(_, value)| value.is_some()) {
-            let expected = "it not beside a .cfg, which says it";
-            return Err(CaptureError::Count { key, found: format!("is {value}"), expected });
+            return Err(unfit(key, format!("is {value}"), "it not beside a .cfg, which says it"));
         }
         return Ok([profile.samples, profile.receivers, profile.chirp_transmitters.len(), profile.loops]);
     }
@@ -178,20 +192,8 @@ fn counts(capture: &Capture, profile: Option<&RadarProfile>) -> Result<[usize; 4
         *count = match value {
             Some(value) if (1..=MOST_COUNT).contains(&value) => value,
             None if ["loop_chirps", "loops"].contains(&key) => 1,
-            None => {
-                return Err(CaptureError::Count {
-                    key,
-                    found: "is missing".to_owned(),
-                    expected: "it where no .cfg says it",
-                });
-            }
-            Some(value) => {
-                return Err(CaptureError::Count {
-                    key,
-                    found: format!("is {value}"),
-                    expected: "a number from 1 to 65536",
-                });
-            }
+            None => return Err(unfit(key, "is missing", "it where no .cfg says it")),
+            Some(value) => return Err(unfit(key, format!("is {value}"), "a number from 1 to 65536")),
         };
     }
     Ok(counts)

@@ -2,10 +2,10 @@
 
 use crate::recording::axes::Chirp;
 use crate::recording::layout::{Parts, ReceiverOrder, Words};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The layout of a capture, and the frame, loops, chirps and receivers that are taken of it.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Capture {
     /// Name of the `.cfg`, beside the TOML; without one the counts stand in this table.
@@ -13,10 +13,10 @@ pub struct Capture {
     /// Number of the sub-frame of an advanced frame, from 0.
     pub sub_frame: Option<usize>,
     /// Names of the files that continue the first, in order.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub more_files: Vec<String>,
     /// Files of the other chips of a cascade, in the order of their receivers; each holds four receivers sample by sample, in pairs.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub chips: Vec<String>,
     /// Encoding of numbers in 16 bits.
     #[serde(default)]
@@ -60,7 +60,7 @@ pub struct Capture {
 }
 
 /// The treatment of a part of the samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Part {
     /// The part stays in the samples.

@@ -1,4 +1,4 @@
-use super::super::layout::Parts;
+use super::super::layout::{Parts, ReceiverOrder};
 use super::super::profile::tests::CFG;
 use super::*;
 use proptest::prelude::*;
@@ -9,11 +9,11 @@ fn profile() -> RadarProfile {
 }
 
 fn capture(lanes: usize, receivers: ReceiverOrder) -> Capture {
-    let order = receivers.name();
-    toml::from_str(&format!("lanes = {lanes}\nreceivers = \"{order}\"\nchirps = [0, 1]")).unwrap()
+    let text = format!("lanes = {lanes}\nreceivers = \"interleaved\"\nchirps = [0, 1]");
+    Capture { receivers, ..toml::from_str(&text).unwrap() }
 }
 
-type Read = Result<(Array3<Complex64>, Vec<String>), CaptureError>;
+type Read = Result<(Array3<Complex64>, Vec<String>), Fault>;
 
 fn read(capture: &Capture, bytes: &[u8], profile: &RadarProfile) -> Read {
     capture.read(Cursor::new(bytes), &Meaning { profile: Some(profile), turns: &[], beat_rises: true })

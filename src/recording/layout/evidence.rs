@@ -6,11 +6,14 @@
 use super::spectrum::Spectrum;
 use super::{Counts, Layout, Parts, ReceiverOrder, Words};
 use crate::recording::RadarProfile;
+use serde::Serialize;
 
 /// A kind of evidence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// Echoes stand in few bins over a low floor, without images.
+    #[serde(rename = "spectrum")]
     Sharp,
     /// Receivers see the same echoes.
     Receivers,
@@ -29,7 +32,7 @@ pub enum Kind {
 }
 
 /// One piece of evidence.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Evidence {
     /// Its kind.
     pub kind: Kind,

@@ -6,7 +6,7 @@ use super::marks::{HEADER_BYTES, Marks, marks};
 use super::spectrum::Spectrum;
 use super::stream::Stream;
 use super::{Counts, Layout, Parts, ReceiverOrder, Words};
-use crate::recording::RadarProfile;
+use crate::recording::{Fault, RadarProfile};
 use ndarray::Array2;
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
@@ -58,41 +58,11 @@ pub struct Found {
     pub hides_counts: bool,
 }
 
-/// A reason for which no layout was found.
-#[derive(Debug, thiserror::Error)]
-pub enum LayoutError {
-    /// The system could not read.
-    #[error("{0}")]
-    Io(#[from] io::Error),
-    /// The file holds less than a chirp.
-    #[error("has {bytes} bytes; expected at least one chirp, {expected} bytes{whose}")]
-    Short {
-        /// Size found.
-        bytes: u64,
-        /// Bytes of a chirp.
-        expected: u64,
-        /// A clause with the source of the count, or nothing.
-        whose: &'static str,
-    },
-    /// The bytes make no echo in any layout.
-    #[error(
-        "is no capture of a kind that is known: in every layout its spectrum is flat, as of random bytes ({tried} were tried); expected \
-         16-bit samples, with the .cfg that set the radar up beside them where there is one"
-    )]
-    NoEcho {
-        /// Number of layouts that were tried.
-        tried: usize,
-    },
-    /// Every sample that was looked at is zero.
-    #[error("begins with nothing but zeros or one constant: no echo to find a layout by")]
-    Zeros,
-}
-
 /// Finds the layout of a capture, with the help of the `.cfg` in `profile`.
 ///
 /// # Errors
-/// [`LayoutError`] where the file is too short, or no layout makes echoes of it.
-pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, LayoutError> {
+/// [`Fault`] where the file is too short, or no layout makes echoes of it.
+pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, Fault> {
     let marks = marks(stream)?;
     let mut notes = Vec::new();
     let (ways, mut hides_counts) = match profile {
@@ -114,15 +84,19 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     let Some(best) = candidates.first() else {
         return Err(match stream.bytes() {
-            bytes @ ..1024 => LayoutError::Short { bytes, expected: 1024, whose: "" },
-            _ => LayoutError::Zeros,
+            bytes @ ..1024 => short(bytes, 1024, ""),
+            _ => zeros(),
         });
     };
     if best.power.iter().all(|p| *p < 0.5) {
-        return Err(LayoutError::Zeros);
+        return Err(zeros());
     }
     if best.flatness_db < FLAT_DB {
-        return Err(LayoutError::NoEcho { tried: candidates.len() });
+        return Err(Fault::Data(format!(
+            "is no capture of a kind that is known: in every layout its spectrum is flat, as of random bytes ({} were tried); expected 16-bit \
+             samples, with the .cfg that set the radar up beside them where there is one",
+            candidates.len()
+        )));
     }
     if let Some(why) = ways.iter().find(|way| way.counts == best.counts).and_then(|way| way.guessed) {
         hides_counts = true;
@@ -139,6 +113,15 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     Ok(Found { candidates, notes, hides_counts })
 }
 
+/// The error of a file of less than a chirp; `whose` is a clause with the source of the count, or nothing.
+fn short(bytes: u64, expected: u64, whose: &str) -> Fault {
+    Fault::Data(format!("has {bytes} bytes; expected at least one chirp, {expected} bytes{whose}"))
+}
+
+fn zeros() -> Fault {
+    Fault::Data("begins with nothing but zeros or one constant: no echo to find a layout by".to_owned())
+}
+
 /// Judges every layout of each of the counts.
 fn judge<R: Read + Seek>(
     stream: &mut Stream<R>,
@@ -146,7 +129,7 @@ fn judge<R: Read + Seek>(
     header_bytes: usize,
     known: Known<'_>,
     candidates: &mut Vec<Candidate>,
-) -> Result<(), LayoutError> {
+) -> Result<(), Fault> {
     let packets = stream.has_packets();
     let mut none = None;
     // Log-odds of the likeliest counts. Other counts are judged beside them.
@@ -165,7 +148,7 @@ fn judge<R: Read + Seek>(
                 other.evidence.push(Evidence { kind: Kind::Usual, log_odds: usual, sentence: String::new() });
                 other
             })),
-            Err(LayoutError::Io(error)) => return Err(error.into()),
+            Err(error @ Fault::Io(_)) => return Err(error),
             Err(error) => none = Some(error),
         }
     }
@@ -217,7 +200,7 @@ struct Job<'a> {
 
 impl Job<'_> {
     /// The layouts of these counts, the likeliest first; there is one at least.
-    fn candidates<R: Read + Seek>(&self, stream: &mut Stream<R>) -> Result<Vec<Candidate>, LayoutError> {
+    fn candidates<R: Read + Seek>(&self, stream: &mut Stream<R>) -> Result<Vec<Candidate>, Fault> {
         let Counts { samples, receivers, .. } = self.counts;
         let mut all = Vec::new();
         for parts in Parts::ALL.into_iter().filter(|parts| self.only.is_none_or(|only| only == *parts)) {
@@ -242,7 +225,7 @@ impl Job<'_> {
         if all.is_empty() {
             let expected = (samples * receivers * 4 + self.header_bytes) as u64;
             let whose = if self.known.profile.is_some() { " as the .cfg says" } else { "" };
-            return Err(LayoutError::Short { bytes: self.known.bytes, expected, whose });
+            return Err(short(self.known.bytes, expected, whose));
         }
         all.sort_by(|a: &Candidate, b| b.log_odds().total_cmp(&a.log_odds()));
         Ok(all)

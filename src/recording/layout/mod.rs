@@ -34,7 +34,7 @@ mod words;
 
 pub(super) use evidence::said;
 pub use evidence::{Evidence, Kind};
-pub use find::{Candidate, Found, LayoutError, find};
+pub use find::{Candidate, Found, find};
 pub use parts::{Parts, ReceiverOrder};
 pub use shape::{Counts, Layout};
 pub(in crate::recording) use spectrum::Spectrum;

@@ -1,9 +1,9 @@
 //! Orders of real and imaginary parts, and of receivers.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Order of real and imaginary parts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Parts {
     /// I Q, sample by sample.
@@ -34,16 +34,6 @@ impl Parts {
         if self == Parts::Real { 2 } else { 4 }
     }
 
-    /// Its name in a recording's TOML.
-    pub fn name(self) -> &'static str {
-        match self {
-            Parts::Pairs => "pairs",
-            Parts::TwoLanes => "two-lanes",
-            Parts::FourLanes => "four-lanes",
-            Parts::Real => "real",
-        }
-    }
-
     /// The order in a sentence.
     pub fn described(self, q_first: bool) -> &'static str {
         match (self, q_first) {
@@ -59,7 +49,7 @@ impl Parts {
 }
 
 /// Order of the receivers in a chirp.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ReceiverOrder {
     /// All samples of one, then all of the next.
@@ -67,14 +57,4 @@ pub enum ReceiverOrder {
     OneAfterAnother,
     /// Sample by sample.
     Interleaved,
-}
-
-impl ReceiverOrder {
-    /// Its name in a recording's TOML.
-    pub fn name(self) -> &'static str {
-        match self {
-            ReceiverOrder::OneAfterAnother => "one-after-another",
-            ReceiverOrder::Interleaved => "interleaved",
-        }
-    }
 }

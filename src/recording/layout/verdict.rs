@@ -2,9 +2,11 @@
 
 use super::evidence::OF_LEVEL;
 use super::{Candidate, Counts, Found, Kind, Parts, ReceiverOrder};
+use serde::Serialize;
 
 /// Certainty of the choice of a layout.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Certainty {
     /// No other layout comes near.
     Sure,

@@ -1,9 +1,9 @@
 //! Encodings of a capture's numbers in 16 bits.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The encoding of a number in 16 bits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum Words {
     /// Two's complement, the low byte first.
     #[default]
@@ -37,16 +37,6 @@ impl Words {
     /// The largest number, where converters end.
     pub fn most(self) -> i16 {
         if self == Words::TwelveBits { 2047 } else { i16::MAX }
-    }
-
-    /// Its name in a recording's TOML.
-    pub fn name(self) -> &'static str {
-        match self {
-            Words::Int16 => "int16",
-            Words::OffsetBinary => "offset-binary",
-            Words::BigEndian => "big-endian",
-            Words::TwelveBits => "12-bit",
-        }
     }
 
     /// The encoding in a sentence's words.

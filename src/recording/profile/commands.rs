@@ -1,7 +1,8 @@
 //! The commands of a `.cfg` that are read. The last of several equal commands holds, as on the radar's command line.
 
-use super::error::{MOST_CHIRPS, ProfileError};
+use super::MOST_CHIRPS;
 use super::lines::{Line, lines};
+use crate::recording::Fault;
 use std::collections::BTreeMap;
 
 /// A chirp of a `chirpCfg`.
@@ -21,21 +22,15 @@ pub(super) struct ChirpLine {
 #[derive(Default)]
 pub(super) struct Commands<'a> {
     pub profiles: BTreeMap<usize, Line<'a>>,
-    pub channels: Option<Line<'a>>,
-    pub frame: Option<Line<'a>>,
-    pub advanced: Option<Line<'a>>,
     pub sub_frames: BTreeMap<usize, Line<'a>>,
-    pub adc: Option<Line<'a>>,
-    pub buffer: Option<Line<'a>>,
-    pub stream: Option<Line<'a>>,
-    pub phases: Option<Line<'a>>,
     pub both: Vec<Line<'a>>,
-    pub geometry: [Option<Line<'a>>; 2],
     pub chirps: Vec<Option<ChirpLine>>,
+    /// The last line of each other command.
+    others: BTreeMap<&'a str, Line<'a>>,
 }
 
 impl<'a> Commands<'a> {
-    pub fn read(text: &'a str) -> Result<Self, ProfileError> {
+    pub fn read(text: &'a str) -> Result<Self, Fault> {
         let mut all = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() };
         for line in lines(text) {
             all.take(line)?;
@@ -43,7 +38,11 @@ impl<'a> Commands<'a> {
         Ok(all)
     }
 
-    fn take(&mut self, line: Line<'a>) -> Result<(), ProfileError> {
+    pub fn last(&self, command: &str) -> Option<&Line<'a>> {
+        self.others.get(command)
+    }
+
+    fn take(&mut self, line: Line<'a>) -> Result<(), Fault> {
         match line.command {
             "flushCfg" => *self = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() },
             "profileCfg" => {
@@ -52,24 +51,15 @@ impl<'a> Commands<'a> {
             "subFrameCfg" => {
                 self.sub_frames.insert(line.count(0, "the sub-frame's number", 3)?, line);
             }
-            "channelCfg" => self.channels = Some(line),
-            "frameCfg" => self.frame = Some(line),
-            "advFrameCfg" => self.advanced = Some(line),
-            "adcCfg" => self.adc = Some(line),
-            "adcbufCfg" => self.buffer = Some(line),
-            "lvdsStreamCfg" => self.stream = Some(line),
-            "compRangeBiasAndRxChanPhase" => self.phases = Some(line),
             "bpmCfg" => self.both.push(line),
-            "antGeometry0" => self.geometry[0] = Some(line),
-            "antGeometry1" => self.geometry[1] = Some(line),
             "chirpCfg" => self.define_chirps(&line)?,
-            _ => {}
+            other => _ = self.others.insert(other, line),
         }
         Ok(())
     }
 
     /// `chirpCfg start end profile dFrequency dSlope dIdle dAdcStart txMask`.
-    fn define_chirps(&mut self, line: &Line<'_>) -> Result<(), ProfileError> {
+    fn define_chirps(&mut self, line: &Line<'_>) -> Result<(), Fault> {
         let (first, last) =
             (line.count(0, "the first chirp", MOST_CHIRPS - 1)?, line.count(1, "the last chirp", MOST_CHIRPS - 1)?);
         let profile = line.count(2, "the profile's number", MOST_CHIRPS)?;

@@ -1,8 +1,9 @@
 //! Frames of a `.cfg`: one kind of chirps that repeats, or sub-frames of several kinds.
 
 use super::commands::Commands;
-use super::error::{MOST_CHIRPS, MOST_LOOPS, ProfileError};
 use super::lines::Line;
+use super::{MOST_CHIRPS, MOST_LOOPS, missing};
+use crate::recording::Fault;
 
 /// Chirps that repeat.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,8 +20,8 @@ pub(super) struct Frame {
 }
 
 /// The frames of the text: one, or the sub-frames in their order.
-pub(super) fn frames(commands: &Commands<'_>) -> Result<Vec<Frame>, ProfileError> {
-    match (&commands.frame, &commands.advanced) {
+pub(super) fn frames(commands: &Commands<'_>) -> Result<Vec<Frame>, Fault> {
+    match (commands.last("frameCfg"), commands.last("advFrameCfg")) {
         (Some(frame), None) => Ok(vec![plain(frame)?]),
         (_, Some(advanced)) => {
             let count = advanced.count(0, "the number of sub-frames", 4)?;
@@ -39,12 +40,12 @@ pub(super) fn frames(commands: &Commands<'_>) -> Result<Vec<Frame>, ProfileError
             }
             Ok(sub_frames)
         }
-        (None, None) => Err(ProfileError::Missing("frameCfg")),
+        (None, None) => Err(missing("frameCfg")),
     }
 }
 
 /// `frameCfg first last loops frames period trigger delay`.
-fn plain(line: &Line<'_>) -> Result<Frame, ProfileError> {
+fn plain(line: &Line<'_>) -> Result<Frame, Fault> {
     let (first, last) =
         (line.count(0, "the first chirp", MOST_CHIRPS - 1)?, line.count(1, "the last chirp", MOST_CHIRPS - 1)?);
     if last < first {
@@ -56,7 +57,7 @@ fn plain(line: &Line<'_>) -> Result<Frame, ProfileError> {
 }
 
 /// `subFrameCfg number force first chirps loops period offset bursts burst-loops period`.
-fn sub_frame(line: &Line<'_>, frames: usize) -> Result<Frame, ProfileError> {
+fn sub_frame(line: &Line<'_>, frames: usize) -> Result<Frame, Fault> {
     let first = line.count(2, "the first chirp", MOST_CHIRPS - 1)?;
     let chirps = line.count(3, "the number of chirps", MOST_CHIRPS - first)?;
     if chirps == 0 {

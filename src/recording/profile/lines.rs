@@ -1,6 +1,8 @@
 //! The lines of a `.cfg`: commands with their numbers, out of the text around them.
 
-use super::error::ProfileError;
+use super::at_line;
+use crate::recording::Fault;
+use std::fmt::Display;
 
 /// Numbers of one command, and where it stands.
 #[derive(Debug, Clone)]
@@ -17,12 +19,12 @@ pub(super) struct Line<'a> {
 
 impl Line<'_> {
     /// The error of this line.
-    pub fn fault(&self, message: impl Into<String>) -> ProfileError {
-        ProfileError::Line { line: self.number, message: format!("{}: {}", self.command, message.into()) }
+    pub fn fault(&self, message: impl Display) -> Fault {
+        at_line(self.number, &format!("{}: {message}", self.command))
     }
 
     /// Number `index` of the command.
-    pub fn real(&self, index: usize, name: &str) -> Result<f64, ProfileError> {
+    pub fn real(&self, index: usize, name: &str) -> Result<f64, Fault> {
         let missing = || match self.bad {
             Some(word) => self.fault(format!("\"{word}\" is no number; expected {name} as number {}", index + 1)),
             None => self.fault(format!("has {} numbers; expected {name} as number {}", self.values.len(), index + 1)),
@@ -31,7 +33,7 @@ impl Line<'_> {
     }
 
     /// A number above 0.
-    pub fn positive(&self, index: usize, name: &str) -> Result<f64, ProfileError> {
+    pub fn positive(&self, index: usize, name: &str) -> Result<f64, Fault> {
         let value = self.real(index, name)?;
         if value.is_finite() && value > 0.0 {
             Ok(value)
@@ -41,7 +43,7 @@ impl Line<'_> {
     }
 
     /// A finite number other than 0.
-    pub fn not_zero(&self, index: usize, name: &str) -> Result<f64, ProfileError> {
+    pub fn not_zero(&self, index: usize, name: &str) -> Result<f64, Fault> {
         let value = self.real(index, name)?;
         if value.is_finite() && value != 0.0 {
             Ok(value)
@@ -51,7 +53,7 @@ impl Line<'_> {
     }
 
     /// A whole number from 0 to `most`.
-    pub fn count(&self, index: usize, name: &str, most: usize) -> Result<usize, ProfileError> {
+    pub fn count(&self, index: usize, name: &str, most: usize) -> Result<usize, Fault> {
         let value = self.real(index, name)?;
         if value.fract() == 0.0 && (0.0..=most as f64).contains(&value) {
             return Ok(value as usize);

@@ -4,22 +4,19 @@
 
 mod commands;
 mod dialect;
-mod error;
 mod frames;
 pub(super) mod lines;
 #[cfg(test)]
 pub(super) mod tests;
 
-use crate::radar::Radar;
+use super::Fault;
 use commands::Commands;
-use error::MOST_SAMPLES;
-pub use error::ProfileError;
 use frames::{Frame, frames};
 use lines::Line;
 use num_complex::Complex64;
 
 /// The radar and the data format that a `.cfg` sets.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RadarProfile {
     /// Frequency at the start of the ramp, hertz.
     pub start_hz: f64,
@@ -73,6 +70,11 @@ const CHIRP_HEADER_BYTES: usize = 64;
 /// Receivers of a chip.
 pub(super) const CHIP_RECEIVERS: usize = 4;
 
+/// Most chirps in a loop, samples in a chirp and loops in a frame that the hardware knows, with room to spare.
+const MOST_CHIRPS: usize = 512;
+const MOST_SAMPLES: usize = 65536;
+const MOST_LOOPS: usize = 65536;
+
 /// Largest bias that is believed, metres.
 const MOST_BIAS_METRES: f64 = 1000.0;
 
@@ -80,8 +82,8 @@ impl RadarProfile {
     /// Reads a `.cfg`: profileCfg, channelCfg, chirpCfg and a frame are needed, other commands where they stand there.
     ///
     /// # Errors
-    /// [`ProfileError`] names the line, the command and what was expected, or the dialect.
-    pub fn parse(text: &str) -> Result<RadarProfile, ProfileError> {
+    /// [`Fault`] names the line, the command and what was expected, or the dialect.
+    pub fn parse(text: &str) -> Result<RadarProfile, Fault> {
         RadarProfile::of_sub_frame(text, None)
     }
 
@@ -98,13 +100,13 @@ impl RadarProfile {
     ///
     /// # Errors
     /// As [`RadarProfile::parse`].
-    pub fn of_sub_frame(text: &str, sub_frame: Option<usize>) -> Result<RadarProfile, ProfileError> {
+    pub fn of_sub_frame(text: &str, sub_frame: Option<usize>) -> Result<RadarProfile, Fault> {
         dialect::check(text)?;
         let commands = Commands::read(text)?;
         if commands.profiles.is_empty() {
-            return Err(ProfileError::Missing("profileCfg"));
+            return Err(missing("profileCfg"));
         }
-        let channels = commands.channels.as_ref().ok_or(ProfileError::Missing("channelCfg"))?;
+        let channels = commands.last("channelCfg").ok_or_else(|| missing("channelCfg"))?;
         let mask = channels.count(0, "the mask of receivers", 0xffff)?;
         if mask == 0 {
             return Err(channels.fault("no receiver is on"));
@@ -113,11 +115,11 @@ impl RadarProfile {
         let all = frames(&commands)?;
         let found = all.len();
         let chosen = sub_frame.unwrap_or(0);
-        let frame = all.get(chosen).ok_or(ProfileError::NoSubFrame { found })?;
-        let mut parts = Vec::new();
-        for frame in &all {
-            parts.push(Part::of(&commands, frame)?);
-        }
+        let frame = all.get(chosen).ok_or_else(|| {
+            let last = found - 1;
+            Fault::Data(format!("has {found} sub-frames; expected recording.capture.sub_frame = 0 to {last}"))
+        })?;
+        let parts = all.iter().map(|frame| Part::of(&commands, frame)).collect::<Result<Vec<_>, _>>()?;
         let numbers: Vec<usize> =
             parts.iter().map(|p| p.numbers(receiver_numbers.len())).collect::<Option<_>>().unwrap_or_default();
         let part = &parts[chosen];
@@ -154,22 +156,22 @@ impl RadarProfile {
     }
 
     /// Takes the commands on the data format and on corrections.
-    fn said_of_data(&mut self, commands: &Commands<'_>) -> Result<(), ProfileError> {
-        if let Some(adc) = &commands.adc {
+    fn said_of_data(&mut self, commands: &Commands<'_>) -> Result<(), Fault> {
+        if let Some(adc) = commands.last("adcCfg") {
             adc.count(0, "the number of bits", 2)?;
             self.real = adc.count(1, "the format", 3)? == 0;
         }
-        if let Some(buffer) = &commands.buffer {
+        if let Some(buffer) = commands.last("adcbufCfg") {
             // The first SDKs had no sub-frames to name.
             let first = usize::from(buffer.values.len() != 4);
             self.q_first = buffer.may_count(first + 1, 1).map(|v| v == 1);
             self.interleaved = buffer.may_count(first + 2, 1).map(|v| v == 0);
         }
-        self.headers = commands.stream.as_ref().is_some_and(|s| s.may_count(1, 1) == Some(1));
+        self.headers = commands.last("lvdsStreamCfg").is_some_and(|s| s.may_count(1, 1) == Some(1));
         self.both_transmitters = commands.both.iter().any(|b| b.may_count(1, 1) == Some(1))
             && self.chirp_transmitters.len() == 2
             && self.chirp_transmitters.iter().all(|m| m.count_ones() == 2 && *m == self.chirp_transmitters[0]);
-        if let Some(phases) = &commands.phases {
+        if let Some(phases) = commands.last("compRangeBiasAndRxChanPhase") {
             let bias = phases.real(0, "the range bias in metres")?;
             if bias.is_nan() || bias.abs() > MOST_BIAS_METRES {
                 return Err(phases.fault(format!("the range bias is {bias}; expected metres")));
@@ -181,10 +183,10 @@ impl RadarProfile {
                 .filter(|v| v.is_finite())
                 .collect();
         }
-        for (places, line) in self.element_places.iter_mut().zip(&commands.geometry) {
-            *places =
-                line.as_ref().map_or(Vec::new(), |l| l.values.iter().copied().filter(|v| v.is_finite()).collect());
-        }
+        self.element_places = ["antGeometry0", "antGeometry1"].map(|command| {
+            let values = commands.last(command).into_iter().flat_map(|line| &line.values);
+            values.copied().filter(|v| v.is_finite()).collect()
+        });
         Ok(())
     }
 
@@ -213,14 +215,16 @@ impl RadarProfile {
     pub fn rises(&self) -> bool {
         self.slope_hz_per_second > 0.0
     }
+}
 
-    /// Writes carrier, bandwidth, samples and their duration into `radar`.
-    pub fn set(&self, radar: &mut Radar) {
-        radar.carrier_hz = self.carrier_hz();
-        radar.bandwidth_hz = self.bandwidth_hz();
-        radar.samples = self.complex_samples();
-        radar.chirp_seconds = self.chirp_seconds();
-    }
+/// The error of a command that is missing.
+fn missing(command: &str) -> Fault {
+    Fault::Data(format!("has no line \"{command}\"; expected profileCfg, channelCfg, chirpCfg and frameCfg"))
+}
+
+/// The error of a line, counted from 1.
+fn at_line(line: usize, message: &str) -> Fault {
+    Fault::Data(format!("line {line}: {message}"))
 }
 
 /// The chirps of one frame, with the profile they share.
@@ -232,13 +236,14 @@ struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    fn of(commands: &'a Commands<'a>, frame: &Frame) -> Result<Self, ProfileError> {
+    fn of(commands: &'a Commands<'a>, frame: &Frame) -> Result<Self, Fault> {
         let mut chirps = Vec::new();
         for n in frame.first..=frame.last {
-            let chirp = commands.chirps[n].ok_or(ProfileError::UndefinedChirp(n))?;
+            let chirp = commands.chirps[n]
+                .ok_or_else(|| Fault::Data(format!("frameCfg uses chirp {n}, which no chirpCfg defines")))?;
             if let Some(differs) = chirp.differs {
                 let message = format!("chirpCfg: {differs} is not 0; expected chirps that are all alike");
-                return Err(ProfileError::Line { line: chirp.line, message });
+                return Err(at_line(chirp.line, &message));
             }
             chirps.push(chirp);
         }
@@ -248,15 +253,15 @@ impl<'a> Part<'a> {
                 .get(&number)
                 .or_else(|| commands.profiles.values().next().filter(|_| commands.profiles.len() == 1))
         };
-        let first = line(chirps[0].profile).ok_or(ProfileError::Missing("profileCfg"))?;
+        let first = line(chirps[0].profile).ok_or_else(|| missing("profileCfg"))?;
         for chirp in &chirps[1..] {
-            let other = line(chirp.profile).ok_or(ProfileError::Missing("profileCfg"))?;
+            let other = line(chirp.profile).ok_or_else(|| missing("profileCfg"))?;
             // The profile's own number differs; powers, phases, the transmitter's start and gains (5, 6, 8, 11 on) may.
             // Bits are compared, since NaN equals nothing. NaN is refused where it is read.
             let same = |i: usize| other.values.get(i).map(|v| v.to_bits()) == first.values.get(i).map(|v| v.to_bits());
             if ![1, 2, 3, 4, 7, 9, 10].into_iter().all(same) {
                 let message = "the chirps of a frame follow profiles that differ; expected one profile for all of them";
-                return Err(ProfileError::Line { line: chirp.line, message: message.to_owned() });
+                return Err(at_line(chirp.line, message));
             }
         }
         let used: std::collections::BTreeSet<usize> = chirps.iter().map(|c| c.profile).collect();
@@ -273,12 +278,11 @@ impl<'a> Part<'a> {
     }
 
     /// `profileCfg id start idle adc-start ramp-end power phase slope tx-start samples rate ...`.
-    fn profile(&self, frame: &Frame, receiver_numbers: Vec<usize>) -> Result<RadarProfile, ProfileError> {
+    fn profile(&self, frame: &Frame, receiver_numbers: Vec<usize>) -> Result<RadarProfile, Fault> {
         let line = self.profile;
         let samples = line.count(9, "the number of samples", MOST_SAMPLES)?;
         if frame.loops == 0 || samples == 0 {
-            let message = "a frame without loops or samples holds nothing".to_owned();
-            return Err(ProfileError::Line { line: frame.line, message });
+            return Err(at_line(frame.line, "a frame without loops or samples holds nothing"));
         }
         let (idle, ramp) = (line.real(2, "the idle time in us")?, line.real(4, "the ramp's end in us")?);
         let mut profile = RadarProfile {
@@ -287,23 +291,12 @@ impl<'a> Part<'a> {
             slope_hz_per_second: 1e12 * line.not_zero(7, "the slope in MHz/us")?,
             samples_per_second: 1e3 * line.positive(10, "the sampling rate in ksps")?,
             samples,
-            real: false,
             receivers: receiver_numbers.len(),
             receiver_numbers,
             chirp_transmitters: self.transmitters.clone(),
-            chirp_interval_seconds: 0.0,
             loops: frame.loops,
             frames: frame.frames,
-            q_first: None,
-            interleaved: None,
-            headers: false,
-            both_transmitters: false,
-            range_bias_metres: 0.0,
-            channel_factors: Vec::new(),
-            element_places: [Vec::new(), Vec::new()],
-            numbers_before: 0,
-            frame_numbers: 0,
-            notes: Vec::new(),
+            ..RadarProfile::default()
         };
         // A ramp that ends before its samples do is a slip of the text: chirps can't overlap.
         profile.chirp_interval_seconds = (1e-6 * (idle + ramp)).max(profile.chirp_seconds());

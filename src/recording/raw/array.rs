@@ -60,16 +60,7 @@ pub(super) fn import(
     let offer = |reading: &Reading| {
         let in_turn = in_turn(reading, &shape, profile);
         let line = line_of(reading, &shape, in_turn, profile, board);
-        let about = About {
-            data,
-            config: config.as_deref(),
-            more: &[],
-            chips: &[],
-            profile,
-            line: &line,
-            takes_constant_out: false,
-            sentences: &sentences,
-        };
+        let about = About { data, profile, line: &line, sentences: &sentences };
         let array = text::Array { reading, shape: &shape, key: key.as_deref(), in_turn };
         let (described, power) = (reading.described(&shape), reading.power.clone());
         (Offer { described, log_odds: reading.log_odds, power, toml: text::of_array(&array, &about) }, line)
@@ -79,7 +70,7 @@ pub(super) fn import(
     doubts.extend(lines.into_iter().take(1).flat_map(|line| line.doubts));
     let frames = best.len(AxisKind::Frame, &shape) as u64;
     let data = data.to_owned();
-    let origin = Origin { data, config: config.clone(), offers, taken: 0, sentences, doubts, board, frames, frame: 0 };
+    let origin = Origin { data, config, offers, sentences, doubts, board, frames, ..Origin::default() };
     Ok(Imported { origin, found: None })
 }
 

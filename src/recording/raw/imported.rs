@@ -1,7 +1,7 @@
 //! The ways to read a file, and the certainty of their choice.
 
+use crate::recording::Origin;
 use crate::recording::layout::{Certainty, Found};
-use crate::recording::{Origin, Recording, RecordingError};
 
 /// The ways to read a file, and the texts that describe it.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,13 +22,5 @@ impl Imported {
     pub fn margin(&self) -> Option<f64> {
         let offers = &self.origin.offers;
         Some(offers.first()?.log_odds - offers.get(1)?.log_odds)
-    }
-
-    /// The recording as its text describes it.
-    ///
-    /// # Errors
-    /// [`RecordingError`] names the file, the key or the array.
-    pub fn recording(&self) -> Result<Recording, RecordingError> {
-        self.origin.recording()
     }
 }

@@ -27,8 +27,8 @@ mod text;
 pub use imported::Imported;
 
 use super::axes::{Chirp, Join};
-use super::capture::{Capture, Part, ReceiverOrder};
-use super::chain::{Chain, Chips, Source};
+use super::capture::{Capture, Part};
+use super::chain::{Source, opened};
 use super::described::{config_text, open_file};
 use super::layout::stream::Stream;
 use super::layout::{Candidate, Certainty, Found, Kind, find, said as said_of};
@@ -61,7 +61,7 @@ pub fn is_raw_at(path: &Path) -> bool {
 /// # Errors
 /// [`RecordingError`] names the file and what would help.
 pub fn open(path: &Path, config: Option<&Path>) -> Result<Recording, RecordingError> {
-    import(path, config, None)?.recording()
+    import(path, config, None)?.origin.recording()
 }
 
 /// Finds out what a raw capture or an array holds, by the antennas of `board` or of those that its `.cfg` makes likely.
@@ -141,14 +141,7 @@ struct Files {
 impl Files {
     /// Opens all files as one.
     fn open(&self) -> io::Result<Box<dyn Source>> {
-        let open = |path: &PathBuf| Ok::<_, io::Error>(Box::new(BufReader::new(open_file(path)?)) as Box<dyn Source>);
-        let paths = || std::iter::once(&self.data).chain(&self.more).chain(&self.chips);
-        let all = || paths().map(open).collect::<io::Result<Vec<_>>>();
-        Ok(match (self.more.is_empty(), self.chips.is_empty()) {
-            (true, true) => open(&self.data)?,
-            (_, false) => Box::new(Chips::new(all()?)?),
-            (false, true) => Box::new(Chain::new(all()?)?),
-        })
+        opened(&self.data, &self.more, &self.chips, |path| Ok(Box::new(BufReader::new(open_file(path)?))))
     }
 
     /// A note on files that are read as one, or on chips whose files are missing.
@@ -178,7 +171,7 @@ fn described<R: Read + io::Seek>(
 ) -> Result<Imported, RecordingError> {
     let found = find(&mut stream, profile).map_err(|e| Fault::from(e).of(&files.data))?;
     let best = found.best();
-    let frame = FirstFrame::read(&mut stream, &capture(best, profile), profile);
+    let frame = FirstFrame::read(&mut stream, &capture(best, &files, profile), profile);
     let is_cascade = !files.chips.is_empty() && board.is_none_or(|board| board.name == boards::BY_CHIP.name);
     let board = if is_cascade { Some(frame.cascade()) } else { board };
     let line = line::line(best.counts, profile, board);
@@ -198,23 +191,21 @@ fn described<R: Read + io::Seek>(
     sentences.extend(profile.iter().flat_map(|p| said(p)));
     let offer = |candidate: &Candidate| {
         let line = line::line(candidate.counts, profile, board);
-        let about = text::About {
-            data: &files.data,
-            config: files.config.as_deref(),
-            more: &files.more,
-            chips: &files.chips,
-            profile,
-            line: &line,
-            takes_constant_out: frame.constant_db.is_some(),
-            sentences: &sentences,
+        let capture = Capture {
+            chirps: Some(line.chirps.clone()),
+            receivers_taken: line.receivers.clone(),
+            constant: if frame.constant_db.is_some() { Part::Out } else { Part::Keep },
+            ..capture(candidate, &files, profile)
         };
+        let about = text::About { data: &files.data, profile, line: &line, sentences: &sentences };
         let (described, power) = (candidate.described(), candidate.power.clone());
-        Offer { described, log_odds: candidate.log_odds(), power, toml: text::text(candidate, &about) }
+        let toml = text::of_capture(&capture, candidate.counts.samples, &about);
+        Offer { described, log_odds: candidate.log_odds(), power, toml }
     };
     let offers = found.candidates.iter().take(OFFERED).map(offer).collect();
     let (board, frames) = (line.board, frame.frames);
     let Files { data, config, .. } = files;
-    let origin = Origin { data, config, offers, taken: 0, sentences, doubts, board, frames, frame: 0 };
+    let origin = Origin { data, config, offers, sentences, doubts, board, frames, ..Origin::default() };
     Ok(Imported { origin, found: Some(found) })
 }
 
@@ -270,20 +261,21 @@ fn said(profile: &RadarProfile) -> Vec<String> {
     said
 }
 
-/// A candidate's layout as it would stand in a text.
-fn capture(best: &Candidate, profile: Option<&RadarProfile>) -> Capture {
+/// A candidate's layout as it stands in a text.
+fn capture(best: &Candidate, files: &Files, profile: Option<&RadarProfile>) -> Capture {
     let Candidate { layout, counts, .. } = best;
     let said = |value: usize| profile.is_none().then_some(value);
+    let named = |path: &PathBuf| text::beside(path, &files.data);
     Capture {
-        config: None,
+        config: files.config.as_ref().map(named),
         sub_frame: None,
-        more_files: Vec::new(),
-        chips: Vec::new(),
+        more_files: files.more.iter().map(named).collect(),
+        chips: files.chips.iter().map(named).collect(),
         words: layout.words,
         parts: Some(layout.parts),
         lanes: None,
         q_first: layout.q_first,
-        receivers: if counts.receivers == 1 { ReceiverOrder::OneAfterAnother } else { layout.receivers },
+        receivers: layout.receivers,
         header_bytes: layout.header_bytes,
         samples: said(counts.samples),
         receiver_count: said(counts.receivers),

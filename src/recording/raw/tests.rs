@@ -42,7 +42,7 @@ fn the_text_that_is_written_reads_the_same_samples() {
     let imported = import(&folder.path().join("a.bin"), None, None).unwrap();
     fs::write(folder.path().join("r.toml"), imported.origin.toml()).unwrap();
     let read = super::super::file::load(&folder.path().join("r.toml")).unwrap();
-    assert_eq!(read.samples, imported.recording().unwrap().samples);
+    assert_eq!(read.samples, imported.origin.recording().unwrap().samples);
     let toml = imported.origin.toml();
     assert!(toml.contains("config = \"a.cfg\"") && toml.contains("parts = \"pairs\""), "{toml}");
 }
@@ -95,7 +95,7 @@ fn any_chip_of_a_cascade_opens_all_four() {
             toml.contains("file = \"master_0000_data.bin\"") && toml.contains("chips = [\"slave1_0000_data.bin\""),
             "{toml}"
         );
-        let recording = imported.recording().unwrap();
+        let recording = imported.origin.recording().unwrap();
         // Places from 0 to 53, of which 16 hold a receiver.
         assert_eq!((recording.radar.elements, recording.missing.len()), (54, 38));
         assert!(recording.doubts.iter().any(|d| d.contains("four chips of a cascade")), "{:?}", recording.doubts);

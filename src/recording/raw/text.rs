@@ -3,33 +3,32 @@
 use super::axes::Reading;
 use super::line::{Line, USUAL_CARRIER_HZ};
 use crate::radar::{Antennas, Radar, SPEED_OF_LIGHT};
-use crate::recording::AxisKind;
-use crate::recording::layout::{Candidate, Layout, Parts};
+use crate::recording::layout::Parts;
 use crate::recording::profile::RadarProfile;
+use crate::recording::{AxisKind, Capture};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The files, the radar and the notes of a capture, for its text.
 pub(super) struct About<'a> {
     pub data: &'a Path,
-    pub config: Option<&'a Path>,
-    pub more: &'a [PathBuf],
-    pub chips: &'a [PathBuf],
     pub profile: Option<&'a RadarProfile>,
     pub line: &'a Line,
-    pub takes_constant_out: bool,
     pub sentences: &'a [String],
 }
 
-/// The text that describes the capture by the candidate's layout.
-pub(super) fn text(best: &Candidate, about: &About<'_>) -> String {
+/// The text that describes a capture of `samples` samples in a chirp.
+pub(super) fn of_capture(capture: &Capture, samples: usize, about: &About<'_>) -> String {
     let mut out = heading(about);
-    let halves = if best.layout.parts == Parts::Real { 2 } else { 1 };
-    radar(&mut out, None, best.counts.samples.div_ceil(halves), about);
+    let halves = if capture.parts == Some(Parts::Real) { 2 } else { 1 };
+    radar(&mut out, None, samples.div_ceil(halves), about);
     out.push_str("\n[recording]\n");
     put(&mut out, "file", &quoted(&beside(about.data, about.data)));
     signs(&mut out, about.profile, about.profile.is_none());
-    capture(&mut out, best, about);
+    // The table has texts, numbers and lists of them alone: it can't fail to be written.
+    let table = toml::to_string(capture).unwrap_or_default();
+    let told = table.replace("\nloop = ", "\n# Or a number from 0, or \"mean\".\nloop = ");
+    out.push_str(&format!("\n[recording.capture]\n{told}"));
     out
 }
 
@@ -124,47 +123,6 @@ fn radar(out: &mut String, said: Option<[f64; 3]>, samples: usize, about: &About
     put(out, "end_elements", &most.max(1).to_string());
 }
 
-fn capture(out: &mut String, best: &Candidate, about: &About<'_>) {
-    let Layout { words, parts, q_first, receivers, header_bytes, .. } = best.layout;
-    out.push_str("\n[recording.capture]\n");
-    if let Some(config) = about.config {
-        put(out, "config", &quoted(&beside(config, about.data)));
-    }
-    for (key, paths) in [("more_files", about.more), ("chips", about.chips)] {
-        if !paths.is_empty() {
-            let names: Vec<String> = paths.iter().map(|path| quoted(&beside(path, about.data))).collect();
-            put(out, key, &format!("[{}]", names.join(", ")));
-        }
-    }
-    put(out, "words", &quoted(words.name()));
-    put(out, "parts", &quoted(parts.name()));
-    put(out, "q_first", &q_first.to_string());
-    put(out, "receivers", &quoted(receivers.name()));
-    if header_bytes > 0 {
-        put(out, "header_bytes", &header_bytes.to_string());
-    }
-    if about.profile.is_none() {
-        for (key, value) in [
-            ("samples", best.counts.samples),
-            ("receiver_count", best.counts.receivers),
-            ("loop_chirps", best.counts.chirps),
-            ("loops", best.counts.loops),
-        ] {
-            put(out, key, &value.to_string());
-        }
-    }
-    put(out, "chirps", &format!("{:?}", about.line.chirps));
-    if let Some(taken) = &about.line.receivers {
-        put(out, "receivers_taken", &format!("{taken:?}"));
-    }
-    put(out, "frame", "0");
-    out.push_str("# Or a number from 0, or \"mean\".\n");
-    put(out, "loop", "\"strongest\"");
-    if about.takes_constant_out {
-        put(out, "constant", "\"out\"");
-    }
-}
-
 fn put(out: &mut String, key: &str, value: &str) {
     // Writing into a string can't fail.
     let _written = writeln!(out, "{key} = {value}");
@@ -176,7 +134,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// Name of `path` in the text beside `data`: its file name where both stand in one folder.
-fn beside(path: &Path, data: &Path) -> String {
+pub(super) fn beside(path: &Path, data: &Path) -> String {
     let whole = |path: &Path| crate::platform::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let (path_whole, data_whole) = (whole(path), whole(data));
     let name =
