@@ -158,7 +158,7 @@ impl App {
 
     /// Name of the method whose output is on screen, if there is one.
     pub fn shown_method(&self) -> Option<&'static str> {
-        self.jobs.pipeline.output().map(|output| output.method)
+        self.jobs.pipeline.output().map(|output| output.method())
     }
 
     /// Figures of the first method's output, if there are any.

@@ -19,7 +19,7 @@ impl Jobs {
             state.draws_found() && shown.contains(&Panel::Scene) && !self.pipeline.is_stale(MapKind::Output);
         let output = self.pipeline.output_of(state).filter(|o| marks_found && !o.reflectors.is_empty());
         let source = Source::of(state);
-        note(output.is_some_and(|o| o.pair.source != source), "what was found");
+        note(output.is_some_and(|o| o.pair.origin.source != source), "what was found");
         let judged = super::fates_of(&self.kinds, MethodSlot::First, &self.pipeline);
         let marks_kinds = state.settings.show_kinds && !state.is_predicting();
         note(
@@ -37,8 +37,7 @@ impl Jobs {
         let Some(slot) = kind.slot() else { return maps.request.source != source };
         let pair = maps.request.pairs[slot as usize].as_ref();
         let method = state.method_in(slot).map(|method| method.name());
-        let made_by = self.pipeline.method(slot).output().map(|output| output.method);
-        pair.is_some_and(|pair| pair.source != source) || (made_by.is_some() && made_by != method)
+        pair.is_some_and(|pair| pair.origin.source != source || Some(pair.origin.method) != method)
     }
 }
 

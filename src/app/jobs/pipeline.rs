@@ -12,7 +12,7 @@ use super::derived::STALE;
 use super::maps::MapsJob;
 use super::method::{Basis, MethodJob, MethodRequest, MethodResult};
 use super::recorded::Unexplained;
-use super::scene_maps::{MapsRequest, MapsResult, Scores, Truth};
+use super::scene_maps::{MapsRequest, MapsResult, Origin, Scores, Truth};
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, State};
@@ -44,7 +44,7 @@ impl Pipeline {
     /// The threshold of either method's output: the user's, else the one derived for the output on screen, else the method's own.
     pub fn eta(&self, state: &State, slot: MethodSlot) -> f32 {
         let method = state.method_in(slot).map(|method| method.name());
-        let output = self.method(slot).output().filter(|output| Some(output.method) == method);
+        let output = self.method(slot).output().filter(|output| Some(output.method()) == method);
         state.eta_in(slot, output.and_then(|output| output.eta))
     }
 
@@ -74,8 +74,14 @@ impl Pipeline {
         let read = [drawn || wants.output, wants.second];
         let source = Source::of(state);
         for slot in MethodSlot::BOTH {
-            let method = state.method_in(slot).map(|method| method.name());
-            self.methods[slot as usize].look(read[slot as usize], &source, method);
+            let wanted = state.method_in(slot).filter(|_| read[slot as usize]).map(|method| Origin {
+                source: source.clone(),
+                normalisation: state.settings.normalisation,
+                layout: state.settings.heard(state.radar()),
+                method: method.name(),
+            });
+            let pictured = self.maps.result().and_then(|maps| maps.request.pairs[slot as usize].as_ref());
+            self.methods[slot as usize].look(wanted, pictured);
         }
         let request = self.maps_request(state, source, (pictures, read), wants);
         let is_recorded = request.source.recording.is_some();
@@ -148,16 +154,13 @@ impl Pipeline {
     /// Asks for a method's output of the latest maps, unless the last request serves.
     fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
         let latest = self.maps.result().and_then(|r| {
-            let (target, about) = (r.target(), (r.request.at_rest, r.request.document, r.request.source.clone()));
+            let target = r.target();
             // A recording of the two ends has no target; a scene has one as soon as it is wanted.
-            (target.is_some() || r.request.source.recording.is_some()).then_some((Basis::of(r)?, target, about))
+            (target.is_some() || r.request.source.recording.is_some()).then_some((Basis::of(r)?, target, &r.request))
         });
-        let Some(((basis, target, (at_rest, document, source)), method)) =
-            latest.zip(state.method_in(slot).map(Shared::from))
-        else {
-            return;
-        };
-        let request = MethodRequest { document, source, basis, target, method, listed, at_rest };
+        let Some(((basis, target, maps), method)) = latest.zip(state.method_in(slot).map(Shared::from)) else { return };
+        let (document, at_rest, origin) = (maps.document, maps.at_rest, maps.origin(method.name()));
+        let request = MethodRequest { document, origin, basis, target, method, listed, at_rest };
         self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 

@@ -13,7 +13,7 @@ use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, EngineFrame, MapRequest, ReadyMap};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
 use crate::maps::cfar::{Cfar, DETECTED};
-use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::maps::{LambdaScale, Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Radar};
 use crate::recording::Recording;
@@ -23,14 +23,27 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
+/// What an output is made of. Equal ones have equal outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Origin {
+    /// The source of the samples.
+    pub source: Source,
+    /// Normalisation of the map.
+    pub normalisation: Normalisation,
+    /// Numbers of the elements that methods use in place of the two ends.
+    pub layout: Option<Vec<usize>>,
+    /// Name of the method.
+    pub method: &'static str,
+}
+
 /// An output and its target. Figures always compare such a pair, even where the scene has changed since.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// The source of both maps' samples.
-    pub source: Source,
+    /// What the output is made of; the target is of the same samples.
+    pub origin: Origin,
     /// Map of the whole array; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
-    /// Output of a method from the ends of the same source.
+    /// Output of the method.
     pub output: Shared<RangeAngleMap>,
     /// The method's expected error of each cell, where it gives one.
     pub doubt: Option<Shared<RangeAngleMap>>,
@@ -125,6 +138,14 @@ pub struct Truth {
     /// Map of all elements.
     pub target: Shared<RangeAngleMap>,
     pub scale: LambdaScale,
+}
+
+impl MapsRequest {
+    /// The origin of an output that `method` makes of these maps' samples.
+    pub fn origin(&self, method: &'static str) -> Origin {
+        let (source, layout) = (self.source.clone(), self.layout.clone());
+        Origin { source, normalisation: self.wanted.normalisation, layout, method }
+    }
 }
 
 impl MapsResult {

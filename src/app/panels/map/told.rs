@@ -171,7 +171,7 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     let slot = kind.slot().unwrap_or(MethodSlot::First);
     caption(Caption {
         kind,
-        method: pipeline.method(slot).output().map(|o| o.method),
+        method: pipeline.method(slot).output().map(|o| o.method()),
         updating: is_updating(jobs, kind),
         running: kind.slot().and_then(|slot| running(state, jobs, slot)),
         verdict: verdict(state, jobs, slot, !kind.is_above()),
