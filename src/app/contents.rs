@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// Starts a panel by the type in its line of the list.
 macro_rules! starts {
-    ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:ident $(of $tile:ident)?, $key:ident, $title:literal, $help:literal;)*) => {
+    ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:expr, $key:expr, $title:literal, $help:literal;)*) => {
         fn start(panel: Panel, wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
             match panel {
                 Panel::Map(_) => Held::<panels::map::MapPanel>::start(wake),

@@ -48,10 +48,8 @@ fn around(radar: &Radar, fates: &Fates) -> Option<MapView> {
     let places: Vec<Pos2> = fates.verdicts.iter().filter_map(place).collect();
     let (first, rest) = places.split_first()?;
     let (low, high) = rest.iter().fold((*first, *first), |(low, high), at| (low.min(*at), high.max(*at)));
-    let half = ((high - low) / 2.0 + MIN_SHOWN_RATIO / 2.0).max(MIN_SHOWN_RATIO).min(Vec2::splat(0.5));
-    let middle = low + (high - low) / 2.0;
-    let low = (middle - half).clamp(Pos2::ZERO, pos2(1.0, 1.0) - 2.0 * half);
-    Some(MapView { low, high: low + 2.0 * half })
+    let half = ((high - low) / 2.0 + MIN_SHOWN_RATIO / 2.0).max(MIN_SHOWN_RATIO);
+    Some(MapView::around(low + (high - low) / 2.0, half))
 }
 
 #[cfg(test)]

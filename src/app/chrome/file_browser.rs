@@ -6,10 +6,8 @@ use crate::platform::fs;
 use eframe::egui::{self, Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 
-/// Most entries of a folder that are listed.
 const MAX_LISTED: usize = 5000;
 
-/// An entry of a folder.
 struct Entry {
     name: String,
     is_folder: bool,
@@ -18,9 +16,7 @@ struct Entry {
 /// The user's decision in the dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// The chosen file.
     Chosen(PathBuf),
-    /// No file.
     Cancelled,
 }
 
@@ -28,7 +24,6 @@ pub enum Answer {
 pub struct Browser {
     purpose: Purpose,
     folder: PathBuf,
-    /// Text of the folder's field.
     typed: String,
     name: String,
     /// Proposed name, for an empty field.
@@ -103,7 +98,6 @@ impl Browser {
         answer.or(escaped.then_some(Answer::Cancelled))
     }
 
-    /// Draws the folder's path and the button to its parent.
     fn place(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let label = ui.label("Folder");
@@ -148,7 +142,6 @@ impl Browser {
         chosen
     }
 
-    /// Draws the file's name and the buttons below it.
     fn foot(&mut self, ui: &mut Ui) -> Option<Answer> {
         let mut done = false;
         let mut answer = None;

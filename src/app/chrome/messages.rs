@@ -4,7 +4,6 @@ use crate::app::state::{Notice, NoticeKind, Notices};
 use crate::app::widgets::{Icon, icon};
 use eframe::egui::{self, Align2, Area, Context, Frame, Id, Order, Pos2, vec2};
 
-/// Largest width of a message, points.
 const WIDTH: f32 = 380.0;
 
 /// Seconds for which a message stays: long enough to read an error and act on it.
@@ -53,7 +52,6 @@ pub fn show(ctx: &Context, notices: &mut Notices) {
     }
 }
 
-/// Draws one message; true where the user closed it.
 fn draw(ui: &mut egui::Ui, message: &Notice, width: f32) -> bool {
     let (sign, colour) = match message.kind {
         NoticeKind::Info => ("i", ui.visuals().hyperlink_color),

@@ -1,7 +1,6 @@
 //! Checks for old maps and marks that are drawn as fresh.
 
 use super::Jobs;
-use super::derived::{Derived, Query};
 use super::source::Source;
 use super::theory::TheoryRequest;
 use crate::app::state::{MapKind, MethodSlot, Panel, State};
@@ -26,7 +25,7 @@ impl Jobs {
             judged.is_some_and(|(fates, current)| marks_kinds && current && fates.scene != source.scene),
             "kinds of failure",
         );
-        note(is_old(&self.theory, TheoryRequest::of(state)), "theory");
+        note(self.theory.is_fresh_but_old(TheoryRequest::of(state).as_ref()), "theory");
         old
     }
 
@@ -39,9 +38,4 @@ impl Jobs {
         let method = state.method_in(slot).map(|method| method.name());
         pair.is_some_and(|pair| pair.origin.source != source || Some(pair.origin.method) != method)
     }
-}
-
-/// Whether a value is drawn as fresh and belongs to another query than `now`.
-fn is_old<Q: Query>(derived: &Derived<Q>, now: Option<Q>) -> bool {
-    derived.value().is_some() && !derived.is_stale() && !derived.is_of(now.as_ref())
 }

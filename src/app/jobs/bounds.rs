@@ -6,7 +6,6 @@ use crate::app::widgets::colour_table;
 use crate::bounds::{
     Ambiguity, BoundsError, Gains, PositionBound, ambiguity, cramer_rao, cramer_rao_of, noise_variance,
 };
-use crate::interact::Editor;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, LayoutError, Polar, Radar};
 use crate::scene::{Object, Reflector};
@@ -20,7 +19,6 @@ pub struct BoundsRequest {
     pub radar: Radar,
     /// Elements, noise and extent of the picture.
     pub settings: BoundsSettings,
-    /// Name of the reflector.
     pub name: String,
     pub reflector: Reflector,
 }
@@ -28,31 +26,23 @@ pub struct BoundsRequest {
 impl BoundsRequest {
     /// The bounds of the first selected object's centre, or of the first object's; `None` where there is none away from the array's middle.
     pub fn of(state: &State) -> Option<Self> {
-        let (name, reflector) = subject(&state.editor)?;
-        Some(BoundsRequest { radar: state.radar().clone(), settings: state.settings.bounds, name, reflector })
+        let index = state.editor.selection().iter().next().unwrap_or(0);
+        let object = state.editor.scene().objects.get(index)?;
+        let [x_metres, y_metres] = object.centre_metres();
+        let reflector = Reflector { x_metres, y_metres, reflectivity: object.reflectivity() };
+        let what = if matches!(object, Object::Point(_)) { "" } else { "middle of " };
+        let name = format!("{what}{}", object.called(index));
+        let (radar, settings) = (state.radar().clone(), state.settings.bounds);
+        (x_metres.hypot(y_metres) > 0.0).then_some(BoundsRequest { radar, settings, name, reflector })
     }
-}
-
-/// The reflector of bounds and theory, with its name: the centre of the first selected object, or else of the first.
-pub(super) fn subject(editor: &Editor) -> Option<(String, Reflector)> {
-    let index = editor.selection().iter().next().unwrap_or(0);
-    let object = editor.scene().objects.get(index)?;
-    let [x_metres, y_metres] = object.centre_metres();
-    let reflectivity = object.reflectivity();
-    let what = if matches!(object, Object::Point(_)) { "" } else { "middle of " };
-    let reflector = Reflector { x_metres, y_metres, reflectivity };
-    (x_metres.hypot(y_metres) > 0.0).then(|| (format!("{what}{}", object.called(index)), reflector))
 }
 
 /// Bounds of a reflector.
 pub struct BoundsResult {
-    /// The request.
     pub request: BoundsRequest,
-    /// Positions of the elements that listen.
     pub layout: Layout,
     /// Range and direction of the reflector.
     pub centre: Polar,
-    /// Cramér–Rao bound of the position.
     pub bound: Result<PositionBound, BoundsError>,
     /// The bound with one unknown complex gain for either half of the elements.
     pub gain_per_end: Option<PositionBound>,

@@ -26,7 +26,6 @@ impl ChirpQuery {
 /// The beat of one element in a chirp.
 pub struct ChirpResult {
     pub element: usize,
-    /// The samples of the beat.
     pub samples: Vec<Complex64>,
     /// Amplitude of each range bin of the beat's spectrum under the radar's window.
     pub spectrum: Vec<f64>,

@@ -16,7 +16,6 @@ const NEVER_SHOWN: Duration = Duration::from_millis(250);
 /// A question for a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
-    /// The purpose of the file.
     pub purpose: Purpose,
     /// The folder that the dialog begins in.
     pub folder: Option<PathBuf>,
@@ -36,7 +35,6 @@ impl Question {
         Question { purpose, folder, name }
     }
 
-    /// A question with the name and folder of `path`.
     fn at(purpose: Purpose, path: &Path) -> Question {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         Question { purpose, folder: path.parent().map(Path::to_path_buf), name }
@@ -58,7 +56,6 @@ impl Question {
 /// Opens a dialog of the system. The reply comes later, with `None` where the dialog was closed without a file or could not be shown.
 type System = Arc<dyn Fn(FileQuestion, Reply) -> std::io::Result<()>>;
 
-/// Takes the chosen file, or `None`.
 type Reply = Box<dyn FnOnce(Option<PathBuf>) + Send>;
 
 enum Answer {

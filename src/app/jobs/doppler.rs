@@ -40,7 +40,6 @@ impl DopplerQuery {
 
 /// A range-Doppler map and its picture.
 pub struct DopplerResult {
-    /// The radar of the map's chirps.
     pub radar: Radar,
     /// Whether the interval of the chirps is known.
     pub knows_interval: bool,

@@ -4,6 +4,7 @@ use super::memo::Memo;
 use super::scene_maps::{MapsRequest, MapsResult, Origin, Pair};
 use super::source::Source;
 use crate::app::shared::Shared;
+use crate::app::state::MethodTimes;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::platform::{self, Instant};
 use crate::radar::Radar;
@@ -62,16 +63,12 @@ impl Basis {
 /// A request for a method's output.
 #[derive(Clone)]
 pub struct MethodRequest {
-    /// Id of the document.
     pub document: u64,
-    /// What the output is made of.
     pub origin: Origin,
-    /// The method's inputs.
     pub basis: Basis,
     /// The target map; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
     pub method: Shared<dyn Reconstructor>,
-    /// Whether the detections are wanted as a list.
     pub listed: bool,
     /// Whether the scene rests. The answer is then that of a method without a memory.
     pub at_rest: bool,
@@ -91,19 +88,14 @@ impl MethodRequest {
 /// The output of a method.
 #[derive(Clone)]
 pub struct MethodResult {
-    /// Id of the samples' document.
     pub document: u64,
-    /// The output map and its target.
     pub pair: Pair,
     /// The threshold that the method derived from the samples, if it did.
     pub eta: Option<f32>,
     /// Detections, the strongest first, where a list was requested.
     pub found: Option<Vec<Detection>>,
-    /// Places of the found reflectors.
     pub reflectors: Vec<Reflector>,
-    /// The method's attempts in order.
     pub attempts: Vec<Attempt>,
-    /// Time of the reconstruction.
     pub took: Duration,
     basis: Basis,
 }
@@ -123,9 +115,7 @@ impl MethodResult {
 /// A method's failure to give an output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// Name of the method.
     pub method: &'static str,
-    /// Reason of the failure.
     pub reason: String,
 }
 
@@ -169,8 +159,6 @@ pub struct MethodJob {
     outdated: Option<Instant>,
     output: Option<MethodResult>,
     refusal: Option<Refusal>,
-    /// Radar, method and duration of an answer whose time was not yet taken.
-    time: Option<(Radar, &'static str, Duration)>,
 }
 
 impl MethodJob {
@@ -179,15 +167,20 @@ impl MethodJob {
         let work = |kept: &mut MethodWorker, q: MethodRequest, task: &Task| kept.work(q, task);
         let worker = Worker::spawn(thread, move || MethodWorker::new(thread), work, wake);
         let wanted = Vec::new();
-        MethodJob { worker, asked: None, wanted, outdated: None, output: None, refusal: None, time: None }
+        MethodJob { worker, asked: None, wanted, outdated: None, output: None, refusal: None }
     }
 
-    /// Takes in the worker's answers. Answers to the `latest` maps get their document, origin and target. Returns messages for the user.
-    pub fn poll(&mut self, latest: Option<&MapsResult>) -> Vec<String> {
+    /// Takes in the worker's answers. Answers to the `latest` maps get their document, origin and target. Adds the
+    /// duration of answers from scratch to `times`. Returns messages for the user.
+    pub fn poll(&mut self, latest: Option<&MapsResult>, times: &mut MethodTimes) -> Vec<String> {
         let mut messages = Vec::new();
         for reply in self.worker.replies() {
             match reply {
                 Reply::Done { result: (request, Ok(answer)), elapsed, .. } => {
+                    // A method with a memory is faster than from scratch; users choose methods by the time from scratch.
+                    if request.at_rest || request.method.following().is_none() {
+                        times.record(&request.basis.radar, request.method.name(), elapsed);
+                    }
                     self.take_in(request, answer, elapsed, latest);
                 }
                 // Cancelled by the user, or because the scene moved on and the next request waits.
@@ -214,11 +207,7 @@ impl MethodJob {
         took: Duration,
         latest: Option<&MapsResult>,
     ) {
-        let MethodRequest { document, origin, basis, target, method, at_rest, .. } = request;
-        // A method with a memory is faster than from scratch; users choose methods by the time from scratch.
-        if at_rest || method.following().is_none() {
-            self.time = Some((basis.radar.clone(), method.name(), took));
-        }
+        let MethodRequest { document, origin, basis, target, method, .. } = request;
         let Reconstruction { lambda, mut reflectors, eta, doubt, trace: attempts, .. } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
@@ -239,11 +228,6 @@ impl MethodJob {
     fn refuse(&mut self, method: &'static str, reason: String) {
         self.output = None;
         self.refusal = Some(Refusal { method, reason });
-    }
-
-    /// Radar, method and duration of the latest answer from scratch; returned once.
-    pub fn take_time(&mut self) -> Option<(Radar, &'static str, Duration)> {
-        self.time.take()
     }
 
     /// Gives the output the document, origin and target of new maps, where they are of the same samples, as when a scene comes to rest.

@@ -35,13 +35,10 @@ impl PhasorsQuery {
 
 /// Chains of phasors of one cell.
 pub struct PhasorsResult {
-    /// Range bin and column.
     pub cell: [usize; 2],
-    /// Contributions of the elements.
     pub measured: Chain,
     /// The contributions without the curvature of a wave from the cell's place.
     pub focused: Option<Chain>,
-    /// Contributions of the echoes alone.
     pub echoes: Option<Chain>,
     /// Contributions left after subtracting the found reflectors.
     pub residual: Option<Chain>,

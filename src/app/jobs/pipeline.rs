@@ -27,7 +27,6 @@ use std::sync::Arc;
 
 /// The workers of maps and methods.
 pub struct Pipeline {
-    /// The maps of the scene on screen.
     pub maps: MapsJob,
     /// The first method and the second.
     methods: [MethodJob; 2],
@@ -48,23 +47,14 @@ impl Pipeline {
         state.eta_in(slot, output.and_then(|output| output.eta))
     }
 
-    /// Takes in the workers' results since the last frame. Returns messages for the user.
-    pub fn poll(&mut self) -> Vec<String> {
+    /// Takes in the workers' results since the last frame, and the methods' durations in `times`. Returns messages for the user.
+    pub fn poll(&mut self, times: &mut MethodTimes) -> Vec<String> {
         let Pipeline { maps, methods } = self;
         let mut messages = maps.poll(|maps| methods.iter_mut().for_each(|method| method.aim(maps)));
         for method in methods {
-            messages.extend(method.poll(maps.result()));
+            messages.extend(method.poll(maps.result(), times));
         }
         messages
-    }
-
-    /// Adds the methods' durations since the last frame to `times`.
-    pub fn record_times(&mut self, times: &mut MethodTimes) {
-        for method in &mut self.methods {
-            if let Some((radar, name, took)) = method.take_time() {
-                times.record(&radar, name, took);
-            }
-        }
     }
 
     /// Asks the workers for the values that this frame's panels need, if they changed.
@@ -241,11 +231,6 @@ impl Pipeline {
         self.maps.result()?.unexplained.as_ref()?.as_ref().ok()
     }
 
-    /// The reason why the reflectors can't be fitted to the recording.
-    pub fn why_unexplained(&self) -> Option<&str> {
-        self.maps.result()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
-    }
-
     /// Figures of either method's output against the target of the same scene.
     pub fn scores_in(&self, slot: MethodSlot) -> Option<Scores> {
         self.method(slot).output()?;
@@ -274,13 +259,9 @@ impl Pipeline {
 pub struct Wants {
     /// The numbers of every map.
     pub every_map: bool,
-    /// The first method's output.
     pub output: bool,
-    /// The second method's output.
     pub second: bool,
-    /// The list of detections.
     pub listed: bool,
-    /// The ROC.
     pub roc: bool,
 }
 

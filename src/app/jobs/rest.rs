@@ -21,12 +21,10 @@ struct Still {
 /// State of motion of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Motion {
-    /// An object is held.
     #[default]
     Held,
     /// The scene rests after this time without a change.
     RestsIn(Duration),
-    /// The scene rests.
     AtRest,
 }
 

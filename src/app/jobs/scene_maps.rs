@@ -26,13 +26,10 @@ use std::time::Duration;
 /// What an output is made of. Equal ones have equal outputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Origin {
-    /// The source of the samples.
     pub source: Source,
-    /// Normalisation of the map.
     pub normalisation: Normalisation,
     /// Numbers of the elements that methods use in place of the two ends.
     pub layout: Option<Vec<usize>>,
-    /// Name of the method.
     pub method: &'static str,
 }
 
@@ -43,7 +40,6 @@ pub struct Pair {
     pub origin: Origin,
     /// Map of the whole array; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
-    /// Output of the method.
     pub output: Shared<RangeAngleMap>,
     /// The method's expected error of each cell, where it gives one.
     pub doubt: Option<Shared<RangeAngleMap>>,
@@ -52,9 +48,7 @@ pub struct Pair {
 /// A request for maps, pictures and figures.
 #[derive(Clone, PartialEq)]
 pub struct MapsRequest {
-    /// Id of the document.
     pub document: u64,
-    /// The source of the samples.
     pub source: Source,
     /// The wanted maps, floor and normalisation.
     pub wanted: MapRequest,
@@ -62,38 +56,28 @@ pub struct MapsRequest {
     pub layout: Option<Vec<usize>>,
     /// Whether the scene rests. Its maps are then those of the command line, bit for bit.
     pub at_rest: bool,
-    /// Kinds of the maps in sight.
     pub pictures: BTreeSet<MapKind>,
     /// The latest output of either method, if there is one, with its target.
     pub pairs: [Option<Pair>; 2],
-    /// Colour map of Lambda.
     pub colours: ColourMap,
-    /// Coordinates of the pictures.
     pub projection: Projection,
-    /// Whether inputs, target and output are drawn on one scale.
     pub one_scale: bool,
     /// Whether maps of few elements are drawn on more columns.
     pub fine_columns: bool,
-    /// Sign and scale of the difference.
     pub difference: DifferenceView,
-    /// Whether the window is dark.
     pub dark: bool,
-    /// The target's threshold eta'.
     pub target_eta: f32,
-    /// The threshold eta of either method.
     pub etas: [f32; 2],
     /// The detector in place of these thresholds, if one is in use.
     pub cfar: Option<Cfar>,
     /// Whether P_D, P_FA, SE and blobs are wanted.
     pub scores: bool,
-    /// Whether the ROC is wanted.
     pub roc: bool,
 }
 
 /// Figures of an output against its target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scores {
-    /// SE, P_D and P_FA.
     pub metrics: Metrics,
     /// Connected regions of the target above eta'.
     pub target_blobs: usize,
@@ -104,7 +88,6 @@ pub struct Scores {
 /// Maps, pictures and figures of one request.
 #[derive(Clone)]
 pub struct MapsResult {
-    /// The request.
     pub request: MapsRequest,
     /// The engine's maps of the scene, or those of a recording.
     pub frame: EngineFrame,
@@ -112,11 +95,8 @@ pub struct MapsResult {
     pub heard: Option<Shared<LayoutSamples>>,
     /// The unexplained part of a recording, where its map is in sight, or the reason why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
-    /// Detections by a detector, where one is in use.
     pub detected: Detected,
-    /// The maps on a common scale, where they are drawn so.
     pub on_one_scale: BTreeMap<MapKind, Rescaled>,
-    /// The pictures in sight.
     pub pictures: BTreeMap<MapKind, Picture>,
     /// Figures of the requested pairs.
     pub scores: [Option<Scores>; 2],
@@ -124,18 +104,15 @@ pub struct MapsResult {
     pub roc: Option<Arc<Vec<RocPoint>>>,
     /// Pictures painted since the start.
     pub painted: u64,
-    /// Time of the whole request.
     pub took: Duration,
 }
 
 /// The reference that outputs are judged by.
 #[derive(Clone, PartialEq)]
 pub struct Truth {
-    /// The source of the samples.
     pub source: Source,
     /// Numbers of the elements that methods use in place of the two ends.
     pub layout: Option<Vec<usize>>,
-    /// Map of all elements.
     pub target: Shared<RangeAngleMap>,
     pub scale: LambdaScale,
 }
@@ -167,7 +144,6 @@ pub struct MapsState {
     painter: Painter,
     one_scale: OneScale,
     detector: Detector,
-    /// Scores of either method's pair.
     scores: [Memo<Scored, Scores>; 2],
     roc: Memo<Pair, Arc<Vec<RocPoint>>>,
 }

@@ -46,11 +46,9 @@ struct Arrival {
 /// One small map on screen.
 #[derive(Clone)]
 pub struct Small {
-    /// Radar, floor and method of the map.
     pub variant: Variant,
     /// The latest picture, or the reason why there is none.
     pub made: Option<Made>,
-    /// Whether the picture is of the latest request.
     pub is_current: bool,
 }
 

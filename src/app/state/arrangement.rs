@@ -155,7 +155,6 @@ impl Arrangement {
         &self.views
     }
 
-    /// The view in front of a tile.
     pub fn view(&self, tile: Panel) -> Panel {
         self.views.get(&tile).copied().unwrap_or(tile)
     }

@@ -9,13 +9,11 @@ pub enum Elements {
     /// Both ends of the array.
     #[default]
     TwoEnds,
-    /// The first end alone.
     OneEnd,
     /// This many elements at random places of the aperture.
     Random(usize),
     /// The 12 virtual elements of 3 transmitters and 4 receivers.
     Mimo,
-    /// Every element.
     All,
 }
 
@@ -50,11 +48,8 @@ impl Elements {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct BoundsSettings {
-    /// The elements that listen.
     pub elements: Elements,
-    /// Seed of random elements.
     pub seed: u64,
-    /// Signal-to-noise ratio of a sample.
     pub snr: Decibels,
     /// Columns to each side of the reflector in the picture.
     pub columns: f64,

@@ -22,9 +22,7 @@ named! {
 pub struct Compare {
     /// Name of the second method; where empty, one other than the first is chosen.
     pub second: String,
-    /// Layout of the maps.
     pub layout: Layout,
-    /// The two maps to flip.
     pub maps: [MapKind; 2],
     /// Index of the flipped map on screen, 0 or 1.
     pub front: usize,

@@ -9,7 +9,6 @@ const ROBUST: [&str; 2] = ["capon", "baseline"];
 
 /// Every method, and the preferred one.
 pub struct Methods {
-    /// Every method, in order.
     pub all: Vec<Arc<dyn Reconstructor>>,
     /// Name of the method in use where the user chose none.
     preferred: &'static str,

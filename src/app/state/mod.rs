@@ -41,12 +41,12 @@ pub use card::{CardPlan, LiveFrame};
 pub use chirp_settings::ChirpSettings;
 pub use command::{
     Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, RadarCommand, RowsCommand,
-    ThresholdChoice, ViewCommand, Way, WindowCommand, WorkCommand,
+    ViewCommand, Way, WindowCommand, WorkCommand,
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use compare::{Compare, Layout};
 pub use cuts::{CutMap, PinnedCut, pin_cut};
-pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};
+pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice, ThresholdChoice};
 pub use guided::{Guided, Setup};
 pub use help::HelpPage;
 pub use lesson_run::{Before, LessonRun};
@@ -81,35 +81,24 @@ const RECENT: usize = 10;
 pub struct State {
     /// The document in the editor: scene, radar and file.
     pub editor: Editor,
-    /// The user's settings.
     pub settings: Settings,
-    /// The reconstruction methods.
     pub methods: Methods,
     /// Times of each method on this machine.
     pub method_times: MethodTimes,
-    /// Arrangement of the panels.
     pub arrangement: Arrangement,
-    /// Messages on screen.
     pub notices: Notices,
-    /// The visible part of the scene.
     pub scene_view: SceneView,
-    /// The visible part of the maps.
     pub map_views: MapViews,
-    /// The pointer's place.
     pub pointer: Pointer,
-    /// Pinned cuts, the oldest first.
     pub pins: Vec<PinnedCut>,
-    /// Changes made by the guide.
     pub guided: Guided,
     /// The question before a scene is written to a file that can't hold all of it or was changed.
     pub save_question: Option<SaveQuestion>,
     /// The opened row and the rows in sight.
     pub failures: Failures,
-    /// The lesson in progress.
     pub lesson: Option<LessonRun>,
     /// The arrangement before a lesson or a presentation took the whole screen.
     pub before_presenting: Option<Arrangement>,
-    /// The learners' answers in lessons.
     pub progress: Progress,
     /// Files opened or saved lately, latest first.
     pub recent: Vec<PathBuf>,
@@ -119,9 +108,7 @@ pub struct State {
     pub tells_first_drag: bool,
     /// The time of the scene, and of the recording's next frame.
     pub timeline: Timeline,
-    /// The open page of help.
     pub help: Option<HelpPage>,
-    /// Whether the window is dark now.
     pub dark: bool,
 }
 
@@ -200,33 +187,31 @@ impl State {
 
     /// Gives the lesson the whole screen, or ends that.
     pub fn present_lesson(&mut self) {
-        match self.is_presenting() {
-            true => self.stop_presenting(),
-            false => {
-                let uses = self.uses();
-                let before = std::mem::replace(&mut self.arrangement, Arrangement::of_a_lesson());
-                self.arrangement.close_unused(uses);
-                self.before_presenting = Some(before);
-            }
-        }
+        let uses = self.uses();
+        self.present_as(|| {
+            let mut arrangement = Arrangement::of_a_lesson();
+            arrangement.close_unused(uses);
+            arrangement
+        });
     }
 
     /// Gives the scene and the maps the whole screen in large type, or ends a presentation or a lesson on the whole screen.
     pub fn present(&mut self) {
-        match self.is_presenting() {
-            true => self.stop_presenting(),
-            false => {
-                let before = std::mem::replace(&mut self.arrangement, Arrangement::presentation());
-                self.before_presenting = Some(before);
-            }
+        self.present_as(Arrangement::presentation);
+    }
+
+    fn present_as(&mut self, arrangement: impl FnOnce() -> Arrangement) {
+        if !self.stop_presenting() {
+            self.before_presenting = Some(std::mem::replace(&mut self.arrangement, arrangement()));
         }
     }
 
-    /// Restores the arrangement before a lesson or a presentation took the whole screen.
-    pub fn stop_presenting(&mut self) {
-        if let Some(before) = self.before_presenting.take() {
-            self.arrangement = before;
-        }
+    /// Restores the arrangement before a lesson or a presentation took the whole screen; true where one had.
+    pub fn stop_presenting(&mut self) -> bool {
+        let before = self.before_presenting.take();
+        let is_presented = before.is_some();
+        before.into_iter().for_each(|before| self.arrangement = before);
+        is_presented
     }
 
     /// The arrangement to keep for the next start.

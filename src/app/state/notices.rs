@@ -6,19 +6,14 @@ const MAX_NOTICES: usize = 5;
 /// The kind of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoticeKind {
-    /// Success of a command, or another fact.
     Info,
-    /// An error.
     Error,
 }
 
 /// One message.
 pub struct Notice {
-    /// A number that no other message has.
     pub number: u64,
-    /// The kind of message.
     pub kind: NoticeKind,
-    /// The message's text.
     pub text: String,
     /// Time at which it goes away, seconds of egui's clock; set when it is first drawn.
     pub until: Option<f64>,

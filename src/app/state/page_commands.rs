@@ -16,7 +16,6 @@ fn needs_a_desktop(command: &Command) -> bool {
     )
 }
 
-/// Whether a command needs a page's address.
 fn needs_a_page(command: &Command) -> bool {
     matches!(command, Command::Export(ExportCommand::CopyLink))
 }

@@ -8,11 +8,8 @@ named! {
     /// The map whose cell is split into phasors.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     pub enum PhasorMap {
-        /// Map of the first end.
         Input0 = "Input 0",
-        /// Map of the last end.
         Input1 = "Input 1",
-        /// Map of the whole array.
         #[default]
         Target = "Target",
     }
@@ -33,7 +30,6 @@ impl PhasorMap {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PhasorSettings {
-    /// The map.
     pub map: PhasorMap,
     /// Whether the window over the elements is applied, as in the map.
     pub windowed: bool,

@@ -15,11 +15,8 @@ const TABS: f32 = 24.0;
 /// Shares of a container before a panel took room in it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Taken {
-    /// The panel.
     panel: Panel,
-    /// The container.
     container: TileId,
-    /// Shares of its children.
     before: Shares,
 }
 

@@ -6,18 +6,14 @@ use std::path::PathBuf;
 /// A file to be written, and the doubt about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SaveQuestion {
-    /// The file.
     pub path: PathBuf,
-    /// The reason why the file isn't written at once.
     pub doubt: Doubt,
 }
 
 /// The reason why a file isn't written at once.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Doubt {
-    /// The file would lose these parts of the scene.
     Losses(Vec<FileLoss>),
-    /// Another program has changed the file.
     Changed,
 }
 
@@ -28,6 +24,5 @@ pub enum SaveAnswer {
     Anyway,
     /// Write the whole scene to another file.
     Elsewhere,
-    /// Write no file.
     Cancel,
 }

@@ -14,12 +14,9 @@ use std::path::PathBuf;
 /// Theme of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Brightness {
-    /// As the system has it.
     #[default]
     System,
-    /// Light.
     Light,
-    /// Dark.
     Dark,
 }
 
@@ -30,27 +27,19 @@ pub struct Settings {
     /// View of the scenes; kept beside the other settings.
     #[serde(skip)]
     pub view: View,
-    /// Grid that dragged objects snap to.
     pub snap: Snap,
     /// Coordinates in which places are shown and entered.
     pub coordinates: Coordinates,
-    /// Theme of the window.
     pub theme: Brightness,
-    /// Settings of the bounds.
     pub bounds: BoundsSettings,
-    /// Settings of the phasors.
     pub phasors: PhasorSettings,
-    /// Settings of the chirp.
     pub chirp: ChirpSettings,
-    /// Settings of several maps.
     pub several: Several,
-    /// Settings of the comparison of two methods.
     pub compare: Compare,
     /// Whether menus list the panels for developers.
     pub developer: bool,
     /// The user's own folder of scenes, where it isn't the usual one.
     pub own_scenes: Option<PathBuf>,
-    /// Seed of the next random scene.
     pub random_seed: u64,
     /// Number of the next random scene in the stream of that seed.
     pub random_number: u32,

@@ -1,6 +1,7 @@
 //! The search for a worse scene near the one on screen, or for its repair, in the background.
 
-use crate::app::jobs::rows::{Plan, RowJob, Stopped, Teller};
+use crate::app::jobs::derived::Failure;
+use crate::app::jobs::rows::{Plan, RowJob, Teller};
 use crate::app::state::{SearchChoice, State};
 use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningSearch as Job};
 use crate::radar::counted;
@@ -22,7 +23,7 @@ impl Plan for SearchPlan {
     const WHAT: &'static str = "The search";
     const ADVICE: &'static str = "Choose another method, or move something.";
 
-    fn run(&self, teller: &Teller<'_, Finding>) -> Result<(), Stopped> {
+    fn run(&self, teller: &Teller<'_, Finding>) -> Result<(), Failure> {
         let mut told = 0;
         let on_try = |tries: u32, path: &[Finding]| {
             path[told..].iter().for_each(|finding| teller.row(finding.clone()));
@@ -31,10 +32,10 @@ impl Plan for SearchPlan {
             !teller.task.is_cancelled()
         };
         let outcome = self.job.run(&self.scene, self.method.as_ref(), teller.task, on_try);
-        let outcome = outcome.map_err(|error| Stopped::Failed(error.to_string()))?;
+        let outcome = outcome.map_err(|error| error.to_string())?;
         // Findings of the last batch before it was stopped.
         outcome.path[told..].iter().for_each(|finding| teller.row(finding.clone()));
-        if teller.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) }
+        Ok(())
     }
 }
 
@@ -50,10 +51,6 @@ struct Subject {
 pub struct Search {
     job: RowJob<SearchPlan>,
     subject: Option<Subject>,
-    /// Centres of every object along the path, `[x, y]` in metres.
-    trails: Vec<Vec<[f64; 2]>>,
-    /// Number of findings of the path that the trails hold.
-    drawn: usize,
     /// Whether `poll` has reported the end of the search.
     told: bool,
 }
@@ -61,8 +58,7 @@ pub struct Search {
 impl Search {
     /// Starts the worker, idle at first; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Search {
-        let job = RowJob::start(wake);
-        Search { job, subject: None, trails: Vec::new(), drawn: 0, told: true }
+        Search { job: RowJob::start(wake), subject: None, told: true }
     }
 
     /// Begins a search near the scene on screen.
@@ -82,7 +78,7 @@ impl Search {
         };
         let document = state.editor.document().id();
         self.subject = Some(Subject { scene: scene.clone(), document, choice, method: method.name() });
-        (self.trails, self.drawn, self.told) = (Vec::new(), 0, false);
+        self.told = false;
         self.job.begin(SearchPlan { job, scene, method });
     }
 
@@ -95,7 +91,7 @@ impl Search {
     pub fn forget(&mut self) {
         self.job.cancel();
         self.job.take_rows();
-        (self.subject, self.trails, self.told) = (None, Vec::new(), true);
+        (self.subject, self.told) = (None, true);
     }
 
     /// Finished part of the search, 0 to 1, while it runs.
@@ -118,10 +114,12 @@ impl Search {
         if self.subject.is_some() { self.job.rows() } else { &[] }
     }
 
-    /// Centres of every object along the path, while the search's document is on screen.
-    pub fn trails(&self, document: u64) -> &[Vec<[f64; 2]>] {
-        let same = self.subject.as_ref().is_some_and(|s| s.document == document);
-        if same { &self.trails } else { &[] }
+    /// Centres of every object along the path, `[x, y]` in metres, while the search's document is on screen.
+    pub fn trails(&self, document: u64) -> Vec<Vec<[f64; 2]>> {
+        let is_shown = self.subject.as_ref().is_some_and(|s| s.document == document);
+        let scenes = self.path().iter().map(|finding| &finding.scene.objects).filter(|_| is_shown);
+        let objects = scenes.clone().map(Vec::len).max().unwrap_or(0);
+        (0..objects).map(|i| scenes.clone().filter_map(|of| Some(of.get(i)?.centre_metres())).collect()).collect()
     }
 
     /// Whether the scene on screen is still the search's first one.
@@ -132,13 +130,6 @@ impl Search {
     /// Takes in findings. Returns whether the search ended just now, and a message for the user.
     pub fn poll(&mut self) -> (bool, Option<String>) {
         let panicked = self.job.poll();
-        let path = if self.subject.is_some() { self.job.rows() } else { &[] };
-        for finding in &path[self.drawn.min(path.len())..] {
-            let objects = &finding.scene.objects;
-            self.trails.resize_with(objects.len(), Vec::new);
-            self.trails.iter_mut().zip(objects).for_each(|(trail, object)| trail.push(object.centre_metres()));
-        }
-        self.drawn = path.len();
         let ended = !self.told && self.job.progress().is_none();
         self.told |= ended;
         (ended, panicked)

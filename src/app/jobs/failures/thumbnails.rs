@@ -1,7 +1,8 @@
 //! Small maps of the scenes of rows, a byte per cell; only the latest are kept.
 
 use super::table::RowKey;
-use crate::app::jobs::rows::{Plan, RowJob, Stopped, Teller};
+use crate::app::jobs::derived::Failure;
+use crate::app::jobs::rows::{Plan, RowJob, Teller};
 use crate::app::state::Conditions;
 use crate::evaluate::Target;
 use crate::evaluate::rows::Row;
@@ -30,9 +31,7 @@ pub type Bytes = Box<[u8]>;
 /// The two maps of a row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Thumbnail {
-    /// Map of the whole array.
     pub target: Bytes,
-    /// Output of the method.
     pub output: Bytes,
 }
 
@@ -127,7 +126,6 @@ struct MissingThumbnails {
 
 /// The maker of thumbnails of rows from files, one after the other.
 pub struct Thumbnails {
-    /// The finished thumbnails.
     pub album: Album,
     job: RowJob<MissingThumbnails>,
     asked: Vec<RowKey>,
@@ -185,13 +183,13 @@ impl Plan for MissingThumbnails {
     const WHAT: &'static str = "Drawing small maps";
     const ADVICE: &'static str = "Their rows stay.";
 
-    fn run(&self, teller: &Teller<'_, ()>) -> Result<(), Stopped> {
+    fn run(&self, teller: &Teller<'_, ()>) -> Result<(), Failure> {
         let mut last: Last<'_> = None;
         for (row, method) in &self.rows {
             // A method that panics on one row would otherwise do so in every frame.
             let made = catch_unwind(AssertUnwindSafe(|| one(self, row, method.as_deref(), teller, &mut last)));
             if teller.task.is_cancelled() {
-                return Err(Stopped::Cancelled);
+                return Err(Failure::Cancelled);
             }
             self.album.insert(self.generation, row, made.unwrap_or_else(|panic| Err(panic_message(panic.as_ref()))));
             teller.part(0.5);
@@ -228,7 +226,7 @@ fn one<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::table::some_row;
+    use super::super::some_row;
     use super::*;
     use crate::radar::Convention;
     use ndarray::Array2;

@@ -1,5 +1,6 @@
 //! Purposes of file dialogs, with their titles, kinds of files and endings.
 
+use super::{CardPlan, Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
 use std::path::{Path, PathBuf};
 
 /// Texts of a purpose, as its line of the list has them.
@@ -59,6 +60,22 @@ purposes! {
 }
 
 impl Purpose {
+    /// The command for the chosen file.
+    pub fn command(self, path: PathBuf) -> Command {
+        match self {
+            Purpose::Open => DocumentCommand::OpenPath(path).into(),
+            Purpose::Listen(port) => WorkCommand::Listen(CardPlan { port, config: path, board: None }).into(),
+            Purpose::OpenLog => WorkCommand::WatchLog(path).into(),
+            Purpose::OpenLesson => LessonCommand::OpenFile(path).into(),
+            Purpose::SaveScene => DocumentCommand::SaveTo(path).into(),
+            Purpose::ExportPicture => ExportCommand::PictureTo(path).into(),
+            Purpose::ExportMaps => ExportCommand::MapsTo(path).into(),
+            Purpose::OpenRows => RowsCommand::OpenFile(path).into(),
+            Purpose::SaveRows => RowsCommand::SaveTo(path).into(),
+            Purpose::OwnScenes => RowsCommand::SetOwnScenes(path).into(),
+        }
+    }
+
     /// Whether the file is read, not written.
     pub fn reads(self) -> bool {
         self.name().is_empty()
