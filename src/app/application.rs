@@ -186,13 +186,13 @@ impl App {
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
         let mut commands = menu::show(ui, state, &mut memory.menu);
-        status_bar::show(ui, state, jobs.pipeline.maps.took());
+        status_bar::show(ui, state, jobs.pipeline.maps.took);
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
             let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
             let mut panels = Contents::new(state, jobs, &mut self.panels);
             commands.extend(tiles::show(ui, &mut arrangement, &mut panels));
-            commands.extend(panels.into_commands());
+            commands.extend(panels.commands);
             state.arrangement = arrangement;
         });
         commands.extend(palette::show(ui.ctx(), &state.methods.all, &mut memory.palette));

@@ -53,7 +53,6 @@ impl Query for Nothing {
     type State = ();
     const THREAD: &'static str = "nothing";
     const WHAT: &'static str = "Computing nothing";
-    const ADVICE: &'static str = "";
 
     fn compute(&self, (): &mut (), _: &Task) -> Result<(), Failure> {
         match *self {}
@@ -63,18 +62,14 @@ impl Query for Nothing {
 /// A panel's memory and its computed value.
 pub struct Held<C: Content> {
     memory: C::Remembers,
-    derived: Derived<C::Asks>,
+    /// The panel's computed value.
+    pub derived: Derived<C::Asks>,
 }
 
 impl<C: Content> Held<C> {
     /// Starts the worker of the value, idle at first; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
         Box::new(Held::<C> { memory: C::Remembers::default(), derived: Derived::start(wake) })
-    }
-
-    /// The panel's computed value.
-    pub fn derived(&self) -> &Derived<C::Asks> {
-        &self.derived
     }
 }
 
@@ -183,7 +178,6 @@ mod tests {
         type State = ();
         const THREAD: &'static str = "count";
         const WHAT: &'static str = "Counting";
-        const ADVICE: &'static str = "Change the scene to try again.";
 
         fn compute(&self, (): &mut (), _: &Task) -> Result<usize, Failure> {
             Ok(self.0.reflector_count())

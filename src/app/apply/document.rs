@@ -80,9 +80,11 @@ pub fn opened(state: &mut State) {
     let Some(recording) = state.editor.document().recording() else { return };
     // The panel lists the recording's doubts.
     let is_doubtful = recording.origin.is_some() || !recording.doubts.is_empty();
-    show_recording_panels(state);
-    if is_doubtful {
-        state.arrangement.set_open(Panel::Recording, true);
+    let listed = [state.finds_reflectors().then_some(Panel::Found), is_doubtful.then_some(Panel::Recording)];
+    // The map of the unexplained part opens behind the output.
+    let maps = [MapKind::Unexplained, MapKind::Output].map(|kind| Some(Panel::Map(kind)));
+    for panel in maps.into_iter().chain(listed).flatten() {
+        state.arrangement.set_open(panel, true);
     }
 }
 
@@ -121,14 +123,6 @@ pub fn fit_layout(state: &mut State) {
     if let Some(other) = state.methods.hearing(state.radar(), &layout) {
         state.settings.method = other.to_owned();
         state.notices.info(format!("{refusal}. {other} is used instead."));
-    }
-}
-
-/// Opens the map of the unexplained part behind the output, and the list of found reflectors where the method finds any.
-fn show_recording_panels(state: &mut State) {
-    let lists = state.finds_reflectors().then_some(Panel::Found);
-    for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output)].into_iter().chain(lists) {
-        state.arrangement.set_open(panel, true);
     }
 }
 

@@ -88,7 +88,7 @@ pub fn open(state: &mut State, text: &str) {
 }
 
 fn look(state: &mut State, view: SharedView) {
-    if !state.methods.all.iter().any(|m| m.name() == view.method) {
+    if state.methods.called(&view.method).is_none() {
         state.notices.info(format!("There is no method \"{}\" here; another one is shown.", view.method));
     }
     let seen = |part: VisiblePart| MapView { low: pos2(part.left, part.bottom), high: pos2(part.right, part.top) };

@@ -24,7 +24,7 @@ pub fn apply(ctx: &Context, state: &mut State, command: WindowCommand) {
         WindowCommand::ToggleCaptions => state.captions = !state.captions,
         WindowCommand::Help(page) => state.help = Some(page),
         WindowCommand::CloseHelp => state.help = None,
-        WindowCommand::CloseMessages => state.notices.clear(),
+        WindowCommand::CloseMessages => state.notices.list.clear(),
         WindowCommand::ToggleTheme => {
             state.settings.theme = if state.dark { Brightness::Light } else { Brightness::Dark };
             theme::apply(ctx, state.settings.theme);

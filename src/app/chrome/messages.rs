@@ -12,7 +12,7 @@ const ERROR_SECONDS: f64 = 20.0;
 
 /// Draws the messages and drops expired ones.
 pub fn show(ctx: &Context, notices: &mut Notices) {
-    let messages = notices.list_mut();
+    let messages = &mut notices.list;
     if messages.is_empty() {
         return;
     }

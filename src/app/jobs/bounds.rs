@@ -10,7 +10,7 @@ use crate::picture::ColourMap;
 use crate::radar::{Layout, LayoutError, Polar, Radar};
 use crate::scene::{Object, Reflector};
 use crate::task::Task;
-use eframe::egui::ColorImage;
+use eframe::egui::{Color32, ColorImage};
 use std::sync::Arc;
 
 /// A request for the bounds of one reflector.
@@ -87,10 +87,7 @@ pub fn bounds_of(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
         }
     }
     let table = colour_table(ColourMap::Viridis);
-    let paint = |v: &f64| match v.is_nan() {
-        true => eframe::egui::Color32::TRANSPARENT,
-        false => table[(v * 255.0) as usize],
-    };
+    let paint = |v: &f64| if v.is_nan() { Color32::TRANSPARENT } else { table[(v * 255.0) as usize] };
     // The top row is the farthest.
     let pixels = found.likeness.rows().into_iter().rev().flat_map(|row| row.into_iter().map(paint).collect::<Vec<_>>());
     let image = Arc::new(ColorImage::new([across as usize, up as usize], pixels.collect()));

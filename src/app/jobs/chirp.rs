@@ -36,7 +36,6 @@ impl Query for ChirpQuery {
     type State = KeptSignal;
     const THREAD: &'static str = "chirps";
     const WHAT: &'static str = "Computing the beat";
-    const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut KeptSignal, _: &Task) -> Result<ChirpResult, Failure> {
         let ChirpQuery { source, element } = self;

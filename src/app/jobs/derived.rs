@@ -23,7 +23,7 @@ pub trait Query: Clone + PartialEq + Send + 'static {
     /// Subject of the message about a panic, at the beginning of a sentence.
     const WHAT: &'static str;
     /// The user's remedy after a panic, as a sentence.
-    const ADVICE: &'static str;
+    const ADVICE: &'static str = "Change the scene to try again.";
 
     /// Computes the value.
     ///

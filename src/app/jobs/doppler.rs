@@ -55,7 +55,6 @@ impl Query for DopplerQuery {
     type State = Memo<(Source, bool), DopplerMade>;
     const THREAD: &'static str = "range-Doppler";
     const WHAT: &'static str = "Computing the range-Doppler map";
-    const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut Self::State, task: &Task) -> Result<DopplerResult, Failure> {
         let DopplerQuery { source, static_clutter_out, normalisation, colours } = self;

@@ -12,7 +12,6 @@ use crate::radar::Radar;
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
 use crate::signal::{self, BeatSignal, TwoEnds};
-use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -39,19 +38,9 @@ impl Export {
 }
 
 /// Exports under way.
-pub struct Exports(Background<Export>);
+pub struct Exports(pub Background<Export>);
 
 impl Exports {
-    /// No export yet; `wake` draws another frame when one is finished.
-    pub fn new(wake: Context) -> Self {
-        Exports(Background::new(wake))
-    }
-
-    /// Exports finished since the last call.
-    pub fn finished(&self) -> Vec<Export> {
-        self.0.finished()
-    }
-
     /// Draws the panels of `apertura maps` with the method and the settings on screen, as PNG or SVG. Returns the message for the user.
     ///
     /// # Errors

@@ -96,7 +96,6 @@ impl Query for KindsQuery {
     type State = KeptFates;
     const THREAD: &'static str = "kinds of failure";
     const WHAT: &'static str = "Telling kinds of failure apart";
-    const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut KeptFates, _: &Task) -> Result<Made, Failure> {
         if self.outputs.iter().all(Option::is_none) {

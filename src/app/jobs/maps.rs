@@ -22,12 +22,13 @@ pub struct MapsJob {
     rest: Rest,
     motion: Motion,
     /// Time of the first request without an answer.
-    waiting: Option<Instant>,
+    pub waiting: Option<Instant>,
     result: Option<MapsResult>,
     /// Time of the last maps that followed a change.
-    took: Option<Duration>,
+    pub took: Option<Duration>,
     scene_error: Option<String>,
-    requests: u64,
+    /// Requests sent to the worker.
+    pub requests: u64,
 }
 
 impl MapsJob {
@@ -132,11 +133,6 @@ impl MapsJob {
         self.scene_error.as_deref()
     }
 
-    /// Requests sent to the worker.
-    pub fn requests(&self) -> u64 {
-        self.requests
-    }
-
     /// Whether the worker is busy, or will be as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy() || self.rests_in().is_some()
@@ -161,18 +157,8 @@ impl MapsJob {
         self.worker.is_busy() && self.asked.as_ref().is_some_and(|asked| asked.at_rest) && !self.is_settled()
     }
 
-    /// Time of the last maps and pictures that followed a change.
-    pub fn took(&self) -> Option<Duration> {
-        self.took
-    }
-
     /// Whether the last request was for the samples of the ends.
     pub fn wants_ends(&self) -> bool {
         self.asked.as_ref().is_some_and(|asked| asked.wanted.ends)
-    }
-
-    /// Time of the first request without an answer.
-    pub fn waiting(&self) -> Option<Instant> {
-        self.waiting
     }
 }

@@ -133,10 +133,6 @@ struct MethodWorker {
 }
 
 impl MethodWorker {
-    fn new(thread: &'static str) -> MethodWorker {
-        MethodWorker { threads: platform::pool(thread), follower: Memo::default() }
-    }
-
     fn work(&mut self, q: MethodRequest, task: &Task) -> MethodReply {
         let follower = self.follower.of(q.method.clone(), |method| method.following());
         let method = follower.as_deref().unwrap_or(&**q.method);
@@ -165,7 +161,8 @@ impl MethodJob {
     /// Starts the worker's `thread`; `wake` is called from it when there is an output to show.
     pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> MethodJob {
         let work = |kept: &mut MethodWorker, q: MethodRequest, task: &Task| kept.work(q, task);
-        let worker = Worker::spawn(thread, move || MethodWorker::new(thread), work, wake);
+        let start = move || MethodWorker { threads: platform::pool(thread), follower: Memo::default() };
+        let worker = Worker::spawn(thread, start, work, wake);
         let wanted = Vec::new();
         MethodJob { worker, asked: None, wanted, outdated: None, output: None, refusal: None }
     }

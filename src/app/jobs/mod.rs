@@ -36,6 +36,7 @@ mod theory;
 mod thresholds;
 mod training;
 
+use background::Background;
 #[cfg(test)]
 pub use bounds::bounds_of;
 pub use bounds::{BoundsRequest, BoundsResult};
@@ -122,7 +123,7 @@ impl Jobs {
             kinds: Derived::start(wake.clone()),
             theory: Derived::start(wake),
             lessons: Lessons::start(ctx),
-            exports: Exports::new(ctx.clone()),
+            exports: Exports(Background::new(ctx.clone())),
             listening: Listening::new(ctx.clone()),
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
@@ -149,7 +150,7 @@ impl Jobs {
             opened.map_or_else(|error| errors.push(error), |lesson| chosen.push(lesson.into()));
         }
         errors.into_iter().for_each(|e| state.notices.error(e));
-        for export in self.exports.finished() {
+        for export in self.exports.0.finished() {
             tell(state, export.message());
         }
         let (frame, failed) = self.listening.poll();

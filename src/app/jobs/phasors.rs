@@ -66,10 +66,7 @@ impl Query for PhasorsQuery {
             false => None,
         };
         let echoes = if settings.echoes && source.recording.is_none() { Some(exact(&source.scene)?) } else { None };
-        let residual = match settings.residual {
-            true => Some(less(&measured, &exact(&scene_of(found))?)),
-            false => None,
-        };
+        let residual = if settings.residual { Some(less(&measured, &exact(&scene_of(found))?)) } else { None };
         Ok(PhasorsResult { cell: *cell, measured, focused, echoes, residual })
     }
 }

@@ -16,7 +16,7 @@ use super::scene_maps::{MapsRequest, MapsResult, Origin, Scores, Truth};
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, State};
-use crate::engine::MapRequest;
+use crate::engine::{EngineFrame, MapRequest};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::maps::cfar::DETECTED;
@@ -204,15 +204,13 @@ impl Pipeline {
 
     /// The maps available for cuts.
     pub fn cut_maps(&self) -> Vec<CutMap> {
-        let frame = self.maps.result().map(|r| &r.frame);
-        let scale = frame.and_then(|f| f.full.as_ref()).map(|m| m.scale);
-        let ready = [
-            (MapKind::Input0, frame.and_then(|f| f.first.as_ref())),
-            (MapKind::Input1, frame.and_then(|f| f.last.as_ref())),
-            (MapKind::Target, frame.and_then(|f| f.full.as_ref())),
-        ];
+        let Some(MapsResult { frame: EngineFrame { first, last, full, .. }, .. }) = self.maps.result() else {
+            return Vec::new();
+        };
+        let scale = full.as_ref().map(|map| map.scale);
+        let ready = [(MapKind::Input0, first), (MapKind::Input1, last), (MapKind::Target, full)];
         let ready = ready.into_iter().filter_map(|(kind, map)| {
-            let map = map?;
+            let map = map.as_ref()?;
             Some(CutMap { kind, map: map.lambda.clone(), scale: Some(map.scale) })
         });
         // A method aims for the target's Lambda, so its decibels are the target's.
@@ -250,7 +248,7 @@ impl Pipeline {
     /// Whether a map has belonged to an earlier scene for so long that it must be marked.
     pub fn is_stale(&self, kind: MapKind) -> bool {
         let old = |since: Option<Instant>| since.is_some_and(|t| t.elapsed() > STALE);
-        old(self.maps.waiting()) || kind.slot().is_some_and(|slot| old(self.method(slot).outdated()))
+        old(self.maps.waiting) || kind.slot().is_some_and(|slot| old(self.method(slot).outdated()))
     }
 }
 

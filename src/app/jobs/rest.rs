@@ -9,14 +9,7 @@ const QUIET: Duration = Duration::from_millis(100);
 
 /// The last source on screen and the time of its last change.
 #[derive(Default)]
-pub struct Rest {
-    last: Option<Still>,
-}
-
-struct Still {
-    source: Source,
-    since: Instant,
-}
+pub struct Rest(Option<(Source, Instant)>);
 
 /// State of motion of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -32,17 +25,14 @@ impl Rest {
     /// Compares `source` with the last one at `now`; `held` while an object is dragged.
     pub fn look(&mut self, source: &Source, held: bool, now: Instant) -> Motion {
         if held {
-            self.last = None;
+            self.0 = None;
             return Motion::Held;
         }
-        let since = match &self.last {
-            Some(still) if still.source == *source => still.since,
-            _ => {
-                self.last = Some(Still { source: source.clone(), since: now });
-                now
-            }
+        let (_, since) = match self.0.take() {
+            Some(still) if still.0 == *source => self.0.insert(still),
+            _ => self.0.insert((source.clone(), now)),
         };
-        match QUIET.checked_sub(now.saturating_duration_since(since)) {
+        match QUIET.checked_sub(now.saturating_duration_since(*since)) {
             Some(left) if !left.is_zero() => Motion::RestsIn(left),
             _ => Motion::AtRest,
         }

@@ -91,9 +91,16 @@ impl<P: Plan> RowJob<P> {
         self.plan = Some(plan);
     }
 
-    /// The plan of the last run.
+    /// The plan of the last run, unless it was dropped.
     pub fn plan(&self) -> Option<&P> {
         self.plan.as_deref()
+    }
+
+    /// Drops the last run with its rows.
+    pub fn forget(&mut self) {
+        self.cancel();
+        self.rows.clear();
+        (self.plan, self.arriving) = (None, None);
     }
 
     /// Stops soon; finished rows stay.

@@ -177,18 +177,14 @@ impl MapsState {
         self.painter.keep(|kind| request.pictures.contains(&kind));
         // Objects drawn over a recording tell nothing of its echoes.
         let is_silent = request.source.recording.is_none() && request.source.scene.is_silent();
-        let mut scores = [None, None];
-        for (slot, pair) in request.pairs.iter().enumerate().filter(|_| request.scores) {
-            let Some(pair) = pair else { continue };
+        let scores = [0, 1].map(|slot| {
+            let pair = request.pairs[slot].as_ref().filter(|_| request.scores)?;
             let detected = detected.target.as_ref().zip(detected.outputs[slot].as_ref());
             let of = (pair.clone(), [request.target_eta, request.etas[slot]], request.cfar);
-            let kept = self.scores[slot]
-                .try_of(of, |(pair, etas, cfar)| scored(is_silent, pair, *etas, *cfar, detected).ok_or(()));
-            scores[slot] = kept.ok().copied();
-        }
+            let made = |(pair, etas, cfar): &Scored| scored(is_silent, pair, *etas, *cfar, detected).ok_or(());
+            self.scores[slot].try_of(of, made).ok().copied()
+        });
         let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(is_silent, pair));
-        let painted = self.painter.painted;
-        let took = Duration::ZERO;
         Ok(MapsResult {
             request,
             frame,
@@ -199,8 +195,8 @@ impl MapsState {
             pictures,
             scores,
             roc,
-            painted,
-            took,
+            painted: self.painter.painted,
+            took: Duration::ZERO,
         })
     }
 
@@ -299,24 +295,22 @@ fn subject(
     let output = pair.map(|p| p.output.clone());
     let colours = Paint::Lambda(request.colours);
     let dark = request.dark;
+    let (target, target_eta) = match request.cfar {
+        None => (lambda(&frame.full), request.target_eta),
+        Some(_) => (shared(&detected.target), DETECTED),
+    };
     let (map, minus, paint) = match kind {
         MapKind::Input0 => (lambda(&frame.first), None, colours),
         MapKind::Input1 => (lambda(&frame.last), None, colours),
         MapKind::Target => (lambda(&frame.full), None, colours),
         MapKind::Output | MapKind::Second => (output, None, colours),
         MapKind::Doubt => (pair?.doubt.clone(), None, Paint::Doubt(request.colours)),
-        MapKind::TargetAbove if request.cfar.is_some() => {
-            (shared(&detected.target), None, Paint::Above { eta: DETECTED, dark })
-        }
-        MapKind::TargetAbove => (lambda(&frame.full), None, Paint::Above { eta: request.target_eta, dark }),
+        MapKind::TargetAbove => (target, None, Paint::Above { eta: target_eta, dark }),
         MapKind::OutputAbove | MapKind::SecondAbove => {
-            let (output, eta) = match request.cfar {
-                None => (output, request.etas[slot?]),
-                Some(_) => (shared(&detected.outputs[slot?]), DETECTED),
-            };
-            let target = match request.cfar {
-                None => pair?.target.clone(),
-                Some(_) => shared(&detected.target).filter(|_| pair.is_some_and(|pair| pair.target.is_some())),
+            let of_pair = pair?.target.clone();
+            let (output, target, eta) = match request.cfar {
+                None => (output, of_pair, request.etas[slot?]),
+                Some(_) => (shared(&detected.outputs[slot?]), target.filter(|_| of_pair.is_some()), DETECTED),
             };
             match target {
                 Some(target) => (output, Some(target), Paint::Detections { eta, dark }),

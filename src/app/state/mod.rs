@@ -4,12 +4,9 @@
 mod named;
 
 mod arrangement;
-mod bounds_settings;
 mod card;
-mod chirp_settings;
 mod command;
 mod command_table;
-mod compare;
 mod cuts;
 mod failures;
 mod guided;
@@ -22,7 +19,6 @@ mod methods;
 mod notices;
 mod page_commands;
 mod panel;
-mod phasor_settings;
 mod room;
 mod save_question;
 mod settings;
@@ -36,15 +32,12 @@ mod view;
 
 pub use crate::view::{DifferenceView, Directions, Projection, Units, View};
 pub use arrangement::Arrangement;
-pub use bounds_settings::{BoundsSettings, Elements};
 pub use card::{CardPlan, LiveFrame};
-pub use chirp_settings::ChirpSettings;
 pub use command::{
     Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, RadarCommand, RowsCommand,
     ViewCommand, Way, WindowCommand, WorkCommand,
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
-pub use compare::{Compare, Layout};
 pub use cuts::{CutMap, PinnedCut, pin_cut};
 pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice, ThresholdChoice};
 pub use guided::{Guided, Setup};
@@ -55,9 +48,10 @@ pub use method_times::MethodTimes;
 pub use methods::Methods;
 pub use notices::{Notice, NoticeKind, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
-pub use phasor_settings::{PhasorMap, PhasorSettings};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
-pub use settings::{Brightness, Settings};
+pub use settings::{
+    BoundsSettings, Brightness, ChirpSettings, Compare, Elements, Layout, PhasorMap, PhasorSettings, Settings,
+};
 pub use several::{MAX_MAPS as MAX_MAPS_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::synonyms;
 pub use task_layouts::Task;
@@ -355,7 +349,7 @@ impl State {
         let first =
             || self.editor.scene().objects.first().map(|o| Cursor::at_place(self.radar(), o.centre_metres().into()));
         let inside = |c: &Cursor| c.cell(self.radar()).is_some();
-        let last = self.pointer.last().or_else(first).filter(inside);
+        let last = self.pointer.last.or_else(first).filter(inside);
         last.unwrap_or_else(|| Cursor::at_cell(self.radar(), 0.0, 0.0))
     }
 }

@@ -22,7 +22,7 @@ pub struct Notice {
 /// The messages on screen, oldest first.
 #[derive(Default)]
 pub struct Notices {
-    list: Vec<Notice>,
+    pub list: Vec<Notice>,
     count: u64,
 }
 
@@ -51,21 +51,6 @@ impl Notices {
         tracing::warn!("{text}");
         self.add(NoticeKind::Error, text);
     }
-
-    /// Number of messages.
-    pub fn len(&self) -> usize {
-        self.list.len()
-    }
-
-    /// The messages, oldest first.
-    pub fn list_mut(&mut self) -> &mut Vec<Notice> {
-        &mut self.list
-    }
-
-    /// Closes all messages.
-    pub fn clear(&mut self) {
-        self.list.clear();
-    }
 }
 
 #[cfg(test)]
@@ -77,9 +62,9 @@ mod tests {
         let mut notices = Notices::default();
         notices.add(NoticeKind::Error, "a".to_owned());
         notices.add(NoticeKind::Error, "a".to_owned());
-        assert_eq!(notices.len(), 1);
+        assert_eq!(notices.list.len(), 1);
         (0..9).for_each(|i| notices.add(NoticeKind::Info, i.to_string()));
-        assert_eq!(notices.len(), MAX_NOTICES);
+        assert_eq!(notices.list.len(), MAX_NOTICES);
         assert_eq!(notices.list.last().unwrap().text, "8");
     }
 }

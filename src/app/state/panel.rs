@@ -174,7 +174,7 @@ macro_rules! map_kinds {
         }
 
         impl MapKind {
-            const EVERY: &[MapKind] = &[$(MapKind::$kind),*];
+            const KINDS: &[MapKind] = &[$(MapKind::$kind),*];
 
             /// Title of the map's panel.
             pub fn title(self) -> &'static str {
@@ -228,7 +228,7 @@ impl MethodSlot {
 
 impl MapKind {
     /// All maps with a panel of their own, in reading order.
-    pub const ALL: [MapKind; 9] = *MapKind::EVERY.first_chunk().expect("nine maps with a panel");
+    pub const ALL: [MapKind; 9] = *MapKind::KINDS.first_chunk().expect("nine maps with a panel");
 
     /// The slot of the method whose output the map is made of, if any.
     pub fn slot(self) -> Option<MethodSlot> {

@@ -179,7 +179,7 @@ pub struct Pointer {
     /// Place set by a panel of this frame.
     next: Option<Cursor>,
     /// Last place within the maps, for panels that need one while the pointer is elsewhere.
-    last: Option<Cursor>,
+    pub last: Option<Cursor>,
 }
 
 impl Pointer {
@@ -194,11 +194,6 @@ impl Pointer {
         self.now = self.next.take();
         self.last = self.now.filter(|c| c.cell(radar).is_some()).or(self.last);
         moved
-    }
-
-    /// Last place within the maps.
-    pub fn last(&self) -> Option<Cursor> {
-        self.last
     }
 }
 

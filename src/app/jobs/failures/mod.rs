@@ -127,7 +127,8 @@ impl Failures {
         if *self.table.conditions() != conditions || !self.table.is_of_this_format() || !self.table.hears(&layout) {
             self.replace(Vec::new(), conditions);
         }
-        self.thumbnails.stop();
+        // The run's times are measured, so it needs the processor.
+        self.thumbnails.job.cancel();
         let album = self.thumbnails.album.clone();
         self.run.begin(Run { plan, generation: self.table.generation(), album });
     }
@@ -168,7 +169,7 @@ impl Failures {
 
     /// Whether files or thumbnails are under way.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy() || self.thumbnails.is_busy()
+        self.files.is_busy() || self.thumbnails.job.progress().is_some()
     }
 
     /// Whether the app's own file holds every row.
@@ -191,7 +192,7 @@ impl Failures {
     pub fn poll(&mut self) -> Vec<String> {
         let mut errors = Vec::from_iter(self.run.poll());
         self.take_in_rows();
-        errors.extend(self.thumbnails.poll());
+        errors.extend(self.thumbnails.job.poll());
         for done in self.files.finished() {
             match done {
                 Done::Read { own, kept: Ok((rows, conditions)), .. } => {
@@ -237,8 +238,7 @@ impl Failures {
         let runs = self.run.progress().is_some();
         if shown && !runs {
             let rows = state.failures.in_sight.iter().filter_map(|index| self.table.rows().get(*index));
-            let method = |name: &str| state.methods.all.iter().find(|m| m.name() == name).cloned();
-            self.thumbnails.ask(self.table.generation(), self.table.conditions(), rows, method);
+            self.thumbnails.ask(self.table.generation(), self.table.conditions(), rows, &state.methods);
         }
         let file = self.file.as_ref()?;
         if self.is_kept() || self.files.is_busy() {

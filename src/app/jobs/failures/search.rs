@@ -9,10 +9,12 @@ use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// A search, its first scene and its method.
+/// A search, its first scene and that scene's document, and the user's choices.
 struct SearchPlan {
     job: Job,
     scene: Arc<Scene>,
+    document: u64,
+    choice: SearchChoice,
     method: Arc<dyn Reconstructor>,
 }
 
@@ -39,18 +41,9 @@ impl Plan for SearchPlan {
     }
 }
 
-/// The start of a search and the user's choices for it.
-struct Subject {
-    scene: Arc<Scene>,
-    document: u64,
-    choice: SearchChoice,
-    method: &'static str,
-}
-
 /// The worker of searches, and the path of the last one.
 pub struct Search {
     job: RowJob<SearchPlan>,
-    subject: Option<Subject>,
     /// Whether `poll` has reported the end of the search.
     told: bool,
 }
@@ -58,7 +51,7 @@ pub struct Search {
 impl Search {
     /// Starts the worker, idle at first; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Search {
-        Search { job: RowJob::start(wake), subject: None, told: true }
+        Search { job: RowJob::start(wake), told: true }
     }
 
     /// Begins a search near the scene on screen.
@@ -77,9 +70,8 @@ impl Search {
             seed: 0,
         };
         let document = state.editor.document().id();
-        self.subject = Some(Subject { scene: scene.clone(), document, choice, method: method.name() });
         self.told = false;
-        self.job.begin(SearchPlan { job, scene, method });
+        self.job.begin(SearchPlan { job, scene, document, choice, method });
     }
 
     /// Stops soon; its findings stay.
@@ -89,9 +81,8 @@ impl Search {
 
     /// Drops the search with its path.
     pub fn forget(&mut self) {
-        self.job.cancel();
-        self.job.take_rows();
-        (self.subject, self.told) = (None, true);
+        self.job.forget();
+        self.told = true;
     }
 
     /// Finished part of the search, 0 to 1, while it runs.
@@ -101,22 +92,22 @@ impl Search {
 
     /// The reason why the search ended early, unless it was dropped since.
     pub fn note(&self) -> Option<&str> {
-        self.subject.as_ref().and(self.job.note())
+        self.job.plan().and(self.job.note())
     }
 
     /// Choices and method of the last search, unless it was dropped.
     pub fn subject(&self) -> Option<(SearchChoice, &'static str)> {
-        self.subject.as_ref().map(|s| (s.choice, s.method))
+        self.job.plan().map(|plan| (plan.choice, plan.method.name()))
     }
 
     /// The first scene, and every later one that was better for the aim than all before it.
     pub fn path(&self) -> &[Finding] {
-        if self.subject.is_some() { self.job.rows() } else { &[] }
+        self.job.rows()
     }
 
     /// Centres of every object along the path, `[x, y]` in metres, while the search's document is on screen.
     pub fn trails(&self, document: u64) -> Vec<Vec<[f64; 2]>> {
-        let is_shown = self.subject.as_ref().is_some_and(|s| s.document == document);
+        let is_shown = self.job.plan().is_some_and(|plan| plan.document == document);
         let scenes = self.path().iter().map(|finding| &finding.scene.objects).filter(|_| is_shown);
         let objects = scenes.clone().map(Vec::len).max().unwrap_or(0);
         (0..objects).map(|i| scenes.clone().filter_map(|of| Some(of.get(i)?.centre_metres())).collect()).collect()
@@ -124,7 +115,7 @@ impl Search {
 
     /// Whether the scene on screen is still the search's first one.
     pub fn is_about(&self, scene: &Arc<Scene>) -> bool {
-        self.subject.as_ref().is_some_and(|s| Arc::ptr_eq(&s.scene, scene))
+        self.job.plan().is_some_and(|plan| Arc::ptr_eq(&plan.scene, scene))
     }
 
     /// Takes in findings. Returns whether the search ended just now, and a message for the user.
@@ -153,7 +144,7 @@ impl Search {
 
     /// Drops a search that began in another document than the one on screen.
     pub fn keep_to(&mut self, document: u64) {
-        if self.subject.as_ref().is_some_and(|subject| subject.document != document) {
+        if self.job.plan().is_some_and(|plan| plan.document != document) {
             self.forget();
         }
     }

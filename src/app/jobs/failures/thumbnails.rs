@@ -3,7 +3,7 @@
 use super::table::RowKey;
 use crate::app::jobs::derived::Failure;
 use crate::app::jobs::rows::{Plan, RowJob, Teller};
-use crate::app::state::Conditions;
+use crate::app::state::{Conditions, Methods};
 use crate::evaluate::Target;
 use crate::evaluate::rows::Row;
 use crate::evaluate::trial::{TimedAnswer, Trial};
@@ -84,11 +84,9 @@ impl Cache {
     fn insert(&mut self, key: (u64, RowKey), made: Made) {
         self.clock += 1;
         self.made.insert(key, (made, self.clock));
-        if self.made.len() > MAX_THUMBNAILS {
-            // A quarter at once, so that removal is rare.
-            let mut used: Vec<u64> = self.made.values().map(|(_, used)| *used).collect();
-            used.sort_unstable();
-            let oldest = used[MAX_THUMBNAILS / 4];
+        if self.made.len() > MAX_THUMBNAILS
+            && let Some(oldest) = self.made.values().map(|(_, used)| *used).min()
+        {
             self.made.retain(|_, (_, used)| *used > oldest);
         }
     }
@@ -117,7 +115,7 @@ impl Album {
 }
 
 /// Rows whose thumbnails are missing.
-struct MissingThumbnails {
+pub struct MissingThumbnails {
     generation: u64,
     conditions: Conditions,
     rows: Vec<(Row, Option<Arc<dyn Reconstructor>>)>,
@@ -127,7 +125,8 @@ struct MissingThumbnails {
 /// The maker of thumbnails of rows from files, one after the other.
 pub struct Thumbnails {
     pub album: Album,
-    job: RowJob<MissingThumbnails>,
+    /// The job that makes the missing ones.
+    pub job: RowJob<MissingThumbnails>,
     asked: Vec<RowKey>,
 }
 
@@ -143,33 +142,18 @@ impl Thumbnails {
         generation: u64,
         conditions: &Conditions,
         rows: impl Iterator<Item = &'a Row>,
-        method: impl Fn(&str) -> Option<Arc<dyn Reconstructor>>,
+        methods: &Methods,
     ) {
         let missing: Vec<&Row> = rows.filter(|row| self.album.get(generation, row).is_none()).collect();
         let keys: Vec<RowKey> = missing.iter().map(|row| RowKey::of(row)).collect();
-        if keys.is_empty() || (self.is_busy() && keys.iter().all(|key| self.asked.contains(key))) {
+        if keys.is_empty() || (self.job.progress().is_some() && keys.iter().all(|key| self.asked.contains(key))) {
             return;
         }
         self.job.cancel();
-        let rows = missing.into_iter().map(|row| (row.clone(), method(&row.method))).collect();
+        let rows = missing.into_iter().map(|row| (row.clone(), methods.called(&row.method).cloned())).collect();
         let album = self.album.clone();
         self.job.begin(MissingThumbnails { generation, conditions: conditions.clone(), rows, album });
         self.asked = keys;
-    }
-
-    /// Whether thumbnails are being made.
-    pub fn is_busy(&self) -> bool {
-        self.job.progress().is_some()
-    }
-
-    /// Stops, since the processor is needed for a run whose times are measured.
-    pub fn stop(&mut self) {
-        self.job.cancel();
-    }
-
-    /// Takes in finished work. Returns a message for the user.
-    pub fn poll(&mut self) -> Option<String> {
-        self.job.poll()
     }
 }
 
