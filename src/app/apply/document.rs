@@ -154,7 +154,7 @@ fn preset(state: &mut State, index: usize) {
             preset.failing_method().into_iter().for_each(|name| state.settings.method = name.to_owned());
             let radar = if keeps_radar { state.radar().clone() } else { file.radar.clone() };
             let document = Document::shipped(SceneFile { radar, ..file });
-            state.failures.view.wanted = preset.is_failure().then(|| document.id());
+            state.failures.wanted = preset.is_failure().then(|| document.id());
             state.set_document("preset", document);
             use_a_method_that_can(state);
             if preset.is_failure() {

@@ -15,19 +15,19 @@ const MIN_SHOWN_RATIO: Vec2 = vec2(0.12, 0.1);
 pub fn follow(state: &mut State, jobs: &Jobs) {
     let document = state.editor.document().id();
     let shown = &mut state.map_views.range_angle;
-    if let Some((_, view)) = state.failures.view.shown.take_if(|(of, _)| *of != document)
+    if let Some((_, view)) = state.failures.shown.take_if(|(of, _)| *of != document)
         && view == *shown
     {
         *shown = MapView::default();
     }
-    if state.failures.view.wanted != Some(document) {
+    if state.failures.wanted != Some(document) {
         return;
     }
     let Some((fates, true)) = fates_of(&jobs.kinds, MethodSlot::First, &jobs.pipeline) else { return };
-    state.failures.view.wanted = None;
+    state.failures.wanted = None;
     if let Some(view) = around(state.editor.radar(), fates) {
         *shown = view;
-        state.failures.view.shown = Some((document, view));
+        state.failures.shown = Some((document, view));
     }
 }
 

@@ -67,7 +67,7 @@ impl Browser {
                 return false;
             }
         };
-        let (_, endings) = self.purpose.kind();
+        let endings = self.purpose.facts().endings;
         let of_kind =
             |path: &Path| path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)));
         let listed = |entry: fs::DirEntry| {
@@ -85,7 +85,7 @@ impl Browser {
     /// Draws the dialog; returns the user's decision once made.
     pub fn show(&mut self, ctx: &Context) -> Option<Answer> {
         let mut answer = None;
-        let window = egui::Window::new(self.purpose.title()).id(Id::unique("file dialog")).collapsible(false);
+        let window = egui::Window::new(self.purpose.facts().title).id(Id::unique("file dialog")).collapsible(false);
         let size = ctx.content_rect().size();
         let window = window.default_size([480.0f32.min(size.x - 40.0), 380.0f32.min(size.y - 80.0)]);
         window.pivot(egui::Align2::CENTER_CENTER).default_pos(ctx.content_rect().center()).show(ctx, |ui| {

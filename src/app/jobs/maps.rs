@@ -1,6 +1,6 @@
 //! The worker of the maps on screen, its last request and its last result.
 
-use super::rest::{Motion, Rest};
+use super::rest::Rest;
 use super::scene_maps::{MapsRequest, MapsResult, MapsState};
 use crate::engine::EngineStage;
 use crate::platform::Instant;
@@ -20,7 +20,8 @@ pub struct MapsJob {
     gave_up: bool,
     asked: Option<MapsRequest>,
     rest: Rest,
-    motion: Motion,
+    /// Time until the scene on screen rests; `None` where it rests, or an object is held.
+    pub rests_in: Option<Duration>,
     /// Time of the first request without an answer.
     pub waiting: Option<Instant>,
     result: Option<MapsResult>,
@@ -42,7 +43,7 @@ impl MapsJob {
             gave_up: false,
             asked: None,
             rest: Rest::default(),
-            motion: Motion::default(),
+            rests_in: None,
             waiting: None,
             result: None,
             took: None,
@@ -96,10 +97,11 @@ impl MapsJob {
 
     /// Asks for maps, unless the last request was the same; at rest if the scene rests. `held` while an object is dragged.
     pub fn ask(&mut self, mut request: MapsRequest, held: bool) {
-        self.motion = self.rest.look(&request.source, held, Instant::now());
+        let rests_in = self.rest.look(&request.source, held, Instant::now());
+        self.rests_in = rests_in.filter(|left| !left.is_zero());
         // Maps that follow a drag come first: those at rest may take long, and would replace a waiting request.
         let follows = self.result.as_ref().is_some_and(|r| r.request.source == request.source);
-        request.at_rest = self.motion == Motion::AtRest && follows;
+        request.at_rest = rests_in == Some(Duration::ZERO) && follows;
         if self.asked.as_ref() != Some(&request) {
             self.requests += 1;
             if self.asked.as_ref().is_some_and(|a| a.source != request.source) {
@@ -135,15 +137,7 @@ impl MapsJob {
 
     /// Whether the worker is busy, or will be as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
-        self.worker.is_busy() || self.rests_in().is_some()
-    }
-
-    /// Time until the scene on screen rests; `None` where it rests, or an object is held.
-    pub fn rests_in(&self) -> Option<Duration> {
-        match self.motion {
-            Motion::RestsIn(left) => Some(left),
-            Motion::Held | Motion::AtRest => None,
-        }
+        self.worker.is_busy() || self.rests_in.is_some()
     }
 
     /// Whether the maps are those of the scene on screen at rest.

@@ -37,8 +37,6 @@ mod thresholds;
 mod training;
 
 use background::Background;
-#[cfg(test)]
-pub use bounds::bounds_of;
 pub use bounds::{BoundsRequest, BoundsResult};
 pub use calibration::Calibrated;
 pub use calibration::CalibrationQuery;
@@ -179,7 +177,7 @@ impl Jobs {
         }
         self.kinds.ask(KindsQuery::of(state, &self.pipeline));
         self.theory.ask(TheoryRequest::of(state));
-        if let Some(later) = self.pipeline.maps.rests_in() {
+        if let Some(later) = self.pipeline.maps.rests_in {
             self.wake.request_repaint_after(later);
         }
         if self.pipeline.is_busy() {

@@ -13,15 +13,6 @@ use crate::scene::generate::Kind;
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
 
-/// Documents whose failing part of the maps is to be shown, and is shown.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct FailureView {
-    /// Id of a document whose failure is to be shown once it is known.
-    pub wanted: Option<u64>,
-    /// Id of the document whose failure is shown, and the visible part of its maps.
-    pub shown: Option<(u64, MapView)>,
-}
-
 /// Conditions of rows: the values needed beside a row to make its scene again.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -108,8 +99,10 @@ pub struct OpenedRow {
 /// State of the rows in the app beside the table itself.
 #[derive(Debug, Default)]
 pub struct Failures {
-    /// Documents whose failing part of the maps is shown.
-    pub view: FailureView,
+    /// Id of a document whose failing part of the maps is to be shown once it is known.
+    pub wanted: Option<u64>,
+    /// Id of the document whose failing part is shown, and that part.
+    pub shown: Option<(u64, MapView)>,
     pub opened: Option<OpenedRow>,
     /// Indices of the rows that the panel showed last, from top to bottom.
     pub in_sight: Vec<usize>,

@@ -34,8 +34,8 @@ pub use crate::view::{DifferenceView, Directions, Projection, Units, View};
 pub use arrangement::Arrangement;
 pub use card::{CardPlan, LiveFrame};
 pub use command::{
-    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, RadarCommand, RowsCommand,
-    ViewCommand, Way, WindowCommand, WorkCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, PurposeFacts,
+    RadarCommand, RowsCommand, ViewCommand, Way, WindowCommand, WorkCommand,
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use cuts::{CutMap, PinnedCut, pin_cut};
@@ -46,7 +46,7 @@ pub use lesson_run::{Before, LessonRun};
 pub use menus::menu_path;
 pub use method_times::MethodTimes;
 pub use methods::Methods;
-pub use notices::{Notice, NoticeKind, Notices};
+pub use notices::{Notice, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
 pub use settings::{

@@ -3,7 +3,7 @@
 
 mod file;
 
-pub use file::Purpose;
+pub use file::{Purpose, PurposeFacts};
 
 use super::{
     BoundsSettings, CardPlan, ChirpSettings, Compare, Cursor, Directions, FailureChoice, HelpPage, LiveFrame, MapKind,
