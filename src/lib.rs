@@ -58,6 +58,7 @@
 #![warn(missing_docs)]
 
 #[cfg(feature = "app")]
+#[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod app;
 #[allow(missing_docs)] // A part of the program: names of fields say what is in them.
 pub mod benchmark;

@@ -2,13 +2,13 @@
 
 mod zoom;
 
-use super::apply::{self, Effect};
+use super::apply;
 use super::chrome::{file_dialog, help, menu, messages, palette, save_question, status_bar, tiles};
 use super::contents::{Contents, Panels};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::kept::{self, KeptSettings};
-use super::state::{Arrangement, Command, DocumentCommand, LessonCommand, State, ViewCommand};
+use super::state::{Arrangement, Command, DocumentCommand, LessonCommand, State, ViewCommand, WindowCommand};
 use super::widgets::{focus_ring, theme};
 use crate::interact::Editor;
 use crate::platform::{self, Instant};
@@ -38,11 +38,9 @@ pub struct Options {
     pub data_folder: Option<PathBuf>,
     /// Text of a scene shared by another copy of the program ([`crate::share`]).
     pub shared: Option<String>,
-    /// Lesson to begin.
     pub lesson: Option<PathBuf>,
     /// Whether file dialogs are the window's own even where the system has one.
     pub own_dialogs: bool,
-    /// Commands for the first frame.
     pub commands: Vec<Command>,
     /// Problems from before the window opened, told as messages.
     pub problems: Vec<String>,
@@ -130,22 +128,14 @@ impl App {
         self.state.notices.error(problem);
     }
 
-    /// Does commands, and applies their effects on the window.
     fn apply(&mut self, ctx: &egui::Context, commands: Vec<Command>) {
         if commands.iter().any(|c| !matches!(c, Command::View(ViewCommand::Hover(_)))) {
             ctx.request_repaint();
         }
         for command in commands {
-            match apply::apply(&mut self.state, &mut self.jobs, command) {
-                None => {}
-                Some(Effect::Brightness(brightness)) => theme::apply(ctx, brightness),
-                Some(Effect::Zoom(None)) => ctx.set_zoom_factor(1.0),
-                Some(Effect::Zoom(Some(by))) => ctx.set_zoom_factor((ctx.zoom_factor() + by).clamp(0.5, 3.0)),
-                Some(Effect::Copy(text)) => ctx.copy_text(text),
-                Some(Effect::CopyImage(image)) => ctx.copy_image(image),
-                Some(Effect::RequestPaste) => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
-                Some(Effect::Palette) => self.memory.palette.toggle(),
-                Some(Effect::Close) => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            match command {
+                Command::Window(WindowCommand::Palette) => self.memory.palette.toggle(),
+                command => apply::apply(ctx, &mut self.state, &mut self.jobs, command),
             }
         }
     }
@@ -196,13 +186,13 @@ impl App {
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
         let mut commands = menu::show(ui, state, &mut memory.menu);
-        status_bar::show(ui, state, jobs.pipeline.maps.took());
+        status_bar::show(ui, state, jobs.pipeline.maps.took);
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
             let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
             let mut panels = Contents::new(state, jobs, &mut self.panels);
             commands.extend(tiles::show(ui, &mut arrangement, &mut panels));
-            commands.extend(panels.into_commands());
+            commands.extend(panels.commands);
             state.arrangement = arrangement;
         });
         commands.extend(palette::show(ui.ctx(), &state.methods.all, &mut memory.palette));

@@ -36,11 +36,9 @@ pub trait Content: 'static {
 pub struct Cx<'a, C: Content + ?Sized> {
     /// The panel that is drawn: all maps are one type.
     pub panel: Panel,
-    /// The app's state.
     pub state: &'a mut State,
     /// Results computed for all panels.
     pub jobs: &'a Jobs,
-    /// The panel's state between frames.
     pub memory: &'a mut C::Remembers,
     /// The panel's own value, or the reason why there is none; `None` before the first.
     pub value: Option<Result<&'a <C::Asks as Query>::Value, &'a str>>,
@@ -55,7 +53,6 @@ impl Query for Nothing {
     type State = ();
     const THREAD: &'static str = "nothing";
     const WHAT: &'static str = "Computing nothing";
-    const ADVICE: &'static str = "";
 
     fn compute(&self, (): &mut (), _: &Task) -> Result<(), Failure> {
         match *self {}
@@ -65,7 +62,8 @@ impl Query for Nothing {
 /// A panel's memory and its computed value.
 pub struct Held<C: Content> {
     memory: C::Remembers,
-    derived: Derived<C::Asks>,
+    /// The panel's computed value.
+    pub derived: Derived<C::Asks>,
 }
 
 impl<C: Content> Held<C> {
@@ -73,16 +71,10 @@ impl<C: Content> Held<C> {
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
         Box::new(Held::<C> { memory: C::Remembers::default(), derived: Derived::start(wake) })
     }
-
-    /// The panel's computed value.
-    pub fn derived(&self) -> &Derived<C::Asks> {
-        &self.derived
-    }
 }
 
 /// A panel of any type.
 pub trait AnyPanel: std::any::Any {
-    /// The maps and methods that the panel reads.
     fn wants(&self) -> Wants;
 
     /// Asks for the panel's value where the panel is in sight; asks for none elsewhere.
@@ -91,7 +83,6 @@ pub trait AnyPanel: std::any::Any {
     /// Takes in the panel's own value. Returns a message for the user.
     fn poll(&mut self) -> Option<String>;
 
-    /// Whether the panel's own value is being computed.
     fn is_busy(&self) -> bool;
 
     /// Values asked for since the start.
@@ -147,8 +138,7 @@ impl<C: Content> AnyPanel for Held<C> {
     }
 
     fn is_fresh_but_old(&self, state: &State, jobs: &Jobs) -> bool {
-        let is_drawn_as_fresh = self.derived.value().is_some() && !self.derived.is_stale();
-        is_drawn_as_fresh && !self.derived.is_of(C::asks(state, jobs).as_ref())
+        self.derived.is_fresh_but_old(C::asks(state, jobs).as_ref())
     }
 
     fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
@@ -188,7 +178,6 @@ mod tests {
         type State = ();
         const THREAD: &'static str = "count";
         const WHAT: &'static str = "Counting";
-        const ADVICE: &'static str = "Change the scene to try again.";
 
         fn compute(&self, (): &mut (), _: &Task) -> Result<usize, Failure> {
             Ok(self.0.reflector_count())

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// Starts a panel by the type in its line of the list.
 macro_rules! starts {
-    ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:ident $(of $tile:ident)?, $key:ident, $title:literal, $help:literal;)*) => {
+    ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:expr, $key:expr, $title:literal, $help:literal;)*) => {
         fn start(panel: Panel, wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
             match panel {
                 Panel::Map(_) => Held::<panels::map::MapPanel>::start(wake),
@@ -69,7 +69,7 @@ impl Panels {
     /// The own value of a panel of type `C`.
     pub fn derived<C: Content>(&self, panel: Panel) -> Option<&Derived<C::Asks>> {
         let held: &dyn Any = self.0.get(&panel)?.as_ref();
-        held.downcast_ref::<Held<C>>().map(Held::derived)
+        held.downcast_ref::<Held<C>>().map(|held| &held.derived)
     }
 }
 
@@ -78,18 +78,14 @@ pub struct Contents<'a> {
     state: &'a mut State,
     jobs: &'a Jobs,
     panels: &'a mut Panels,
-    commands: Vec<Command>,
+    /// The user's commands so far.
+    pub commands: Vec<Command>,
 }
 
 impl<'a> Contents<'a> {
     /// A drawer of `panels` for one frame.
     pub fn new(state: &'a mut State, jobs: &'a Jobs, panels: &'a mut Panels) -> Self {
         Contents { state, jobs, panels, commands: Vec::new() }
-    }
-
-    /// The user's commands so far.
-    pub fn into_commands(self) -> Vec<Command> {
-        self.commands
     }
 }
 

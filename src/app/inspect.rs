@@ -80,7 +80,7 @@ impl App {
 
     /// Requests sent to the maps' worker, and pictures painted, since the start.
     pub fn work_done(&self) -> (u64, u64) {
-        (self.jobs.pipeline.maps.requests(), self.jobs.pipeline.maps.result().map_or(0, |r| r.painted))
+        (self.jobs.pipeline.maps.requests, self.jobs.pipeline.maps.result().map_or(0, |r| r.painted))
     }
 
     /// Reflectors found by the method, as far as the maps mark them.
@@ -158,7 +158,7 @@ impl App {
 
     /// Name of the method whose output is on screen, if there is one.
     pub fn shown_method(&self) -> Option<&'static str> {
-        self.jobs.pipeline.output().map(|output| output.method)
+        self.jobs.pipeline.output().map(|output| output.method())
     }
 
     /// Figures of the first method's output, if there are any.
@@ -248,6 +248,6 @@ impl App {
 
     /// Number of messages on screen.
     pub fn messages(&self) -> usize {
-        self.state.notices.len()
+        self.state.notices.list.len()
     }
 }

@@ -63,20 +63,11 @@ fn command_of(key: &str, name: &str) -> Result<Command, String> {
     let unknown = |what: &str, known: Vec<&str>| {
         format!("The address asks for the {what} \"{name}\", which there is not. There are: {}.", known.join(", "))
     };
+    let find = |known: Vec<&str>| known.iter().position(|id| *id == name).ok_or_else(|| unknown(key, known));
     match key {
-        "scene" => {
-            let all = scene::presets::ALL;
-            let index = all.iter().position(|p| p.id == name);
-            index
-                .map(|i| Command::Document(DocumentCommand::Preset(i)))
-                .ok_or_else(|| unknown("scene", all.iter().map(|p| p.id).collect()))
-        }
+        "scene" => Ok(DocumentCommand::Preset(find(scene::presets::ALL.iter().map(|p| p.id).collect())?).into()),
         "recording" => {
-            let all = recording::presets::ALL;
-            let index = all.iter().position(|p| p.id == name);
-            index
-                .map(|i| Command::Document(DocumentCommand::Recording(i)))
-                .ok_or_else(|| unknown("recording", all.iter().map(|p| p.id).collect()))
+            Ok(DocumentCommand::Recording(find(recording::presets::ALL.iter().map(|p| p.id).collect())?).into())
         }
         "lesson" => {
             let index =

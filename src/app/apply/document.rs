@@ -80,9 +80,11 @@ pub fn opened(state: &mut State) {
     let Some(recording) = state.editor.document().recording() else { return };
     // The panel lists the recording's doubts.
     let is_doubtful = recording.origin.is_some() || !recording.doubts.is_empty();
-    show_recording_panels(state);
-    if is_doubtful {
-        state.arrangement.set_open(Panel::Recording, true);
+    let listed = [state.finds_reflectors().then_some(Panel::Found), is_doubtful.then_some(Panel::Recording)];
+    // The map of the unexplained part opens behind the output.
+    let maps = [MapKind::Unexplained, MapKind::Output].map(|kind| Some(Panel::Map(kind)));
+    for panel in maps.into_iter().chain(listed).flatten() {
+        state.arrangement.set_open(panel, true);
     }
 }
 
@@ -124,14 +126,6 @@ pub fn fit_layout(state: &mut State) {
     }
 }
 
-/// Opens the map of the unexplained part behind the output, and the list of found reflectors where the method finds any.
-fn show_recording_panels(state: &mut State) {
-    let lists = state.finds_reflectors().then_some(Panel::Found);
-    for panel in [Panel::Map(MapKind::Unexplained), Panel::Map(MapKind::Output)].into_iter().chain(lists) {
-        state.arrangement.set_open(panel, true);
-    }
-}
-
 /// Reads a scene file or a recording; an error becomes a message.
 pub fn read(state: &mut State, path: &Path) -> Option<Document> {
     let read = match recording::file::is_recording_at(path) {
@@ -160,7 +154,7 @@ fn preset(state: &mut State, index: usize) {
             preset.failing_method().into_iter().for_each(|name| state.settings.method = name.to_owned());
             let radar = if keeps_radar { state.radar().clone() } else { file.radar.clone() };
             let document = Document::shipped(SceneFile { radar, ..file });
-            state.failures.view.wanted = preset.is_failure().then(|| document.id());
+            state.failures.wanted = preset.is_failure().then(|| document.id());
             state.set_document("preset", document);
             use_a_method_that_can(state);
             if preset.is_failure() {

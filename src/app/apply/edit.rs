@@ -1,26 +1,24 @@
 //! Commands that select objects and change the scene on screen.
 
-use super::effect::Effect;
 use super::shared;
 use crate::app::state::{EditCommand, NewObject, State};
 use crate::interact::Place;
 use crate::scene::{Block, GaussianCluster, Line, Object, Point, Polygon, Post, Wall};
 use crate::share::is_shared;
+use eframe::egui::{Context, ViewportCommand};
 
-/// Does an edit; the effect is text for the clipboard, or a request for its text.
-pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
+pub fn apply(ctx: &Context, state: &mut State, command: EditCommand) {
     let editor = &mut state.editor;
     match command {
         EditCommand::Undo => state.undo(),
         EditCommand::Redo => state.redo(),
         EditCommand::Seal => editor.seal(),
         EditCommand::Cut => {
-            let copied = copy(state);
+            copy(ctx, state);
             state.editor.delete_selected();
-            return copied;
         }
-        EditCommand::Copy => return copy(state),
-        EditCommand::Paste => return Some(Effect::RequestPaste),
+        EditCommand::Copy => copy(ctx, state),
+        EditCommand::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
         EditCommand::PasteText(text) if is_shared(&text) => shared::open(state, &text),
         EditCommand::PasteText(text) => {
             if let Err(error) = editor.paste(&text) {
@@ -59,16 +57,14 @@ pub fn apply(state: &mut State, command: EditCommand) -> Option<Effect> {
         EditCommand::SetSnap(snap) => state.settings.snap = snap,
         EditCommand::SetCoordinates(coordinates) => state.settings.coordinates = coordinates,
     }
-    None
 }
 
-/// The selected objects as text for the clipboard; a message where none is selected.
-fn copy(state: &mut State) -> Option<Effect> {
-    let copied = state.editor.copy().map(Effect::Copy);
-    if copied.is_none() {
-        state.notices.info("Nothing is selected: click an object, or drag a box around several.");
+/// Copies the selected objects as text; a message where none is selected.
+fn copy(ctx: &Context, state: &mut State) {
+    match state.editor.copy() {
+        Some(text) => ctx.copy_text(text),
+        None => state.notices.info("Nothing is selected: click an object, or drag a box around several."),
     }
-    copied
 }
 
 /// Adds an object at `place`, or in the middle of the visible scene, beside the objects already there.

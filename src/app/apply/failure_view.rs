@@ -15,19 +15,19 @@ const MIN_SHOWN_RATIO: Vec2 = vec2(0.12, 0.1);
 pub fn follow(state: &mut State, jobs: &Jobs) {
     let document = state.editor.document().id();
     let shown = &mut state.map_views.range_angle;
-    if let Some((_, view)) = state.failures.view.shown.take_if(|(of, _)| *of != document)
+    if let Some((_, view)) = state.failures.shown.take_if(|(of, _)| *of != document)
         && view == *shown
     {
         *shown = MapView::default();
     }
-    if state.failures.view.wanted != Some(document) {
+    if state.failures.wanted != Some(document) {
         return;
     }
     let Some((fates, true)) = fates_of(&jobs.kinds, MethodSlot::First, &jobs.pipeline) else { return };
-    state.failures.view.wanted = None;
+    state.failures.wanted = None;
     if let Some(view) = around(state.editor.radar(), fates) {
         *shown = view;
-        state.failures.view.shown = Some((document, view));
+        state.failures.shown = Some((document, view));
     }
 }
 
@@ -48,10 +48,8 @@ fn around(radar: &Radar, fates: &Fates) -> Option<MapView> {
     let places: Vec<Pos2> = fates.verdicts.iter().filter_map(place).collect();
     let (first, rest) = places.split_first()?;
     let (low, high) = rest.iter().fold((*first, *first), |(low, high), at| (low.min(*at), high.max(*at)));
-    let half = ((high - low) / 2.0 + MIN_SHOWN_RATIO / 2.0).max(MIN_SHOWN_RATIO).min(Vec2::splat(0.5));
-    let middle = low + (high - low) / 2.0;
-    let low = (middle - half).clamp(Pos2::ZERO, pos2(1.0, 1.0) - 2.0 * half);
-    Some(MapView { low, high: low + 2.0 * half })
+    let half = ((high - low) / 2.0 + MIN_SHOWN_RATIO / 2.0).max(MIN_SHOWN_RATIO);
+    Some(MapView::around(low + (high - low) / 2.0, half))
 }
 
 #[cfg(test)]

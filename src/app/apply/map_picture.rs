@@ -2,24 +2,21 @@
 
 use crate::app::jobs::Jobs;
 use crate::app::state::{MapKind, Panel, State};
-use eframe::egui::ColorImage;
+use eframe::egui::{ColorImage, Context};
 
 /// Most pixels of a picture for the clipboard. The clipboard holds several copies of it.
 const MAX_PIXELS: usize = 1 << 24;
 
-/// The picture of a map for the clipboard; a message where there is none.
-pub fn copy(state: &mut State, jobs: &Jobs, kind: MapKind) -> Option<ColorImage> {
-    match picture(state, jobs, kind) {
-        Ok(image) => {
-            let [width, height] = image.size;
-            state.notices.info(format!("Copied {}, {width} × {height} pixels.", kind.title()));
-            Some(image)
-        }
-        Err(error) => {
-            state.notices.error(format!("{} was not copied: {error}", kind.title()));
-            None
-        }
-    }
+/// Copies the picture of a map to the clipboard. Returns the message for the user.
+///
+/// # Errors
+/// The message where there is no picture.
+pub fn copy(ctx: &Context, state: &State, jobs: &Jobs, kind: MapKind) -> Result<String, String> {
+    let title = kind.title();
+    let image = picture(state, jobs, kind).map_err(|error| format!("{title} was not copied: {error}"))?;
+    let [width, height] = image.size;
+    ctx.copy_image(image);
+    Ok(format!("Copied {title}, {width} × {height} pixels."))
 }
 
 /// The whole map's picture with a pixel per cell, the farthest range on top as on screen.

@@ -2,7 +2,6 @@
 
 mod document;
 mod edit;
-mod effect;
 mod export;
 mod failure_view;
 mod lesson;
@@ -15,47 +14,38 @@ mod view;
 mod window;
 mod work;
 
-pub use document::next_frame;
-
-pub use document::{opened, read};
-pub use effect::Effect;
+pub use document::{next_frame, opened, read};
 pub use failure_view::follow as follow_failure;
 pub use lesson::follow_challenge;
 pub use shared::of as shared_text;
 
 use super::jobs::Jobs;
 use super::state::{Command, State};
+use eframe::egui::Context;
 
-/// Does a command, then makes the layout in use fit the document on screen.
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> {
-    let effect = done(state, jobs, command);
-    document::fit_layout(state);
-    effect
-}
-
-/// Does a command by the file of its group.
-fn done(state: &mut State, jobs: &mut Jobs, command: Command) -> Option<Effect> {
+/// Does a command by the file of its group, then makes the layout in use fit the document on screen.
+pub fn apply(ctx: &Context, state: &mut State, jobs: &mut Jobs, command: Command) {
     match command {
         Command::Document(command) => document::apply(state, jobs, command),
-        Command::Edit(command) => return edit::apply(state, command),
+        Command::Edit(command) => edit::apply(ctx, state, command),
         Command::Radar(command) => radar::apply(state, command),
         Command::View(command) => view::apply(state, jobs, command),
         Command::Rows(command) => rows::apply(state, jobs, command),
         Command::Lesson(command) => lesson::apply(state, jobs, command),
         Command::Work(command) => work::apply(state, jobs, command),
-        Command::Export(command) => return export::apply(state, jobs, command),
-        Command::Window(command) => return window::apply(state, command),
+        Command::Export(command) => export::apply(ctx, state, jobs, command),
+        Command::Window(command) => window::apply(ctx, state, command),
         Command::AskFile(purpose) => jobs.choose_file(state, purpose),
-        Command::Guided(commands) => guided(state, jobs, commands),
+        Command::Guided(commands) => guided(ctx, state, jobs, commands),
     }
-    None
+    document::fit_layout(state);
 }
 
 /// Does the commands of a button of the guide, which one undo takes back.
-fn guided(state: &mut State, jobs: &mut Jobs, commands: Vec<Command>) {
+fn guided(ctx: &Context, state: &mut State, jobs: &mut Jobs, commands: Vec<Command>) {
     let before = state.setup();
     for command in commands {
-        apply(state, jobs, command);
+        apply(ctx, state, jobs, command);
     }
     let after = state.setup();
     state.guided.push(before, after);

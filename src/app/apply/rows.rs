@@ -64,14 +64,15 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
         Ok(document) => document,
         Err(error) => return state.notices.error(format!("{error}\nThe scene on screen was kept.")),
     };
-    if is_walking(state) {
+    let is_row = state.row_on_screen().is_some() && !state.editor.is_modified();
+    if is_row && state.guided.can_undo(&state.setup()) {
         state.undo();
     }
     let before = state.setup();
     state.settings.floor = SceneSet::by_name(&row.set).map_or(conditions.floor, |set| set.floor(conditions.floor));
     state.settings.normalisation = conditions.normalisation;
     state.settings.layout = row.layout.parse().ok();
-    match state.methods.all.iter().find(|m| m.name() == &*row.method) {
+    match state.methods.called(&row.method) {
         Some(method) => {
             state.settings.method = row.method.to_string();
             // The method's own threshold, also where it was raised above the noise; otherwise the row's threshold.
@@ -81,7 +82,7 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
         None => state.notices.info(format!("There is no method \"{}\" here; the one in use stays.", row.method)),
     }
     // Compare shows another method of the rows beside this one.
-    let offered = |name: &&String| **name != *row.method && state.methods.all.iter().any(|m| m.name() == **name);
+    let offered = |name: &&String| **name != *row.method && state.methods.called(name).is_some();
     if let Some(second) = table.methods().iter().find(offered) {
         state.settings.compare.second.clone_from(second);
     }
@@ -91,12 +92,6 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
     state.guided.push(before, after);
     state.failures.opened = Some(OpenedRow { row, index, generation, document: opened });
     jobs.failures.search.keep_to(opened);
-}
-
-/// Whether the scene on screen is a row's, unchanged since it was opened.
-fn is_walking(state: &State) -> bool {
-    let is_row = state.row_on_screen().is_some() && !state.editor.is_modified();
-    is_row && state.guided.can_undo(&state.setup())
 }
 
 fn take_finding(state: &mut State, jobs: &Jobs) {

@@ -9,44 +9,23 @@ use crate::radar::Radar;
 use crate::share::{LessonPlace, ShareError, SharedScene, SharedView, VisiblePart};
 use eframe::egui::pos2;
 
-/// The scene on screen as text to share; a message where it can't be shared.
-pub fn text(state: &mut State) -> Option<String> {
-    match of(state) {
-        Ok(text) => {
-            state.notices.info("Copied. Paste into another Apertura window.");
-            Some(text)
-        }
-        Err(error) => {
-            state.notices.error(format!("Nothing was copied: {error}"));
-            None
-        }
-    }
-}
-
-/// A link to this page that opens the scene on screen; a message where there is none.
-pub fn link(state: &mut State) -> Option<String> {
-    let address = platform::page_address();
-    match address.ok_or_else(|| "only a page has an address".to_owned()).and_then(|address| {
-        let text = of(state).map_err(|e| e.to_string())?;
-        let link = format!("{address}#{text}");
-        if link.len() <= MOST_OF_A_LINK { Ok(link) } else { Err(too_long(link.len())) }
-    }) {
-        Ok(link) => {
-            state.notices.info("Copied. The link opens what is on screen.");
-            Some(link)
-        }
-        Err(error) => {
-            state.notices.error(format!("Nothing was copied: {error}"));
-            None
-        }
-    }
-}
-
 /// Longest link that browsers open, bytes.
 const MOST_OF_A_LINK: usize = 2 << 20;
 
-fn too_long(letters: usize) -> String {
-    format!("the link would have {letters} letters, browsers open {MOST_OF_A_LINK}; save the scene as a file instead")
+/// A link to this page that opens the scene on screen.
+///
+/// # Errors
+/// The reason why there is none.
+pub fn link(state: &State) -> Result<String, String> {
+    let address = platform::page_address().ok_or("only a page has an address")?;
+    let link = format!("{address}#{}", of(state).map_err(|e| e.to_string())?);
+    let letters = link.len();
+    let too_long = || {
+        format!(
+            "the link would have {letters} letters, browsers open {MOST_OF_A_LINK}; save the scene as a file instead"
+        )
+    };
+    (letters <= MOST_OF_A_LINK).then_some(link).ok_or_else(too_long)
 }
 
 /// The scene on screen and its view as text.
@@ -109,7 +88,7 @@ pub fn open(state: &mut State, text: &str) {
 }
 
 fn look(state: &mut State, view: SharedView) {
-    if !state.methods.all.iter().any(|m| m.name() == view.method) {
+    if state.methods.called(&view.method).is_none() {
         state.notices.info(format!("There is no method \"{}\" here; another one is shown.", view.method));
     }
     let seen = |part: VisiblePart| MapView { low: pos2(part.left, part.bottom), high: pos2(part.right, part.top) };

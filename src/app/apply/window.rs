@@ -1,11 +1,13 @@
 //! Commands that arrange the window.
 
-use super::effect::Effect;
 use crate::app::state::{Arrangement, Brightness, State, WindowCommand};
+use crate::app::widgets::theme;
 use crate::interact::SelectionMode;
+use eframe::egui::{Context, ViewportCommand};
 
-/// Does a window command; the effect is for the window itself.
-pub fn apply(state: &mut State, command: WindowCommand) -> Option<Effect> {
+/// Does a window command. The palette belongs to the app, which shows it.
+pub fn apply(ctx: &Context, state: &mut State, command: WindowCommand) {
+    let zoom = |by: f32| ctx.set_zoom_factor((ctx.zoom_factor() + by).clamp(0.5, 3.0));
     match command {
         WindowCommand::Escape => escape(state),
         WindowCommand::TogglePanel(panel) => state.arrangement.toggle(panel),
@@ -22,18 +24,17 @@ pub fn apply(state: &mut State, command: WindowCommand) -> Option<Effect> {
         WindowCommand::ToggleCaptions => state.captions = !state.captions,
         WindowCommand::Help(page) => state.help = Some(page),
         WindowCommand::CloseHelp => state.help = None,
-        WindowCommand::CloseMessages => state.notices.clear(),
+        WindowCommand::CloseMessages => state.notices.list.clear(),
         WindowCommand::ToggleTheme => {
             state.settings.theme = if state.dark { Brightness::Light } else { Brightness::Dark };
-            return Some(Effect::Brightness(state.settings.theme));
+            theme::apply(ctx, state.settings.theme);
         }
-        WindowCommand::ZoomIn => return Some(Effect::Zoom(Some(0.1))),
-        WindowCommand::ZoomOut => return Some(Effect::Zoom(Some(-0.1))),
-        WindowCommand::ZoomReset => return Some(Effect::Zoom(None)),
-        WindowCommand::Palette => return Some(Effect::Palette),
-        WindowCommand::Quit => return Some(Effect::Close),
+        WindowCommand::ZoomIn => zoom(0.1),
+        WindowCommand::ZoomOut => zoom(-0.1),
+        WindowCommand::ZoomReset => ctx.set_zoom_factor(1.0),
+        WindowCommand::Palette => {}
+        WindowCommand::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
     }
-    None
 }
 
 /// Ends a drag, else a maximised panel, else a presentation, else the selection.
@@ -42,9 +43,7 @@ fn escape(state: &mut State) {
         state.editor.cancel_drag();
     } else if state.arrangement.maximised().is_some() {
         state.arrangement.restore();
-    } else if state.is_presenting() {
-        state.stop_presenting();
-    } else {
+    } else if !state.stop_presenting() {
         state.editor.select([], SelectionMode::Replace);
     }
     state.scene_view.box_start = None;

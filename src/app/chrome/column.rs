@@ -12,7 +12,6 @@ const AT_ONCE: f32 = 3.0;
 /// Least height of a panel that is no map, points.
 const LEAST_HEIGHT: f32 = 260.0;
 
-/// Height of a panel's title, points.
 const TITLE: f32 = 20.0;
 
 /// The open panels from top to bottom: tools, then scene, output, target and controls, then the rest.

@@ -6,10 +6,8 @@ use crate::platform::fs;
 use eframe::egui::{self, Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 
-/// Most entries of a folder that are listed.
 const MAX_LISTED: usize = 5000;
 
-/// An entry of a folder.
 struct Entry {
     name: String,
     is_folder: bool,
@@ -18,9 +16,7 @@ struct Entry {
 /// The user's decision in the dialog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// The chosen file.
     Chosen(PathBuf),
-    /// No file.
     Cancelled,
 }
 
@@ -28,7 +24,6 @@ pub enum Answer {
 pub struct Browser {
     purpose: Purpose,
     folder: PathBuf,
-    /// Text of the folder's field.
     typed: String,
     name: String,
     /// Proposed name, for an empty field.
@@ -72,7 +67,7 @@ impl Browser {
                 return false;
             }
         };
-        let (_, endings) = self.purpose.kind();
+        let endings = self.purpose.facts().endings;
         let of_kind =
             |path: &Path| path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)));
         let listed = |entry: fs::DirEntry| {
@@ -90,7 +85,7 @@ impl Browser {
     /// Draws the dialog; returns the user's decision once made.
     pub fn show(&mut self, ctx: &Context) -> Option<Answer> {
         let mut answer = None;
-        let window = egui::Window::new(self.purpose.title()).id(Id::unique("file dialog")).collapsible(false);
+        let window = egui::Window::new(self.purpose.facts().title).id(Id::unique("file dialog")).collapsible(false);
         let size = ctx.content_rect().size();
         let window = window.default_size([480.0f32.min(size.x - 40.0), 380.0f32.min(size.y - 80.0)]);
         window.pivot(egui::Align2::CENTER_CENTER).default_pos(ctx.content_rect().center()).show(ctx, |ui| {
@@ -103,7 +98,6 @@ impl Browser {
         answer.or(escaped.then_some(Answer::Cancelled))
     }
 
-    /// Draws the folder's path and the button to its parent.
     fn place(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let label = ui.label("Folder");
@@ -148,7 +142,6 @@ impl Browser {
         chosen
     }
 
-    /// Draws the file's name and the buttons below it.
     fn foot(&mut self, ui: &mut Ui) -> Option<Answer> {
         let mut done = false;
         let mut answer = None;

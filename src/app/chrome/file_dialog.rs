@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 #[derive(Default)]
 pub struct FileDialogMemory {
     dialog: Option<(Purpose, Browser)>,
-    /// An existing file that would be replaced.
     replace: Option<(Purpose, PathBuf)>,
 }
 
@@ -26,7 +25,6 @@ impl FileDialogMemory {
         self.dialog = Some((question.purpose, Browser::new(&question)));
     }
 
-    /// Takes a chosen file, or first asks whether to replace it.
     fn choose(&mut self, purpose: Purpose, path: PathBuf) -> Option<Command> {
         if purpose.reads() || !fs::exists(&path) {
             return Some(purpose.command(path));
@@ -61,7 +59,6 @@ pub fn show(ctx: &Context, memory: &mut FileDialogMemory) -> Vec<Command> {
     asked
 }
 
-/// Asks whether to replace a file; returns the answer once given.
 fn replace(ui: &mut Ui, path: &Path) -> Option<bool> {
     ui.set_width(320.0);
     ui.strong("Replace the file?");

@@ -58,7 +58,7 @@ pub fn show(ctx: &Context, page: Option<HelpPage>) -> Vec<Command> {
     let Some(page) = page else { return Vec::new() };
     let mut open = true;
     let room = ctx.content_rect().size() - vec2(60.0, 120.0);
-    egui::Window::new(page.title())
+    egui::Window::new(page.name())
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
@@ -139,7 +139,7 @@ mod tests {
             for size in [[512.0, 320.0], [1440.0, 900.0]] {
                 let window = window(page, size);
                 let texts = seen::texts(window.output());
-                assert!(texts.iter().any(|t| t.text == page.title()), "{page:?}: {texts:?}");
+                assert!(texts.iter().any(|t| t.text == page.name()), "{page:?}: {texts:?}");
                 let wide = texts.iter().find(|t| t.rect.right() > t.clip.right() + 1.0);
                 assert!(wide.is_none(), "{page:?} at {size:?}: {wide:?} is cut off");
             }

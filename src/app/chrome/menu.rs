@@ -16,7 +16,6 @@ use crate::scene::presets;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{self, PopupCloseBehavior, Ui};
 
-/// A preset as the menu lists it.
 struct Listed {
     name: String,
     is_failure: bool,
@@ -72,25 +71,18 @@ const MIN_BUTTONS_WIDTH_POINTS: f32 = 1150.0;
 const MEDIUM: f32 = 950.0;
 
 fn buttons(ui: &mut Ui, state: &State, width: f32, asked: &mut Vec<Command>) {
-    const HEAPS: [(NewObject, &str); 3] =
-        [(NewObject::Point, "+ Point"), (NewObject::Line, "+ Line"), (NewObject::Cluster, "+ Cluster")];
-    const BODIES: [(NewObject, &str); 4] = [
-        (NewObject::Wall, "+ Wall"),
-        (NewObject::Box, "+ Box"),
-        (NewObject::Post, "+ Post"),
-        (NewObject::Polygon, "+ Polygon"),
-    ];
-    let mut add = |ui: &mut Ui, kinds: &[(NewObject, &str)]| {
-        for (kind, label) in kinds {
-            button(ui, label, EditCommand::Add(*kind, None), true, asked);
+    let (heaps, bodies) = NewObject::ALL.split_at(3);
+    let mut add = |ui: &mut Ui, kinds: &[NewObject]| {
+        for kind in kinds {
+            button(ui, &format!("+ {}", kind.name()), EditCommand::Add(*kind, None), true, asked);
         }
     };
     ui.separator();
-    add(ui, &HEAPS);
+    add(ui, heaps);
     if width >= MIN_BUTTONS_WIDTH_POINTS {
-        add(ui, &BODIES);
+        add(ui, bodies);
     } else if width >= MEDIUM {
-        let of_bodies = BODIES.map(|(kind, _)| Command::Edit(EditCommand::Add(kind, None)));
+        let of_bodies = bodies.iter().map(|kind| Command::Edit(EditCommand::Add(*kind, None)));
         ui.menu_button("+ Body", |ui| entries(ui, of_bodies, asked))
             .response
             .on_hover_text("Add a wall, a box, a post or a polygon");
@@ -208,7 +200,6 @@ fn presets_of(ui: &mut Ui, memory: &MenuMemory, failures: bool, asked: &mut Vec<
     }
 }
 
-/// Whether a panel has content; an open panel can always be closed.
 fn is_of_use(panel: Panel, state: &State) -> bool {
     let has_content = match panel {
         Panel::Found => state.finds_reflectors(),

@@ -1,10 +1,9 @@
 //! Messages in the corner below scene and settings, which cover no map. They wrap, can be read aloud and closed, and vanish after a time.
 
-use crate::app::state::{Notice, NoticeKind, Notices};
+use crate::app::state::{Notice, Notices};
 use crate::app::widgets::{Icon, icon};
 use eframe::egui::{self, Align2, Area, Context, Frame, Id, Order, Pos2, vec2};
 
-/// Largest width of a message, points.
 const WIDTH: f32 = 380.0;
 
 /// Seconds for which a message stays: long enough to read an error and act on it.
@@ -13,7 +12,7 @@ const ERROR_SECONDS: f64 = 20.0;
 
 /// Draws the messages and drops expired ones.
 pub fn show(ctx: &Context, notices: &mut Notices) {
-    let messages = notices.list_mut();
+    let messages = &mut notices.list;
     if messages.is_empty() {
         return;
     }
@@ -37,10 +36,7 @@ pub fn show(ctx: &Context, notices: &mut Notices) {
             }
         });
     for message in messages.iter_mut() {
-        let seconds = match message.kind {
-            NoticeKind::Info => INFO_SECONDS,
-            NoticeKind::Error => ERROR_SECONDS,
-        };
+        let seconds = if message.is_error { ERROR_SECONDS } else { INFO_SECONDS };
         let until = message.until.get_or_insert(now + seconds);
         if hovered {
             // A message under the pointer stays.
@@ -53,12 +49,9 @@ pub fn show(ctx: &Context, notices: &mut Notices) {
     }
 }
 
-/// Draws one message; true where the user closed it.
 fn draw(ui: &mut egui::Ui, message: &Notice, width: f32) -> bool {
-    let (sign, colour) = match message.kind {
-        NoticeKind::Info => ("i", ui.visuals().hyperlink_color),
-        NoticeKind::Error => ("!", ui.visuals().error_fg_color),
-    };
+    let visuals = ui.visuals();
+    let (sign, colour) = if message.is_error { ("!", visuals.error_fg_color) } else { ("i", visuals.hyperlink_color) };
     ui.horizontal_top(|ui| {
         ui.set_width(width - 24.0);
         ui.label(egui::RichText::new(sign).strong().color(colour));

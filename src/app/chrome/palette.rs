@@ -1,7 +1,7 @@
 //! The palette: any command, found by part of its name.
 
 use crate::app::state::{
-    Command, DocumentCommand, LessonCommand, Panel, ViewCommand, WindowCommand, listed, menu_path, synonyms,
+    Command, DocumentCommand, Entry, LessonCommand, Panel, ViewCommand, WindowCommand, listed, menu_path, synonyms,
 };
 use crate::lesson::shipped;
 use crate::reconstruct::Reconstructor;
@@ -21,7 +21,6 @@ pub struct PaletteMemory {
     recent: Vec<String>,
 }
 
-/// Most commands in the list of recent ones.
 const RECENT: usize = 8;
 
 impl PaletteMemory {
@@ -53,17 +52,15 @@ impl PaletteMemory {
     }
 }
 
-/// A line of the list.
-struct Found {
-    command: Command,
-    name: String,
-    tooltip: &'static str,
-    key: String,
-    /// The menus that lead to the command.
-    path: String,
+/// The menus that lead to a command; methods and lessons have none, and are found in these panels.
+fn path(command: &Command) -> String {
+    match command {
+        Command::View(ViewCommand::Method(_)) => Panel::Controls.title().to_owned(),
+        Command::Lesson(LessonCommand::Begin(_)) => Panel::Lesson.title().to_owned(),
+        command => menu_path(command).join(" › "),
+    }
 }
 
-/// Whether every word of `text` is in `name`, in either case.
 fn matches(name: &str, text: &str) -> bool {
     let name = name.to_lowercase();
     text.to_lowercase().split_whitespace().all(|word| name.contains(word))
@@ -84,34 +81,26 @@ fn words(command: &Command) -> [&'static str; 2] {
 
 /// The commands that match `text` by name, synonym, menu, tooltip or file. Matches of the name come first, then those with the text as typed, then those with
 /// it as whole words, then the most recent.
-fn find(ctx: &Context, methods: &[Arc<dyn Reconstructor>], text: &str, recent: &[String]) -> Vec<Found> {
-    let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).map(|e| Found {
-        command: e.command.clone(),
-        name: e.name.to_string(),
-        tooltip: e.tooltip,
-        key: e.key.map(|key| ctx.format_shortcut(&key)).unwrap_or_default(),
-        path: menu_path(&e.command).join(" › "),
-    });
-    let methods = methods.iter().map(|m| Found {
-        command: Command::View(ViewCommand::Method(m.name())),
-        name: format!("Method: {}", m.name()),
+fn find(methods: &[Arc<dyn Reconstructor>], text: &str, recent: &[String]) -> Vec<Entry> {
+    let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).cloned();
+    let methods = methods.iter().map(|m| Entry {
+        command: ViewCommand::Method(m.name()).into(),
+        name: format!("Method: {}", m.name()).into(),
         tooltip: m.description(),
-        key: String::new(),
-        path: Panel::Controls.title().to_owned(),
+        key: None,
     });
-    let lessons = shipped::all_read().iter().map(|(index, lesson)| Found {
+    let lessons = shipped::all_read().iter().map(|(index, lesson)| Entry {
         command: LessonCommand::Begin(*index).into(),
-        name: format!("Lesson: {}", lesson.title),
+        name: format!("Lesson: {}", lesson.title).into(),
         tooltip: &lesson.about,
-        key: String::new(),
-        path: Panel::Lesson.title().to_owned(),
+        key: None,
     });
-    let any = |f: &Found| {
-        let [id, file] = words(&f.command);
-        let all = [f.name.as_str(), synonyms(&f.command), f.path.as_str(), f.tooltip, id, file];
+    let any = |e: &Entry| {
+        let [id, file] = words(&e.command);
+        let all = [&*e.name, synonyms(&e.command), &path(&e.command), e.tooltip, id, file];
         matches(&all.join(" "), text)
     };
-    let mut found: Vec<Found> = commands.chain(methods).chain(lessons).filter(any).collect();
+    let mut found: Vec<Entry> = commands.chain(methods).chain(lessons).filter(any).collect();
     let since = |name: &str| recent.iter().position(|r| r == name).unwrap_or(recent.len());
     let whole = |name: &str| name.to_lowercase().contains(text.trim().to_lowercase().as_str());
     let word = |name: &str| text.split_whitespace().all(|word| name.split(' ').any(|of| of.eq_ignore_ascii_case(word)));
@@ -136,7 +125,7 @@ pub fn show(ctx: &Context, methods: &[Arc<dyn Reconstructor>], memory: &mut Pale
         .show(ctx, |ui| contents(ui, methods, memory, [up, down, enter]));
     let Some(area) = area else { return Vec::new() };
     let run = area.inner.flatten().map(|found| {
-        memory.remember(found.name);
+        memory.remember(found.name.into_owned());
         found.command
     });
     if run.is_some() || escape || area.response.clicked_elsewhere() {
@@ -151,7 +140,7 @@ fn contents(
     methods: &[Arc<dyn Reconstructor>],
     memory: &mut PaletteMemory,
     [up, down, enter]: [bool; 3],
-) -> Option<Found> {
+) -> Option<Entry> {
     let before = memory.text.clone();
     if memory.just_opened {
         // The field has no focus yet, but the frame may hold letters already.
@@ -169,7 +158,7 @@ fn contents(
     if memory.text != before {
         memory.chosen = 0;
     }
-    let mut found = find(ui.ctx(), methods, &memory.text, &memory.recent);
+    let mut found = find(methods, &memory.text, &memory.recent);
     let last = found.len().saturating_sub(1);
     memory.chosen = match (up, down) {
         (true, _) => memory.chosen.saturating_sub(1),
@@ -190,14 +179,14 @@ fn text_of(event: &Event) -> Option<&str> {
     if let Event::Text(text) = event { Some(text) } else { None }
 }
 
-/// Draws the matches; returns the index of a clicked one.
-fn list(ui: &mut Ui, found: &[Found], chosen: usize, moved: bool) -> Option<usize> {
+fn list(ui: &mut Ui, found: &[Entry], chosen: usize, moved: bool) -> Option<usize> {
     let mut clicked = None;
     egui::ScrollArea::vertical().auto_shrink([false, false]).max_height(300.0).show(ui, |ui| {
         for (index, line) in found.iter().enumerate() {
             // Even an empty key pushes the name to the left.
-            let beside = [line.path.as_str(), line.key.as_str()].join(if line.key.is_empty() { "" } else { "   " });
-            let button = Button::selectable(index == chosen, &line.name).truncate().shortcut_text(beside);
+            let key = line.key.map_or_else(String::new, |key| format!("   {}", ui.ctx().format_shortcut(&key)));
+            let beside = path(&line.command) + &key;
+            let button = Button::selectable(index == chosen, &*line.name).truncate().shortcut_text(beside);
             let response = ui.add_sized([ui.available_width(), 22.0], button).on_hover_text(line.tooltip);
             if index == chosen && moved {
                 response.scroll_to_me(None);
@@ -226,7 +215,7 @@ mod tests {
 
     fn names(text: &str, recent: &[&str]) -> Vec<String> {
         let recent: Vec<String> = recent.iter().map(|name| (*name).to_owned()).collect();
-        find(&Context::default(), &[], text, &recent).into_iter().map(|f| f.name).collect()
+        find(&[], text, &recent).into_iter().map(|found| found.name.into_owned()).collect()
     }
 
     #[test]
@@ -257,9 +246,9 @@ mod tests {
             ("two reflections", "Recording: cascade 86"),
             ("occlusion", "Lesson: A weak point behind a strong line"),
         ] {
-            let found = find(&Context::default(), &methods, text, &[]);
-            let names: Vec<&String> = found.iter().map(|found| &found.name).collect();
-            assert!(names.iter().any(|name| *name == wanted), "{text} finds {names:?}");
+            let found = find(&methods, text, &[]);
+            let names: Vec<&str> = found.iter().map(|found| &*found.name).collect();
+            assert!(names.contains(&wanted), "{text} finds {names:?}");
         }
     }
 

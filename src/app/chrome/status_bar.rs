@@ -40,20 +40,16 @@ pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
                 rest -= if fits { wanted } else { 0.0 };
                 fits
             };
-            let alone = (!platform::has_threads()).then(|| "one thread".to_owned()).filter(&mut fits);
-            let (count, took) = (Some(count).filter(&mut fits), took.filter(&mut fits));
+            let alone = (!platform::has_threads()).then(|| "one thread".to_owned());
+            let alone_tip = "This page has no threads, so the window stops while something is computed. It has them in a tab of its own, \
+                where the browser isolates it from other pages.";
+            let count_tip = "A body has no reflectors: each element gets a few echoes of it";
+            let took_tip = "Time of the last update of maps and pictures; the Timing panel (F7) has the stages";
+            let [alone, count, took] = [(alone, alone_tip), (Some(count), count_tip), (took, took_tip)]
+                .map(|(text, tip)| text.filter(&mut fits).map(|text| (text, tip)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if let Some(alone) = alone {
-                    let tip = "This page has no threads, so the window stops while something is computed. It has them in a tab of its own, \
-                        where the browser isolates it from other pages.";
-                    ui.weak(alone).on_hover_text(tip);
-                }
-                if let Some(took) = took {
-                    let tip = "Time of the last update of maps and pictures; the Timing panel (F7) has the stages";
-                    ui.weak(took).on_hover_text(tip);
-                }
-                if let Some(count) = count {
-                    ui.weak(count).on_hover_text("A body has no reflectors: each element gets a few echoes of it");
+                for (text, tip) in [alone, took, count].into_iter().flatten() {
+                    ui.weak(text).on_hover_text(tip);
                 }
             });
         });

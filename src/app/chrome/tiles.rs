@@ -10,10 +10,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Draws the panels of the tiles.
 pub trait Draw {
-    /// Draws a panel.
     fn draw(&mut self, ui: &mut Ui, panel: Panel);
 
-    /// Text in a panel's title bar beside its name.
     fn caption(&self, panel: Panel) -> Option<String>;
 
     /// Whether a panel shows results of an earlier scene or settings. Its caption is then dimmed as its content is.
@@ -61,7 +59,6 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
 /// Gap between a tab's title and its sides, points.
 const TAB_MARGIN: f32 = 8.0;
 
-/// Least width of a caption, points.
 const LEAST_CAPTION: f32 = 60.0;
 
 /// Width of the two arrows that scroll the tabs, points.
@@ -76,7 +73,6 @@ struct Behavior<'a> {
 }
 
 impl Behavior<'_> {
-    /// The view in front of a tile.
     fn front(&self, tile: Panel) -> Panel {
         self.views.get(&tile).copied().unwrap_or(tile)
     }

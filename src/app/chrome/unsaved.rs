@@ -2,6 +2,7 @@
 
 use crate::app::state::{Command, DocumentCommand};
 use crate::interact::Document;
+use crate::radar::counted;
 use eframe::egui::Ui;
 
 /// Draws the menu's entry; grey where nothing is unsaved.
@@ -20,25 +21,15 @@ fn one(ui: &mut Ui, document: &Document, asked: &mut Vec<Command>) {
     let scene = document.scene();
     let is_named_by_scene = scene.name.is_empty() || scene.name == document.name();
     let name = if is_named_by_scene { document.name() } else { format!("{}: {}", document.name(), scene.name) };
-    let objects = scene.objects.len();
-    let text = format!("{name} ({objects} object{})", if objects == 1 { "" } else { "s" });
+    let text = format!("{name} ({})", counted(scene.objects.len(), "object", "objects"));
     ui.push_id(document.id(), |ui| {
         ui.menu_button(text, |ui| {
-            let entries = [
-                (
-                    "Bring back",
-                    "Put it on screen; undo takes that back",
-                    Command::Document(DocumentCommand::Recover(document.id())),
-                ),
-                (
-                    "Discard",
-                    "Give it up: no copy of it is kept",
-                    Command::Document(DocumentCommand::Discard(document.id())),
-                ),
-            ];
-            for (name, tooltip, command) in entries {
+            let back =
+                ("Bring back", "Put it on screen; undo takes that back", DocumentCommand::Recover(document.id()));
+            let discard = ("Discard", "Give it up: no copy of it is kept", DocumentCommand::Discard(document.id()));
+            for (name, tooltip, command) in [back, discard] {
                 if ui.button(name).on_hover_text(tooltip).clicked() {
-                    asked.push(command);
+                    asked.push(command.into());
                     ui.close();
                 }
             }

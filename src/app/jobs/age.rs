@@ -1,7 +1,6 @@
 //! Checks for old maps and marks that are drawn as fresh.
 
 use super::Jobs;
-use super::derived::{Derived, Query};
 use super::source::Source;
 use super::theory::TheoryRequest;
 use crate::app::state::{MapKind, MethodSlot, Panel, State};
@@ -19,14 +18,14 @@ impl Jobs {
             state.draws_found() && shown.contains(&Panel::Scene) && !self.pipeline.is_stale(MapKind::Output);
         let output = self.pipeline.output_of(state).filter(|o| marks_found && !o.reflectors.is_empty());
         let source = Source::of(state);
-        note(output.is_some_and(|o| o.pair.source != source), "what was found");
+        note(output.is_some_and(|o| o.pair.origin.source != source), "what was found");
         let judged = super::fates_of(&self.kinds, MethodSlot::First, &self.pipeline);
         let marks_kinds = state.settings.show_kinds && !state.is_predicting();
         note(
             judged.is_some_and(|(fates, current)| marks_kinds && current && fates.scene != source.scene),
             "kinds of failure",
         );
-        note(is_old(&self.theory, TheoryRequest::of(state)), "theory");
+        note(self.theory.is_fresh_but_old(TheoryRequest::of(state).as_ref()), "theory");
         old
     }
 
@@ -37,12 +36,6 @@ impl Jobs {
         let Some(slot) = kind.slot() else { return maps.request.source != source };
         let pair = maps.request.pairs[slot as usize].as_ref();
         let method = state.method_in(slot).map(|method| method.name());
-        let made_by = self.pipeline.method(slot).output().map(|output| output.method);
-        pair.is_some_and(|pair| pair.source != source) || (made_by.is_some() && made_by != method)
+        pair.is_some_and(|pair| pair.origin.source != source || Some(pair.origin.method) != method)
     }
-}
-
-/// Whether a value is drawn as fresh and belongs to another query than `now`.
-fn is_old<Q: Query>(derived: &Derived<Q>, now: Option<Q>) -> bool {
-    derived.value().is_some() && !derived.is_stale() && !derived.is_of(now.as_ref())
 }

@@ -6,12 +6,11 @@ use crate::app::widgets::colour_table;
 use crate::bounds::{
     Ambiguity, BoundsError, Gains, PositionBound, ambiguity, cramer_rao, cramer_rao_of, noise_variance,
 };
-use crate::interact::Editor;
 use crate::picture::ColourMap;
-use crate::radar::{Layout, LayoutError, Polar, Radar};
+use crate::radar::{Layout, Polar, Radar};
 use crate::scene::{Object, Reflector};
 use crate::task::Task;
-use eframe::egui::ColorImage;
+use eframe::egui::{Color32, ColorImage};
 use std::sync::Arc;
 
 /// A request for the bounds of one reflector.
@@ -20,7 +19,6 @@ pub struct BoundsRequest {
     pub radar: Radar,
     /// Elements, noise and extent of the picture.
     pub settings: BoundsSettings,
-    /// Name of the reflector.
     pub name: String,
     pub reflector: Reflector,
 }
@@ -28,31 +26,23 @@ pub struct BoundsRequest {
 impl BoundsRequest {
     /// The bounds of the first selected object's centre, or of the first object's; `None` where there is none away from the array's middle.
     pub fn of(state: &State) -> Option<Self> {
-        let (name, reflector) = subject(&state.editor)?;
-        Some(BoundsRequest { radar: state.radar().clone(), settings: state.settings.bounds, name, reflector })
+        let index = state.editor.selection().iter().next().unwrap_or(0);
+        let object = state.editor.scene().objects.get(index)?;
+        let [x_metres, y_metres] = object.centre_metres();
+        let reflector = Reflector { x_metres, y_metres, reflectivity: object.reflectivity() };
+        let what = if matches!(object, Object::Point(_)) { "" } else { "middle of " };
+        let name = format!("{what}{}", object.called(index));
+        let (radar, settings) = (state.radar().clone(), state.settings.bounds);
+        (x_metres.hypot(y_metres) > 0.0).then_some(BoundsRequest { radar, settings, name, reflector })
     }
-}
-
-/// The reflector of bounds and theory, with its name: the centre of the first selected object, or else of the first.
-pub(super) fn subject(editor: &Editor) -> Option<(String, Reflector)> {
-    let index = editor.selection().iter().next().unwrap_or(0);
-    let object = editor.scene().objects.get(index)?;
-    let [x_metres, y_metres] = object.centre_metres();
-    let reflectivity = object.reflectivity();
-    let what = if matches!(object, Object::Point(_)) { "" } else { "middle of " };
-    let reflector = Reflector { x_metres, y_metres, reflectivity };
-    (x_metres.hypot(y_metres) > 0.0).then(|| (format!("{what}{}", object.called(index)), reflector))
 }
 
 /// Bounds of a reflector.
 pub struct BoundsResult {
-    /// The request.
     pub request: BoundsRequest,
-    /// Positions of the elements that listen.
     pub layout: Layout,
     /// Range and direction of the reflector.
     pub centre: Polar,
-    /// Cramér–Rao bound of the position.
     pub bound: Result<PositionBound, BoundsError>,
     /// The bound with one unknown complex gain for either half of the elements.
     pub gain_per_end: Option<PositionBound>,
@@ -65,48 +55,6 @@ pub struct BoundsResult {
 /// Echoes compared for one picture, which take a few tenths of a second.
 const BUDGET: f64 = 2.0e6;
 
-/// Computes the bounds of a request.
-///
-/// # Errors
-/// [`LayoutError`] where the elements that listen can't be placed.
-pub fn bounds_of(request: BoundsRequest) -> Result<BoundsResult, LayoutError> {
-    let BoundsRequest { radar, settings, reflector, .. } = &request;
-    let BoundsSettings { elements, seed, snr, columns, bins } = *settings;
-    let layout = elements.layout(radar, seed)?;
-    let centre = radar.polar_of(reflector.x_metres, reflector.y_metres.abs());
-    let variance = noise_variance(radar, &layout, reflector, snr);
-    let bound = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).map(|bounds| bounds[0]);
-    let per_end = cramer_rao_of(radar, &layout, std::slice::from_ref(reflector), variance, Gains::PerEnd);
-    let gain_per_end = per_end.ok().and_then(|bounds| bounds.first().copied());
-    let cells = (BUDGET / layout.len().max(1) as f64).clamp(1e3, 8e4);
-    // Odd numbers, so that the reflector itself is a cell.
-    let across = 2 * ((cells * 2.0).sqrt() / 2.0) as i32 + 1;
-    let up = 2 * ((cells / 2.0).sqrt() / 2.0) as i32 + 1;
-    let around =
-        |half: f64, count: i32| (0..count).map(move |i| half * (2.0 * f64::from(i) / f64::from(count - 1) - 1.0));
-    let column = 2.0 / radar.elements as f64;
-    let ranges: Vec<f64> = around(bins * radar.range_resolution_metres(), up)
-        .map(|d| (centre.range_metres + d).max(radar.aperture_metres() / 100.0))
-        .collect();
-    let cosines: Vec<f64> = around(columns * column, across).map(|d| centre.cos_theta + d).collect();
-    let mut found = ambiguity(radar, &layout, centre, &ranges, &cosines);
-    // There is no direction beyond end-fire.
-    for (mut cells, cos) in found.likeness.columns_mut().into_iter().zip(&cosines) {
-        if cos.abs() > 1.0 {
-            cells.fill(f64::NAN);
-        }
-    }
-    let table = colour_table(ColourMap::Viridis);
-    let paint = |v: &f64| match v.is_nan() {
-        true => eframe::egui::Color32::TRANSPARENT,
-        false => table[(v * 255.0) as usize],
-    };
-    // The top row is the farthest.
-    let pixels = found.likeness.rows().into_iter().rev().flat_map(|row| row.into_iter().map(paint).collect::<Vec<_>>());
-    let image = Arc::new(ColorImage::new([across as usize, up as usize], pixels.collect()));
-    Ok(BoundsResult { layout, centre, bound, gain_per_end, ambiguity: found, image, request })
-}
-
 impl Query for BoundsRequest {
     type Value = BoundsResult;
     type State = ();
@@ -115,7 +63,39 @@ impl Query for BoundsRequest {
     const ADVICE: &'static str = "Move the reflector to try again.";
 
     fn compute(&self, (): &mut (), _: &Task) -> Result<BoundsResult, Failure> {
-        bounds_of(self.clone()).map_err(|e| e.to_string().into())
+        let BoundsRequest { radar, settings, reflector, .. } = self;
+        let BoundsSettings { elements, seed, snr, columns, bins } = *settings;
+        let layout = elements.layout(radar, seed).map_err(|e| e.to_string())?;
+        let centre = radar.polar_of(reflector.x_metres, reflector.y_metres.abs());
+        let variance = noise_variance(radar, &layout, reflector, snr);
+        let bound = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).map(|bounds| bounds[0]);
+        let per_end = cramer_rao_of(radar, &layout, std::slice::from_ref(reflector), variance, Gains::PerEnd);
+        let gain_per_end = per_end.ok().and_then(|bounds| bounds.first().copied());
+        let cells = (BUDGET / layout.len().max(1) as f64).clamp(1e3, 8e4);
+        // Odd numbers, so that the reflector itself is a cell.
+        let across = 2 * ((cells * 2.0).sqrt() / 2.0) as i32 + 1;
+        let up = 2 * ((cells / 2.0).sqrt() / 2.0) as i32 + 1;
+        let around =
+            |half: f64, count: i32| (0..count).map(move |i| half * (2.0 * f64::from(i) / f64::from(count - 1) - 1.0));
+        let column = 2.0 / radar.elements as f64;
+        let ranges: Vec<f64> = around(bins * radar.range_resolution_metres(), up)
+            .map(|d| (centre.range_metres + d).max(radar.aperture_metres() / 100.0))
+            .collect();
+        let cosines: Vec<f64> = around(columns * column, across).map(|d| centre.cos_theta + d).collect();
+        let mut found = ambiguity(radar, &layout, centre, &ranges, &cosines);
+        // There is no direction beyond end-fire.
+        for (mut cells, cos) in found.likeness.columns_mut().into_iter().zip(&cosines) {
+            if cos.abs() > 1.0 {
+                cells.fill(f64::NAN);
+            }
+        }
+        let table = colour_table(ColourMap::Viridis);
+        let paint = |v: &f64| if v.is_nan() { Color32::TRANSPARENT } else { table[(v * 255.0) as usize] };
+        // The top row is the farthest.
+        let pixels =
+            found.likeness.rows().into_iter().rev().flat_map(|row| row.into_iter().map(paint).collect::<Vec<_>>());
+        let image = Arc::new(ColorImage::new([across as usize, up as usize], pixels.collect()));
+        Ok(BoundsResult { layout, centre, bound, gain_per_end, ambiguity: found, image, request: self.clone() })
     }
 }
 
@@ -137,7 +117,7 @@ mod tests {
             },
             name: String::new(),
         };
-        bounds_of(request).unwrap()
+        request.compute(&mut (), &Task::default()).unwrap()
     }
 
     #[test]

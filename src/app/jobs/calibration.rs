@@ -11,7 +11,6 @@ use crate::task::Task;
 /// A calibration of the elements by a reflector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibrated {
-    /// Name of the reflector.
     pub name: String,
     /// Gain and phase of each element.
     pub calibration: Found,

@@ -26,7 +26,6 @@ impl ChirpQuery {
 /// The beat of one element in a chirp.
 pub struct ChirpResult {
     pub element: usize,
-    /// The samples of the beat.
     pub samples: Vec<Complex64>,
     /// Amplitude of each range bin of the beat's spectrum under the radar's window.
     pub spectrum: Vec<f64>,
@@ -37,7 +36,6 @@ impl Query for ChirpQuery {
     type State = KeptSignal;
     const THREAD: &'static str = "chirps";
     const WHAT: &'static str = "Computing the beat";
-    const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut KeptSignal, _: &Task) -> Result<ChirpResult, Failure> {
         let ChirpQuery { source, element } = self;

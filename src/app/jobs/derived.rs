@@ -23,7 +23,7 @@ pub trait Query: Clone + PartialEq + Send + 'static {
     /// Subject of the message about a panic, at the beginning of a sentence.
     const WHAT: &'static str;
     /// The user's remedy after a panic, as a sentence.
-    const ADVICE: &'static str;
+    const ADVICE: &'static str = "Change the scene to try again.";
 
     /// Computes the value.
     ///
@@ -35,9 +35,7 @@ pub trait Query: Clone + PartialEq + Send + 'static {
 /// The reason why a query has no value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Failure {
-    /// It was cancelled for a newer query.
     Cancelled,
-    /// There is no value, for this reason.
     Because(String),
 }
 
@@ -102,13 +100,12 @@ impl<Q: Query> Derived<Q> {
 
     /// The last value, or the reason why there is none; `None` where no panel of the last frame drew it.
     pub fn value(&self) -> Option<Result<&Q::Value, &str>> {
-        let (_, value) = self.made.as_ref().filter(|_| self.is_asked())?;
-        Some(value.as_ref().map_err(String::as_str))
+        self.made().map(|(_, value)| value.as_ref().map_err(String::as_str))
     }
 
-    /// Whether a panel of the last frame drew the value.
-    pub fn is_asked(&self) -> bool {
-        self.asked.is_some()
+    /// The same with its query.
+    pub fn made(&self) -> Option<&(Q, Result<Q::Value, String>)> {
+        self.made.as_ref().filter(|_| self.asked.is_some())
     }
 
     /// Whether the value has belonged to an earlier query for so long that it must be marked.
@@ -116,9 +113,9 @@ impl<Q: Query> Derived<Q> {
         self.waiting.first().is_some_and(|(_, since)| since.elapsed() > STALE)
     }
 
-    /// Whether the last value is that of `query`.
-    pub fn is_of(&self, query: Option<&Q>) -> bool {
-        self.made.as_ref().map(|(of, _)| of) == query
+    /// Whether a value is drawn as fresh that belongs to another query than `now`.
+    pub fn is_fresh_but_old(&self, now: Option<&Q>) -> bool {
+        self.value().is_some() && !self.is_stale() && self.made.as_ref().map(|(of, _)| of) != now
     }
 
     /// Requests so far.

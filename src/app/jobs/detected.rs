@@ -10,15 +10,11 @@ use std::sync::Arc;
 /// Maps whose detected cells are 1 and others 0.
 #[derive(Debug, Clone, Default)]
 pub struct Detected {
-    /// Detections in the target.
     pub target: Option<Arc<RangeAngleMap>>,
-    /// Detections in each method's output.
     pub outputs: [Option<Arc<RangeAngleMap>>; 2],
-    /// The reason why there are none.
     pub error: Option<String>,
 }
 
-/// A map, its scale and the detector.
 type Detection = (Shared<RangeAngleMap>, LambdaScale, Cfar);
 
 /// A detector that keeps its last detections: of the target, then of both outputs.

@@ -1,7 +1,7 @@
 //! File dialogs of the system, off the UI thread. The chosen file comes back as a command. Where the system has no dialogs, the window shows its own and tells
 //! so.
 
-use crate::app::state::{Command, DocumentCommand, Purpose, RowsCommand};
+use crate::app::state::{Command, DocumentCommand, Purpose, PurposeFacts, RowsCommand};
 use crate::platform::{self, FileQuestion, Instant};
 use eframe::egui::DroppedFile;
 use std::ffi::OsString;
@@ -16,7 +16,6 @@ const NEVER_SHOWN: Duration = Duration::from_millis(250);
 /// A question for a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
-    /// The purpose of the file.
     pub purpose: Purpose,
     /// The folder that the dialog begins in.
     pub folder: Option<PathBuf>,
@@ -30,22 +29,21 @@ impl Question {
         let stem = document.and_then(Path::file_stem).filter(|_| purpose == Purpose::SaveScene);
         let name = match stem {
             Some(stem) => format!("{}.toml", stem.to_string_lossy()),
-            None => purpose.name().to_owned(),
+            None => purpose.facts().name.to_owned(),
         };
         let folder = document.and_then(Path::parent).filter(|p| !p.as_os_str().is_empty()).map(Path::to_path_buf);
         Question { purpose, folder, name }
     }
 
-    /// A question with the name and folder of `path`.
     fn at(purpose: Purpose, path: &Path) -> Question {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         Question { purpose, folder: path.parent().map(Path::to_path_buf), name }
     }
 
     fn for_the_system(&self) -> FileQuestion {
-        let (kind, endings) = self.purpose.kind();
+        let PurposeFacts { title, kind, endings, .. } = self.purpose.facts();
         FileQuestion {
-            title: self.purpose.title().to_owned(),
+            title: title.to_owned(),
             kind: kind.to_owned(),
             endings: endings.iter().map(|e| (*e).to_owned()).collect(),
             folder: self.folder.clone(),
@@ -58,7 +56,6 @@ impl Question {
 /// Opens a dialog of the system. The reply comes later, with `None` where the dialog was closed without a file or could not be shown.
 type System = Arc<dyn Fn(FileQuestion, Reply) -> std::io::Result<()>>;
 
-/// Takes the chosen file, or `None`.
 type Reply = Box<dyn FnOnce(Option<PathBuf>) + Send>;
 
 enum Answer {
@@ -254,7 +251,7 @@ mod tests {
     fn answered(purpose: Purpose) -> (Vec<Command>, Option<&'static str>, Option<Question>) {
         let slow: System = Arc::new(|question, reply| {
             std::thread::sleep(NEVER_SHOWN + Duration::from_millis(50));
-            reply((question.title == Purpose::Open.title()).then(|| PathBuf::from("a.toml")));
+            reply((question.title == Purpose::Open.facts().title).then(|| PathBuf::from("a.toml")));
             Ok(())
         });
         let mut dialogs = Dialogs::by(Some(slow));

@@ -40,7 +40,6 @@ impl DopplerQuery {
 
 /// A range-Doppler map and its picture.
 pub struct DopplerResult {
-    /// The radar of the map's chirps.
     pub radar: Radar,
     /// Whether the interval of the chirps is known.
     pub knows_interval: bool,
@@ -56,7 +55,6 @@ impl Query for DopplerQuery {
     type State = Memo<(Source, bool), DopplerMade>;
     const THREAD: &'static str = "range-Doppler";
     const WHAT: &'static str = "Computing the range-Doppler map";
-    const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut Self::State, task: &Task) -> Result<DopplerResult, Failure> {
         let DopplerQuery { source, static_clutter_out, normalisation, colours } = self;

@@ -5,12 +5,13 @@ use super::failures::{RowTable, write_rows_to};
 use super::recorded::seen_by;
 use crate::app::state::{Purpose, State};
 use crate::files::write_bytes;
+use crate::maps::RangeAngleMap;
 use crate::maps::archive::{write_maps, write_recorded_maps};
 use crate::picture::{PictureFormat, compose, compose_recording, maps_of};
+use crate::radar::Radar;
 use crate::reconstruct::{NoisePrior, Reconstructor, Request};
 use crate::recording::Recording;
-use crate::signal::{self, BeatSignal};
-use eframe::egui::Context;
+use crate::signal::{self, BeatSignal, TwoEnds};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -37,19 +38,9 @@ impl Export {
 }
 
 /// Exports under way.
-pub struct Exports(Background<Export>);
+pub struct Exports(pub Background<Export>);
 
 impl Exports {
-    /// No export yet; `wake` draws another frame when one is finished.
-    pub fn new(wake: Context) -> Self {
-        Exports(Background::new(wake))
-    }
-
-    /// Exports finished since the last call.
-    pub fn finished(&self) -> Vec<Export> {
-        self.0.finished()
-    }
-
     /// Draws the panels of `apertura maps` with the method and the settings on screen, as PNG or SVG. Returns the message for the user.
     ///
     /// # Errors
@@ -96,10 +87,9 @@ impl Exports {
             let signal = signal::simulate(&radar, &scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
             let heard = hear(&signal);
             let request = Request { noise: floor.into(), normalisation, heard: heard.clone(), ..Request::default() };
-            let found = method.map(|m| m.reconstruct(&radar, &signal.two_ends(&radar), &request)).transpose();
-            let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
-            write_maps(path, &radar, &scene, &signal, heard.as_deref(), output).map_err(|e| e.to_string())?;
-            Ok(found.err().map(|why| format!("without the output: {why}")))
+            let (output, without) = output_of(method.as_deref(), &radar, &signal.two_ends(&radar), &request);
+            let written = write_maps(path, &radar, &scene, &signal, heard.as_deref(), output.as_ref());
+            written.map_err(|e| e.to_string()).map(|_| without)
         })
     }
 
@@ -149,11 +139,23 @@ fn write_recording(
 ) -> Result<Option<String>, String> {
     let (_, full) = maps_of(recording);
     let ends = recording.two_ends();
-    let found = method.map(|m| m.reconstruct(&recording.radar, &ends, request)).transpose();
-    let output = found.as_ref().ok().and_then(|found| found.as_ref()).map(|found| &found.lambda);
+    let (output, without) = output_of(method, &recording.radar, &ends, request);
     let heard = request.heard.as_deref();
-    write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), heard, output).map_err(|e| e.to_string())?;
-    Ok(found.err().map(|why| format!("without the output: {why}")))
+    let written = write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), heard, output.as_ref());
+    written.map_err(|e| e.to_string()).map(|()| without)
+}
+
+/// The output of a method, and a remark where it gives none.
+fn output_of(
+    method: Option<&dyn Reconstructor>,
+    radar: &Radar,
+    ends: &TwoEnds,
+    request: &Request,
+) -> (Option<RangeAngleMap>, Option<String>) {
+    match method.map(|method| method.reconstruct(radar, ends, request)).transpose() {
+        Ok(found) => (found.map(|found| found.lambda), None),
+        Err(why) => (None, Some(format!("without the output: {why}"))),
+    }
 }
 
 #[cfg(test)]

@@ -33,11 +33,10 @@ impl FrameLog {
     pub fn write(&mut self, previous: Option<f32>, requested: u64, painted: u64) -> io::Result<()> {
         let (frame_began, processor_began) = self.current;
         let (seconds, ui) = (self.began.elapsed().as_secs_f64(), frame_began.elapsed().as_secs_f64() * 1e3);
-        let processor =
-            processor_ms().zip(processor_began).map_or_else(String::new, |(now, then)| format!("{:.3}", now - then));
-        let previous = previous.map_or_else(String::new, |s| format!("{:.3}", s * 1e3));
-        let memory =
-            resident_bytes().map_or_else(String::new, |bytes| format!("{:.1}", bytes as f64 / f64::from(1 << 20)));
+        let text = |v: Option<f64>, digits: usize| v.map_or_else(String::new, |v| format!("{v:.digits$}"));
+        let processor = text(processor_ms().zip(processor_began).map(|(now, then)| now - then), 3);
+        let previous = text(previous.map(|seconds| f64::from(seconds * 1e3)), 3);
+        let memory = text(resident_bytes().map(|bytes| bytes as f64 / f64::from(1 << 20)), 1);
         writeln!(
             self.out,
             "{},{seconds:.4},{ui:.3},{previous},{requested},{painted},{memory},{processor}",

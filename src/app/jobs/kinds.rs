@@ -8,8 +8,6 @@ use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{MethodSlot, Panel, State};
 use crate::evaluate::failure::{CellIndex, Failures, Footprints};
-#[cfg(test)]
-use crate::evaluate::failure::{Fate, Ghost};
 use crate::evaluate::median_bound_metres;
 use crate::maps::RangeAngleMap;
 use crate::radar::Layout;
@@ -35,9 +33,7 @@ pub struct KindsQuery {
 /// The fate of one object, or a ghost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
-    /// Index of the object in the scene; `None` for a ghost.
     pub object: Option<usize>,
-    /// Cells of its footprint, or of the ghost.
     pub cells: usize,
     /// The brightest of these cells in the output.
     pub brightest: Option<CellIndex>,
@@ -51,7 +47,6 @@ pub struct Fates {
     pub failures: Failures,
     /// Every object of the scene, in its order, then every ghost.
     pub verdicts: Vec<Verdict>,
-    /// The threshold of the detections.
     pub eta: f32,
     /// Median position bound of the found points, metres: no unbiased estimate is nearer on average. `None` without noise.
     pub bound_metres: Option<f64>,
@@ -65,7 +60,6 @@ type Made = [Option<Fates>; 2];
 /// State kept between queries.
 #[derive(Default)]
 pub struct KeptFates {
-    /// Footprints of the last target, which serve several outputs and thresholds.
     footprints: Memo<Shared<RangeAngleMap>, Footprints>,
     last: Made,
 }
@@ -102,7 +96,6 @@ impl Query for KindsQuery {
     type State = KeptFates;
     const THREAD: &'static str = "kinds of failure";
     const WHAT: &'static str = "Telling kinds of failure apart";
-    const ADVICE: &'static str = "Change the scene to try again.";
 
     fn compute(&self, kept: &mut KeptFates, _: &Task) -> Result<Made, Failure> {
         if self.outputs.iter().all(Option::is_none) {
@@ -149,36 +142,36 @@ fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
 }
 
 #[cfg(test)]
-impl Fates {
-    /// Fates of a scene's objects of 40 cells each, and ghosts of 12 cells, at a threshold of 0.8.
-    pub fn made_up(scene: Scene, fates: &[Fate], ghosts: &[CellIndex]) -> Fates {
-        let object = |index: usize| Verdict { object: Some(index), cells: 40, brightest: None };
-        let ghost = |at: &CellIndex| Verdict { object: None, cells: 12, brightest: Some(*at) };
-        let nothing = || Shared::new(RangeAngleMap { lambda: ndarray::Array2::zeros((1, 1)) });
-        let failures = Failures {
-            objects: fates.to_vec(),
-            covered: fates.iter().map(|fate| if *fate == Fate::Found { 1.0 } else { 0.0 }).collect(),
-            ghosts: ghosts.iter().map(|at| Ghost { cells: vec![*at; 12] }).collect(),
-        };
-        let verdicts = (0..fates.len()).map(object).chain(ghosts.iter().map(ghost)).collect();
-        Fates {
-            scene: Shared::new(scene),
-            failures,
-            verdicts,
-            eta: 0.8,
-            bound_metres: None,
-            output: nothing(),
-            target: nothing(),
-        }
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluate::failure::{Fate, Ghost};
     use crate::maps::{LogMaps, Normalisation};
     use crate::radar::Radar;
     use crate::signal::{Floor, simulate};
+
+    impl Fates {
+        /// Fates of a scene's objects of 40 cells each, and ghosts of 12 cells, at a threshold of 0.8.
+        pub fn made_up(scene: Scene, fates: &[Fate], ghosts: &[CellIndex]) -> Fates {
+            let object = |index: usize| Verdict { object: Some(index), cells: 40, brightest: None };
+            let ghost = |at: &CellIndex| Verdict { object: None, cells: 12, brightest: Some(*at) };
+            let nothing = || Shared::new(RangeAngleMap { lambda: ndarray::Array2::zeros((1, 1)) });
+            let failures = Failures {
+                objects: fates.to_vec(),
+                covered: fates.iter().map(|fate| if *fate == Fate::Found { 1.0 } else { 0.0 }).collect(),
+                ghosts: ghosts.iter().map(|at| Ghost { cells: vec![*at; 12] }).collect(),
+            };
+            let verdicts = (0..fates.len()).map(object).chain(ghosts.iter().map(ghost)).collect();
+            Fates {
+                scene: Shared::new(scene),
+                failures,
+                verdicts,
+                eta: 0.8,
+                bound_metres: None,
+                output: nothing(),
+                target: nothing(),
+            }
+        }
+    }
 
     /// The target map of two points.
     fn truth(radar: Radar) -> Truth {

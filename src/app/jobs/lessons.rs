@@ -1,6 +1,7 @@
 //! Judgement of predictions and measurement of challenges, off the UI thread.
 
 use super::background::Background;
+use super::derived::{Derived, Failure, Query};
 use crate::app::shared::Shared;
 use crate::app::state::{LessonCommand, LessonRun, State};
 use crate::app::widgets::picture;
@@ -10,14 +11,14 @@ use crate::picture::ColourMap;
 use crate::platform;
 use crate::radar::Radar;
 use crate::scene::Scene;
-use crate::task::{Reply, Task, Worker};
+use crate::task::Task;
 use eframe::egui::{ColorImage, Context};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A request to judge a prediction and to measure a challenge.
+/// A query of the judged prediction and the measured challenge.
 #[derive(Clone, PartialEq)]
-struct Request {
+struct Answered {
     lesson: Shared<Lesson>,
     step: usize,
     guess: Option<Guess>,
@@ -25,7 +26,7 @@ struct Request {
     scene: Shared<Scene>,
 }
 
-/// The judged prediction and the measured challenge.
+/// The judged prediction, the measured challenge, and a picture of the hidden scene.
 #[derive(Default)]
 struct Outcome {
     judgement: Option<Result<Judgement, String>>,
@@ -33,20 +34,41 @@ struct Outcome {
     hidden: Option<Arc<ColorImage>>,
 }
 
-fn work(request: &Request) -> Outcome {
-    let Some(step) = request.lesson.steps.get(request.step) else { return Outcome::default() };
-    let judgement = request.guess.zip(step.predict.as_ref()).map(|(guess, question)| {
-        let stage = Stage::new(&step.radar, &step.scene(), &step.view, question.needs_output());
-        stage.map_err(|e| e.to_string()).and_then(|stage| question.judge(&stage, guess))
-    });
-    let (measured, hidden) = challenge(step, request).unzip();
-    Outcome { judgement, measured, hidden: hidden.flatten() }
+impl Answered {
+    /// The query of the lesson on screen.
+    fn of(state: &State) -> Option<Answered> {
+        let LessonRun { lesson, step, guess, .. } = state.lesson.as_ref()?;
+        let (radar, scene) = (state.radar().clone(), state.editor.scene().into());
+        Some(Answered { lesson: lesson.into(), step: *step, guess: *guess, radar, scene })
+    }
+
+    fn is_of(&self, run: &LessonRun) -> bool {
+        Arc::ptr_eq(&run.lesson, &self.lesson) && run.step == self.step && run.guess == self.guess
+    }
+}
+
+impl Query for Answered {
+    type Value = Outcome;
+    type State = ();
+    const THREAD: &'static str = "lessons";
+    const WHAT: &'static str = "Judging the answer";
+    const ADVICE: &'static str = "Change it to try again.";
+
+    fn compute(&self, (): &mut (), _: &Task) -> Result<Outcome, Failure> {
+        let Some(step) = self.lesson.steps.get(self.step) else { return Ok(Outcome::default()) };
+        let judgement = self.guess.zip(step.predict.as_ref()).map(|(guess, question)| {
+            let stage = Stage::new(&step.radar, &step.scene(), &step.view, question.needs_output());
+            stage.map_err(|e| e.to_string()).and_then(|stage| question.judge(&stage, guess))
+        });
+        let (measured, hidden) = challenge(step, self).unzip();
+        Ok(Outcome { judgement, measured, hidden: hidden.flatten() })
+    }
 }
 
 type Challenged = (Result<Vec<Measured>, String>, Option<Arc<ColorImage>>);
 
 /// The challenge measured on the learner's scene, and a picture of the hidden scene.
-fn challenge(step: &Step, request: &Request) -> Option<Challenged> {
+fn challenge(step: &Step, request: &Answered) -> Option<Challenged> {
     let challenge = step.challenge.as_ref()?;
     let hidden = challenge
         .hidden_scene()
@@ -62,24 +84,17 @@ fn shrunk(radar: &Radar, map: &RangeAngleMap) -> Arc<ColorImage> {
     picture(radar.left_to_right(&map.lambda).slice(ndarray::s![..;-2, ..;2]), ColourMap::default())
 }
 
-/// The worker of judgements, its last request, the hidden scene's picture, and lesson files being read.
+/// Judgements, and lesson files being read.
 pub struct Lessons {
-    worker: Worker<Request, (Request, Outcome)>,
+    judged: Derived<Answered>,
     /// Lesson files being tried out: each ends in a command that begins the lesson, or in the reason why it can't begin.
     pub opened: Background<Result<LessonCommand, String>>,
-    asked: Option<Request>,
-    hidden: Option<Arc<ColorImage>>,
 }
 
 impl Lessons {
     /// Starts the worker, idle at first; `wake` draws another frame.
     pub fn start(wake: &Context) -> Lessons {
-        let work = |_: &mut (), request: Request, _: &Task| {
-            let outcome = work(&request);
-            (request, outcome)
-        };
-        let worker = Worker::spawn("lessons", || (), work, platform::waker(wake));
-        Lessons { worker, opened: Background::new(wake.clone()), asked: None, hidden: None }
+        Lessons { judged: Derived::start(platform::waker(wake)), opened: Background::new(wake.clone()) }
     }
 
     /// Reads a lesson file and tries its steps out; [`Lessons::opened`] has the result.
@@ -96,56 +111,32 @@ impl Lessons {
 
     /// Asks for judgement and measurement of the lesson on screen, if that changed.
     pub fn ask(&mut self, state: &State) {
-        let Some(run) = &state.lesson else {
-            (self.asked, self.hidden) = (None, None);
-            return;
-        };
-        let request = Request {
-            lesson: (&run.lesson).into(),
-            step: run.step,
-            guess: run.guess,
-            radar: state.radar().clone(),
-            scene: state.editor.scene().into(),
-        };
-        if self.asked.as_ref() != Some(&request) {
-            self.asked = Some(request.clone());
-            self.worker.request(request);
-        }
+        self.judged.ask(Answered::of(state));
     }
 
     /// Picture of the hidden scene, where the step has one.
     pub fn hidden(&self) -> Option<&Arc<ColorImage>> {
-        self.hidden.as_ref()
+        self.judged.value()?.ok()?.hidden.as_ref()
     }
 
     /// Takes in judgements. Returns a message for the user.
     pub fn poll(&mut self, state: &mut State) -> Option<String> {
-        let mut message = None;
-        for reply in self.worker.replies() {
-            match reply {
-                Reply::Done { result: (request, outcome), .. } => {
-                    let Some(run) = state.lesson.as_mut().filter(|run| is_of(run, &request)) else { continue };
-                    self.hidden = outcome.hidden;
-                    if let (None, Some(Ok(judgement))) = (&run.judgement, &outcome.judgement) {
-                        state.progress.note_guess(&run.id, run.step, judgement.is_right);
-                    }
-                    run.judgement = outcome.judgement;
-                    run.measured = outcome.measured;
-                    if run.is_solved() {
-                        state.progress.note_challenge(&run.id, run.step);
-                    }
-                }
-                Reply::Panicked { message: said, .. } => {
-                    message = Some(format!("The answer could not be judged ({said}). Change it to try again."));
-                }
+        let message = self.judged.poll();
+        if let (Some(run), Some((of, Ok(outcome)))) = (&mut state.lesson, self.judged.made())
+            && of.is_of(run)
+            && (&run.judgement, &run.measured) != (&outcome.judgement, &outcome.measured)
+        {
+            if let (None, Some(Ok(judgement))) = (&run.judgement, &outcome.judgement) {
+                state.progress.note_guess(&run.id, run.step, judgement.is_right);
+            }
+            run.judgement.clone_from(&outcome.judgement);
+            run.measured.clone_from(&outcome.measured);
+            if run.is_solved() {
+                state.progress.note_challenge(&run.id, run.step);
             }
         }
         message
     }
-}
-
-fn is_of(run: &LessonRun, request: &Request) -> bool {
-    Arc::ptr_eq(&run.lesson, &request.lesson) && run.step == request.step && run.guess == request.guess
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The worker of the maps on screen, its last request and its last result.
 
-use super::rest::{Motion, Rest};
+use super::rest::Rest;
 use super::scene_maps::{MapsRequest, MapsResult, MapsState};
 use crate::engine::EngineStage;
 use crate::platform::Instant;
@@ -20,14 +20,16 @@ pub struct MapsJob {
     gave_up: bool,
     asked: Option<MapsRequest>,
     rest: Rest,
-    motion: Motion,
+    /// Time until the scene on screen rests; `None` where it rests, or an object is held.
+    pub rests_in: Option<Duration>,
     /// Time of the first request without an answer.
-    waiting: Option<Instant>,
+    pub waiting: Option<Instant>,
     result: Option<MapsResult>,
     /// Time of the last maps that followed a change.
-    took: Option<Duration>,
+    pub took: Option<Duration>,
     scene_error: Option<String>,
-    requests: u64,
+    /// Requests sent to the worker.
+    pub requests: u64,
 }
 
 impl MapsJob {
@@ -41,7 +43,7 @@ impl MapsJob {
             gave_up: false,
             asked: None,
             rest: Rest::default(),
-            motion: Motion::default(),
+            rests_in: None,
             waiting: None,
             result: None,
             took: None,
@@ -95,10 +97,11 @@ impl MapsJob {
 
     /// Asks for maps, unless the last request was the same; at rest if the scene rests. `held` while an object is dragged.
     pub fn ask(&mut self, mut request: MapsRequest, held: bool) {
-        self.motion = self.rest.look(&request.source, held, Instant::now());
+        let rests_in = self.rest.look(&request.source, held, Instant::now());
+        self.rests_in = rests_in.filter(|left| !left.is_zero());
         // Maps that follow a drag come first: those at rest may take long, and would replace a waiting request.
         let follows = self.result.as_ref().is_some_and(|r| r.request.source == request.source);
-        request.at_rest = self.motion == Motion::AtRest && follows;
+        request.at_rest = rests_in == Some(Duration::ZERO) && follows;
         if self.asked.as_ref() != Some(&request) {
             self.requests += 1;
             if self.asked.as_ref().is_some_and(|a| a.source != request.source) {
@@ -132,22 +135,9 @@ impl MapsJob {
         self.scene_error.as_deref()
     }
 
-    /// Requests sent to the worker.
-    pub fn requests(&self) -> u64 {
-        self.requests
-    }
-
     /// Whether the worker is busy, or will be as soon as the scene rests.
     pub fn is_busy(&self) -> bool {
-        self.worker.is_busy() || self.rests_in().is_some()
-    }
-
-    /// Time until the scene on screen rests; `None` where it rests, or an object is held.
-    pub fn rests_in(&self) -> Option<Duration> {
-        match self.motion {
-            Motion::RestsIn(left) => Some(left),
-            Motion::Held | Motion::AtRest => None,
-        }
+        self.worker.is_busy() || self.rests_in.is_some()
     }
 
     /// Whether the maps are those of the scene on screen at rest.
@@ -161,18 +151,8 @@ impl MapsJob {
         self.worker.is_busy() && self.asked.as_ref().is_some_and(|asked| asked.at_rest) && !self.is_settled()
     }
 
-    /// Time of the last maps and pictures that followed a change.
-    pub fn took(&self) -> Option<Duration> {
-        self.took
-    }
-
     /// Whether the last request was for the samples of the ends.
     pub fn wants_ends(&self) -> bool {
         self.asked.as_ref().is_some_and(|asked| asked.wanted.ends)
-    }
-
-    /// Time of the first request without an answer.
-    pub fn waiting(&self) -> Option<Instant> {
-        self.waiting
     }
 }

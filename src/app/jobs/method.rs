@@ -1,9 +1,10 @@
 //! One method at work on the scene on screen: its last request and its last output, or the reason why it has none.
 
 use super::memo::Memo;
-use super::scene_maps::{MapsRequest, MapsResult, Pair};
+use super::scene_maps::{MapsRequest, MapsResult, Origin, Pair};
 use super::source::Source;
 use crate::app::shared::Shared;
+use crate::app::state::MethodTimes;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::platform::{self, Instant};
 use crate::radar::Radar;
@@ -17,6 +18,9 @@ use std::time::Duration;
 
 /// Longest time of a reconstruction of a scene that has moved on; a slower one is cancelled. During a drag the last one finishes, so that the user sees it.
 const PATIENCE: Duration = Duration::from_millis(400);
+
+/// Most origins kept of those on screen since the output on screen; an output older than them is marked anyway.
+const MAX_ORIGINS: usize = 64;
 
 /// The inputs of a method.
 #[derive(Clone, PartialEq)]
@@ -59,16 +63,12 @@ impl Basis {
 /// A request for a method's output.
 #[derive(Clone)]
 pub struct MethodRequest {
-    /// Id of the document.
     pub document: u64,
-    /// The source of the samples.
-    pub source: Source,
-    /// The method's inputs.
+    pub origin: Origin,
     pub basis: Basis,
     /// The target map; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
     pub method: Shared<dyn Reconstructor>,
-    /// Whether the detections are wanted as a list.
     pub listed: bool,
     /// Whether the scene rests. The answer is then that of a method without a memory.
     pub at_rest: bool,
@@ -88,26 +88,24 @@ impl MethodRequest {
 /// The output of a method.
 #[derive(Clone)]
 pub struct MethodResult {
-    /// Name of the method.
-    pub method: &'static str,
-    /// Id of the samples' document.
     pub document: u64,
-    /// The output map and its target.
     pub pair: Pair,
     /// The threshold that the method derived from the samples, if it did.
     pub eta: Option<f32>,
     /// Detections, the strongest first, where a list was requested.
     pub found: Option<Vec<Detection>>,
-    /// Places of the found reflectors.
     pub reflectors: Vec<Reflector>,
-    /// The method's attempts in order.
     pub attempts: Vec<Attempt>,
-    /// Time of the reconstruction.
     pub took: Duration,
     basis: Basis,
 }
 
 impl MethodResult {
+    /// Name of the method.
+    pub fn method(&self) -> &'static str {
+        self.pair.origin.method
+    }
+
     /// The radar of the samples.
     pub fn radar(&self) -> &Radar {
         &self.basis.radar
@@ -117,9 +115,7 @@ impl MethodResult {
 /// A method's failure to give an output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// Name of the method.
     pub method: &'static str,
-    /// Reason of the failure.
     pub reason: String,
 }
 
@@ -137,10 +133,6 @@ struct MethodWorker {
 }
 
 impl MethodWorker {
-    fn new(thread: &'static str) -> MethodWorker {
-        MethodWorker { threads: platform::pool(thread), follower: Memo::default() }
-    }
-
     fn work(&mut self, q: MethodRequest, task: &Task) -> MethodReply {
         let follower = self.follower.of(q.method.clone(), |method| method.following());
         let method = follower.as_deref().unwrap_or(&**q.method);
@@ -156,30 +148,36 @@ impl MethodWorker {
 pub struct MethodJob {
     worker: Worker<MethodRequest, MethodReply>,
     asked: Option<MethodRequest>,
-    /// Time since which the output belongs to other samples or another method than requested.
+    /// Origins wanted by the frames since the output on screen became old, the oldest first, with the times at which they came on screen; none where no panel
+    /// of the last frame drew the output.
+    wanted: Vec<(Origin, Instant)>,
+    /// Time since which the output or its picture belongs to another origin than the one wanted.
     outdated: Option<Instant>,
-    /// Whether a panel of the last frame drew the output.
-    was_drawn: bool,
     output: Option<MethodResult>,
     refusal: Option<Refusal>,
-    /// Radar, method and duration of an answer whose time was not yet taken.
-    time: Option<(Radar, &'static str, Duration)>,
 }
 
 impl MethodJob {
     /// Starts the worker's `thread`; `wake` is called from it when there is an output to show.
     pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> MethodJob {
         let work = |kept: &mut MethodWorker, q: MethodRequest, task: &Task| kept.work(q, task);
-        let worker = Worker::spawn(thread, move || MethodWorker::new(thread), work, wake);
-        MethodJob { worker, asked: None, outdated: None, was_drawn: false, output: None, refusal: None, time: None }
+        let start = move || MethodWorker { threads: platform::pool(thread), follower: Memo::default() };
+        let worker = Worker::spawn(thread, start, work, wake);
+        let wanted = Vec::new();
+        MethodJob { worker, asked: None, wanted, outdated: None, output: None, refusal: None }
     }
 
-    /// Takes in the worker's answers. Answers to the `latest` maps get their document, source and target. Returns messages for the user.
-    pub fn poll(&mut self, latest: Option<&MapsResult>) -> Vec<String> {
+    /// Takes in the worker's answers. Answers to the `latest` maps get their document, origin and target. Adds the
+    /// duration of answers from scratch to `times`. Returns messages for the user.
+    pub fn poll(&mut self, latest: Option<&MapsResult>, times: &mut MethodTimes) -> Vec<String> {
         let mut messages = Vec::new();
         for reply in self.worker.replies() {
             match reply {
                 Reply::Done { result: (request, Ok(answer)), elapsed, .. } => {
+                    // A method with a memory is faster than from scratch; users choose methods by the time from scratch.
+                    if request.at_rest || request.method.following().is_none() {
+                        times.record(&request.basis.radar, request.method.name(), elapsed);
+                    }
                     self.take_in(request, answer, elapsed, latest);
                 }
                 // Cancelled by the user, or because the scene moved on and the next request waits.
@@ -206,11 +204,7 @@ impl MethodJob {
         took: Duration,
         latest: Option<&MapsResult>,
     ) {
-        let MethodRequest { document, source, basis, target, method, at_rest, .. } = request;
-        // A method with a memory is faster than from scratch; users choose methods by the time from scratch.
-        if at_rest || method.following().is_none() {
-            self.time = Some((basis.radar.clone(), method.name(), took));
-        }
+        let MethodRequest { document, origin, basis, target, method, .. } = request;
         let Reconstruction { lambda, mut reflectors, eta, doubt, trace: attempts, .. } = answer;
         if reflectors.is_empty() {
             reflectors = found.iter().flatten().map(Detection::reflector).collect();
@@ -218,14 +212,13 @@ impl MethodJob {
         let latest = latest.filter(|r| Basis::of(r).is_some_and(|latest| latest == basis));
         let document = latest.map_or(document, |r| r.request.document);
         let pair = Pair {
-            source: latest.map_or(source, |r| r.request.source.clone()),
+            origin: latest.map_or(origin, |r| r.request.origin(method.name())),
             target: latest.and_then(MapsResult::target).or(target),
             output: Shared::new(lambda),
             doubt: doubt.map(Shared::new),
         };
         self.refusal = None;
-        let method = method.name();
-        self.output = Some(MethodResult { method, document, pair, eta, found, reflectors, attempts, took, basis });
+        self.output = Some(MethodResult { document, pair, eta, found, reflectors, attempts, took, basis });
     }
 
     /// Records a failure and drops the last output, which is not of this scene.
@@ -234,36 +227,44 @@ impl MethodJob {
         self.refusal = Some(Refusal { method, reason });
     }
 
-    /// Radar, method and duration of the latest answer from scratch; returned once.
-    pub fn take_time(&mut self) -> Option<(Radar, &'static str, Duration)> {
-        self.time.take()
-    }
-
-    /// Gives the output the document, source and target of new maps, where they are of the same samples, as when a scene comes to rest.
+    /// Gives the output the document, origin and target of new maps, where they are of the same samples, as when a scene comes to rest.
     pub fn aim(&mut self, maps: &MapsResult) {
         if let Some(output) = &mut self.output
             && Basis::of(maps).is_some_and(|basis| basis == output.basis)
         {
             output.document = maps.request.document;
-            output.pair.source.clone_from(&maps.request.source);
+            output.pair.origin = maps.request.origin(output.method());
             output.pair.target = maps.target().or(output.pair.target.take());
         }
     }
 
-    /// Notes whether a panel of this frame draws the output. An output that became old out of sight is dropped, since its age is unknown.
-    pub fn look(&mut self, is_drawn: bool, source: &Source, method: Option<&str>) {
-        let is_current = |o: &MethodResult| o.pair.source == *source && Some(o.method) == method;
-        if is_drawn && !self.was_drawn && !self.output.as_ref().is_none_or(is_current) {
+    /// Notes the origin of the output that panels of this frame want to draw, `None` where none does, and decides how old is what they draw: the output, and
+    /// the pictures and figures of it or of one before it, `pictured`. The age goes on from the change of the scene until its pictures are there, however long
+    /// maps, output and pictures take one after another. An output that became old out of sight is dropped, since its age is unknown.
+    pub fn look(&mut self, wanted: Option<Origin>, pictured: Option<&Pair>) {
+        let Some(wanted) = wanted else {
+            (self.wanted, self.outdated) = (Vec::new(), None);
+            return;
+        };
+        if self.wanted.is_empty() && self.output.as_ref().is_some_and(|o| o.pair.origin != wanted) {
             (self.output, self.asked) = (None, None);
         }
-        self.was_drawn = is_drawn;
+        if self.wanted.last().is_none_or(|(last, _)| *last != wanted) {
+            self.wanted.push((wanted, Instant::now()));
+        }
+        // Both are old since the origin after theirs, or since the first one where theirs was never seen.
+        let after = |pair: &Pair| self.wanted.iter().rposition(|(of, _)| *of == pair.origin).map_or(0, |at| at + 1);
+        let drawn = [pictured, self.output.as_ref().map(|output| &output.pair)];
+        let next = drawn.into_iter().flatten().map(after).min().unwrap_or(self.wanted.len());
+        self.outdated = self.wanted.get(next).map(|(_, since)| *since);
+        self.wanted.drain(..next.saturating_sub(1));
+        if self.wanted.len() > MAX_ORIGINS {
+            self.wanted.remove(2);
+        }
     }
 
     /// Asks for an output, unless the last request serves; `held` while an object is dragged.
     pub fn ask(&mut self, request: MethodRequest, held: bool) {
-        let current =
-            self.output.as_ref().is_none_or(|o| o.method == request.method.name() && o.basis == request.basis);
-        self.outdated = if current { None } else { self.outdated.or_else(|| Some(Instant::now())) };
         if !self.asked.as_ref().is_some_and(|a| a.serves(&request)) {
             if !held {
                 self.worker.cancel_older_than(PATIENCE);
@@ -312,11 +313,11 @@ impl MethodJob {
     /// Name of the method of the shown output, where it is of the samples on screen and another method works on them.
     pub fn of_another_method(&self) -> Option<&'static str> {
         let (output, asked) = (self.output.as_ref()?, self.asked.as_ref()?);
-        let is_only_method = output.basis == asked.basis && output.method != asked.method.name();
-        (is_only_method && self.is_busy()).then_some(output.method)
+        let is_only_method = output.basis == asked.basis && output.method() != asked.method.name();
+        (is_only_method && self.is_busy()).then_some(output.method())
     }
 
-    /// Time since which the output belongs to other samples or another method than requested, if it does.
+    /// Time since which the output or its picture belongs to other samples or another method than those on screen, if it does.
     pub fn outdated(&self) -> Option<Instant> {
         self.outdated
     }
@@ -329,4 +330,36 @@ fn reconstruct(q: &MethodRequest, method: &dyn Reconstructor, task: &Task) -> Re
     let list = || find(method, radar, ends, &request, &answer);
     let found = q.listed.then(list).transpose()?;
     Ok((answer, found))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::maps::Normalisation;
+    use crate::scene::Scene;
+    use crate::signal::Floor;
+
+    #[test]
+    fn a_picture_is_old_since_the_change_after_its_scene() {
+        let origins: Vec<Origin> = [1.0, 2.0, 3.0]
+            .map(|y| {
+                let scene = Shared::new(Scene::of_points([(0.0, y)]));
+                let source = Source { radar: Radar::default(), scene, recording: None, floor: Floor::Thesis };
+                Origin { source, normalisation: Normalisation::MinMax, layout: None, method: "stub" }
+            })
+            .into();
+        let output = Shared::new(RangeAngleMap { lambda: Default::default() });
+        let mut job = MethodJob::start("old pictures", || ());
+        let mut since = |wanted: usize, pictured: usize| {
+            let pair = Pair { origin: origins[pictured].clone(), target: None, output: output.clone(), doubt: None };
+            job.look(Some(origins[wanted].clone()), Some(&pair));
+            job.outdated()
+        };
+        assert_eq!(since(0, 0), None);
+        let first = since(1, 0).unwrap();
+        std::thread::sleep(Duration::from_millis(2));
+        assert_eq!([since(1, 0), since(2, 0)], [Some(first); 2], "further changes make it no younger");
+        assert!(since(2, 1).unwrap() > first, "the next picture is old since a later change");
+        assert_eq!(since(2, 2), None);
+    }
 }

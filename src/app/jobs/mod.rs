@@ -36,8 +36,7 @@ mod theory;
 mod thresholds;
 mod training;
 
-#[cfg(test)]
-pub use bounds::bounds_of;
+use background::Background;
 pub use bounds::{BoundsRequest, BoundsResult};
 pub use calibration::Calibrated;
 pub use calibration::CalibrationQuery;
@@ -82,17 +81,12 @@ const BAR: Duration = Duration::from_millis(100);
 
 /// All work of the app.
 pub struct Jobs {
-    /// Maps, pictures and outputs.
     pub pipeline: Pipeline,
     /// Searches for thresholds at a given rate of false alarms.
     pub thresholds: RowJob<ThresholdPlan>,
-    /// Methods tried on many scenes, row by row.
     pub failures: Failures,
-    /// Run time against error.
     pub run_time: RowJob<RunTimePlan>,
-    /// The training log that is followed, if any.
     pub training: Option<Watched>,
-    /// One map for several values of a parameter.
     pub several: SeveralMaps,
     /// The fate of every object in the outputs.
     pub kinds: Derived<KindsQuery>,
@@ -100,16 +94,13 @@ pub struct Jobs {
     pub theory: Derived<TheoryRequest>,
     /// Predictions and challenges being judged.
     pub lessons: Lessons,
-    /// Exports being written.
     pub exports: Exports,
     /// The capture card that is listened to.
     pub listening: Listening,
-    /// File dialogs.
     pub dialogs: Dialogs,
     /// The autosave of unsaved scenes, if there is a folder for it.
     pub autosave: Option<Autosave>,
     wake: Context,
-    /// The app's folder, if it has one.
     folder: Option<PathBuf>,
 }
 
@@ -130,7 +121,7 @@ impl Jobs {
             kinds: Derived::start(wake.clone()),
             theory: Derived::start(wake),
             lessons: Lessons::start(ctx),
-            exports: Exports::new(ctx.clone()),
+            exports: Exports(Background::new(ctx.clone())),
             listening: Listening::new(ctx.clone()),
             dialogs,
             autosave: folder.map(Autosave::claim).transpose()?,
@@ -142,7 +133,7 @@ impl Jobs {
     /// Takes in work finished since the last frame. Returns the commands of chosen files, lessons, frames, thresholds and searches.
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = platform::problems();
-        errors.extend(self.pipeline.poll());
+        errors.extend(self.pipeline.poll(&mut state.method_times));
         errors.extend(self.kinds.poll());
         errors.extend(self.theory.poll());
         errors.extend(self.failures.poll());
@@ -150,7 +141,6 @@ impl Jobs {
         errors.extend(failed);
         errors.extend(self.thresholds.poll());
         errors.extend(self.run_time.poll());
-        self.pipeline.record_times(&mut state.method_times);
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
         let mut chosen = self.chosen(state);
@@ -158,7 +148,7 @@ impl Jobs {
             opened.map_or_else(|error| errors.push(error), |lesson| chosen.push(lesson.into()));
         }
         errors.into_iter().for_each(|e| state.notices.error(e));
-        for export in self.exports.finished() {
+        for export in self.exports.0.finished() {
             tell(state, export.message());
         }
         let (frame, failed) = self.listening.poll();
@@ -187,7 +177,7 @@ impl Jobs {
         }
         self.kinds.ask(KindsQuery::of(state, &self.pipeline));
         self.theory.ask(TheoryRequest::of(state));
-        if let Some(later) = self.pipeline.maps.rests_in() {
+        if let Some(later) = self.pipeline.maps.rests_in {
             self.wake.request_repaint_after(later);
         }
         if self.pipeline.is_busy() {

@@ -10,9 +10,7 @@ use std::collections::BTreeMap;
 /// A map on a scale shared with others.
 #[derive(Clone)]
 pub struct Rescaled {
-    /// The map on the common scale.
     pub map: Shared<RangeAngleMap>,
-    /// The common scale.
     pub scale: LambdaScale,
 }
 

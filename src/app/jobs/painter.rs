@@ -20,7 +20,6 @@ pub struct Picture {
     pub image: Arc<ColorImage>,
     /// End of the scale: 1, except for differences and doubt.
     pub end: f32,
-    /// Coordinates of the picture.
     pub projection: Projection,
     /// Sentence for screen readers.
     pub sentence: Arc<str>,

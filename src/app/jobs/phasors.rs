@@ -35,13 +35,10 @@ impl PhasorsQuery {
 
 /// Chains of phasors of one cell.
 pub struct PhasorsResult {
-    /// Range bin and column.
     pub cell: [usize; 2],
-    /// Contributions of the elements.
     pub measured: Chain,
     /// The contributions without the curvature of a wave from the cell's place.
     pub focused: Option<Chain>,
-    /// Contributions of the echoes alone.
     pub echoes: Option<Chain>,
     /// Contributions left after subtracting the found reflectors.
     pub residual: Option<Chain>,
@@ -69,10 +66,7 @@ impl Query for PhasorsQuery {
             false => None,
         };
         let echoes = if settings.echoes && source.recording.is_none() { Some(exact(&source.scene)?) } else { None };
-        let residual = match settings.residual {
-            true => Some(less(&measured, &exact(&scene_of(found))?)),
-            false => None,
-        };
+        let residual = if settings.residual { Some(less(&measured, &exact(&scene_of(found))?)) } else { None };
         Ok(PhasorsResult { cell: *cell, measured, focused, echoes, residual })
     }
 }

@@ -12,11 +12,11 @@ use super::derived::STALE;
 use super::maps::MapsJob;
 use super::method::{Basis, MethodJob, MethodRequest, MethodResult};
 use super::recorded::Unexplained;
-use super::scene_maps::{MapsRequest, MapsResult, Scores, Truth};
+use super::scene_maps::{MapsRequest, MapsResult, Origin, Scores, Truth};
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, State};
-use crate::engine::MapRequest;
+use crate::engine::{EngineFrame, MapRequest};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 use crate::maps::cfar::DETECTED;
@@ -27,7 +27,6 @@ use std::sync::Arc;
 
 /// The workers of maps and methods.
 pub struct Pipeline {
-    /// The maps of the scene on screen.
     pub maps: MapsJob,
     /// The first method and the second.
     methods: [MethodJob; 2],
@@ -44,27 +43,18 @@ impl Pipeline {
     /// The threshold of either method's output: the user's, else the one derived for the output on screen, else the method's own.
     pub fn eta(&self, state: &State, slot: MethodSlot) -> f32 {
         let method = state.method_in(slot).map(|method| method.name());
-        let output = self.method(slot).output().filter(|output| Some(output.method) == method);
+        let output = self.method(slot).output().filter(|output| Some(output.method()) == method);
         state.eta_in(slot, output.and_then(|output| output.eta))
     }
 
-    /// Takes in the workers' results since the last frame. Returns messages for the user.
-    pub fn poll(&mut self) -> Vec<String> {
+    /// Takes in the workers' results since the last frame, and the methods' durations in `times`. Returns messages for the user.
+    pub fn poll(&mut self, times: &mut MethodTimes) -> Vec<String> {
         let Pipeline { maps, methods } = self;
         let mut messages = maps.poll(|maps| methods.iter_mut().for_each(|method| method.aim(maps)));
         for method in methods {
-            messages.extend(method.poll(maps.result()));
+            messages.extend(method.poll(maps.result(), times));
         }
         messages
-    }
-
-    /// Adds the methods' durations since the last frame to `times`.
-    pub fn record_times(&mut self, times: &mut MethodTimes) {
-        for method in &mut self.methods {
-            if let Some((radar, name, took)) = method.take_time() {
-                times.record(&radar, name, took);
-            }
-        }
     }
 
     /// Asks the workers for the values that this frame's panels need, if they changed.
@@ -74,8 +64,14 @@ impl Pipeline {
         let read = [drawn || wants.output, wants.second];
         let source = Source::of(state);
         for slot in MethodSlot::BOTH {
-            let method = state.method_in(slot).map(|method| method.name());
-            self.methods[slot as usize].look(read[slot as usize], &source, method);
+            let wanted = state.method_in(slot).filter(|_| read[slot as usize]).map(|method| Origin {
+                source: source.clone(),
+                normalisation: state.settings.normalisation,
+                layout: state.settings.heard(state.radar()),
+                method: method.name(),
+            });
+            let pictured = self.maps.result().and_then(|maps| maps.request.pairs[slot as usize].as_ref());
+            self.methods[slot as usize].look(wanted, pictured);
         }
         let request = self.maps_request(state, source, (pictures, read), wants);
         let is_recorded = request.source.recording.is_some();
@@ -148,16 +144,13 @@ impl Pipeline {
     /// Asks for a method's output of the latest maps, unless the last request serves.
     fn ask_method(&mut self, state: &State, slot: MethodSlot, listed: bool) {
         let latest = self.maps.result().and_then(|r| {
-            let (target, about) = (r.target(), (r.request.at_rest, r.request.document, r.request.source.clone()));
+            let target = r.target();
             // A recording of the two ends has no target; a scene has one as soon as it is wanted.
-            (target.is_some() || r.request.source.recording.is_some()).then_some((Basis::of(r)?, target, about))
+            (target.is_some() || r.request.source.recording.is_some()).then_some((Basis::of(r)?, target, &r.request))
         });
-        let Some(((basis, target, (at_rest, document, source)), method)) =
-            latest.zip(state.method_in(slot).map(Shared::from))
-        else {
-            return;
-        };
-        let request = MethodRequest { document, source, basis, target, method, listed, at_rest };
+        let Some(((basis, target, maps), method)) = latest.zip(state.method_in(slot).map(Shared::from)) else { return };
+        let (document, at_rest, origin) = (maps.document, maps.at_rest, maps.origin(method.name()));
+        let request = MethodRequest { document, origin, basis, target, method, listed, at_rest };
         self.methods[slot as usize].ask(request, state.editor.dragged().is_some());
     }
 
@@ -211,15 +204,13 @@ impl Pipeline {
 
     /// The maps available for cuts.
     pub fn cut_maps(&self) -> Vec<CutMap> {
-        let frame = self.maps.result().map(|r| &r.frame);
-        let scale = frame.and_then(|f| f.full.as_ref()).map(|m| m.scale);
-        let ready = [
-            (MapKind::Input0, frame.and_then(|f| f.first.as_ref())),
-            (MapKind::Input1, frame.and_then(|f| f.last.as_ref())),
-            (MapKind::Target, frame.and_then(|f| f.full.as_ref())),
-        ];
+        let Some(MapsResult { frame: EngineFrame { first, last, full, .. }, .. }) = self.maps.result() else {
+            return Vec::new();
+        };
+        let scale = full.as_ref().map(|map| map.scale);
+        let ready = [(MapKind::Input0, first), (MapKind::Input1, last), (MapKind::Target, full)];
         let ready = ready.into_iter().filter_map(|(kind, map)| {
-            let map = map?;
+            let map = map.as_ref()?;
             Some(CutMap { kind, map: map.lambda.clone(), scale: Some(map.scale) })
         });
         // A method aims for the target's Lambda, so its decibels are the target's.
@@ -236,11 +227,6 @@ impl Pipeline {
     /// The part of the recording that the reflectors on screen leave unexplained, where its map is in sight.
     pub fn unexplained(&self) -> Option<&Unexplained> {
         self.maps.result()?.unexplained.as_ref()?.as_ref().ok()
-    }
-
-    /// The reason why the reflectors can't be fitted to the recording.
-    pub fn why_unexplained(&self) -> Option<&str> {
-        self.maps.result()?.unexplained.as_ref()?.as_ref().err().map(String::as_str)
     }
 
     /// Figures of either method's output against the target of the same scene.
@@ -262,7 +248,7 @@ impl Pipeline {
     /// Whether a map has belonged to an earlier scene for so long that it must be marked.
     pub fn is_stale(&self, kind: MapKind) -> bool {
         let old = |since: Option<Instant>| since.is_some_and(|t| t.elapsed() > STALE);
-        old(self.maps.waiting()) || kind.slot().is_some_and(|slot| old(self.method(slot).outdated()))
+        old(self.maps.waiting) || kind.slot().is_some_and(|slot| old(self.method(slot).outdated()))
     }
 }
 
@@ -271,13 +257,9 @@ impl Pipeline {
 pub struct Wants {
     /// The numbers of every map.
     pub every_map: bool,
-    /// The first method's output.
     pub output: bool,
-    /// The second method's output.
     pub second: bool,
-    /// The list of detections.
     pub listed: bool,
-    /// The ROC.
     pub roc: bool,
 }
 

@@ -9,45 +9,20 @@ const QUIET: Duration = Duration::from_millis(100);
 
 /// The last source on screen and the time of its last change.
 #[derive(Default)]
-pub struct Rest {
-    last: Option<Still>,
-}
-
-struct Still {
-    source: Source,
-    since: Instant,
-}
-
-/// State of motion of the scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Motion {
-    /// An object is held.
-    #[default]
-    Held,
-    /// The scene rests after this time without a change.
-    RestsIn(Duration),
-    /// The scene rests.
-    AtRest,
-}
+pub struct Rest(Option<(Source, Instant)>);
 
 impl Rest {
-    /// Compares `source` with the last one at `now`; `held` while an object is dragged.
-    pub fn look(&mut self, source: &Source, held: bool, now: Instant) -> Motion {
+    /// Time until the scene rests, zero once it does: `source` is compared with the last one at `now`. `None` while an object is `held`.
+    pub fn look(&mut self, source: &Source, held: bool, now: Instant) -> Option<Duration> {
         if held {
-            self.last = None;
-            return Motion::Held;
+            self.0 = None;
+            return None;
         }
-        let since = match &self.last {
-            Some(still) if still.source == *source => still.since,
-            _ => {
-                self.last = Some(Still { source: source.clone(), since: now });
-                now
-            }
+        let (_, since) = match self.0.take() {
+            Some(still) if still.0 == *source => self.0.insert(still),
+            _ => self.0.insert((source.clone(), now)),
         };
-        match QUIET.checked_sub(now.saturating_duration_since(since)) {
-            Some(left) if !left.is_zero() => Motion::RestsIn(left),
-            _ => Motion::AtRest,
-        }
+        Some(QUIET.saturating_sub(now.saturating_duration_since(*since)))
     }
 }
 
@@ -60,7 +35,7 @@ mod tests {
     use crate::signal::Floor;
 
     /// A look at one of two scenes, a duration after the first look.
-    fn looks() -> impl FnMut(usize, Floor, bool, Duration) -> Motion {
+    fn looks() -> impl FnMut(usize, Floor, bool, Duration) -> Option<Duration> {
         let scenes = [Scene::default(), Scene::default()].map(Shared::new);
         let (mut rest, start) = (Rest::default(), Instant::now());
         move |scene, floor, held, after| {
@@ -76,13 +51,13 @@ mod tests {
     #[test]
     fn a_scene_rests_a_moment_after_its_last_change_or_hold() {
         let mut look = looks();
-        assert_eq!(look(0, Floor::Thesis, false, at(0)), Motion::RestsIn(QUIET));
-        assert_eq!(look(0, Floor::Thesis, false, at(40)), Motion::RestsIn(at(60)));
-        assert_eq!(look(0, Floor::Thesis, false, at(100)), Motion::AtRest);
-        assert_eq!(look(1, Floor::Thesis, false, at(101)), Motion::RestsIn(QUIET), "another scene");
-        assert_eq!(look(1, Floor::Exact, false, at(150)), Motion::RestsIn(QUIET), "another floor");
-        assert_eq!(look(1, Floor::Exact, false, at(250)), Motion::AtRest);
-        assert_eq!(look(1, Floor::Exact, true, at(900)), Motion::Held);
-        assert_eq!(look(1, Floor::Exact, false, at(901)), Motion::RestsIn(QUIET), "let go just now");
+        assert_eq!(look(0, Floor::Thesis, false, at(0)), Some(QUIET));
+        assert_eq!(look(0, Floor::Thesis, false, at(40)), Some(at(60)));
+        assert_eq!(look(0, Floor::Thesis, false, at(100)), Some(at(0)));
+        assert_eq!(look(1, Floor::Thesis, false, at(101)), Some(QUIET), "another scene");
+        assert_eq!(look(1, Floor::Exact, false, at(150)), Some(QUIET), "another floor");
+        assert_eq!(look(1, Floor::Exact, false, at(250)), Some(at(0)));
+        assert_eq!(look(1, Floor::Exact, true, at(900)), None);
+        assert_eq!(look(1, Floor::Exact, false, at(901)), Some(QUIET), "let go just now");
     }
 }

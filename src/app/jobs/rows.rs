@@ -1,18 +1,10 @@
 //! Long work on a thread of its own that finds one row after another. It can be cancelled, and its rows stay.
 
+use super::derived::Failure;
 use crate::platform;
 use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-
-/// The reason why work ended early.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Stopped {
-    /// The user cancelled it.
-    Cancelled,
-    /// It failed, for this reason.
-    Failed(String),
-}
 
 /// The way for running work to report rows and progress.
 pub struct Teller<'a, R> {
@@ -54,7 +46,7 @@ pub trait Plan: Send + Sync + 'static {
     ///
     /// # Errors
     /// The reason why it ended early.
-    fn run(&self, teller: &Teller<'_, Self::Row>) -> Result<Self::End, Stopped>;
+    fn run(&self, teller: &Teller<'_, Self::Row>) -> Result<Self::End, Failure>;
 }
 
 /// A plan and the channel for its rows.
@@ -62,7 +54,7 @@ type Asked<P> = (Arc<P>, Sender<<P as Plan>::Row>);
 
 /// The worker of one kind of plan, and the rows so far.
 pub struct RowJob<P: Plan> {
-    worker: Worker<Asked<P>, Result<P::End, Stopped>>,
+    worker: Worker<Asked<P>, Result<P::End, Failure>>,
     plan: Option<Arc<P>>,
     arriving: Option<Receiver<P::Row>>,
     rows: Vec<P::Row>,
@@ -77,10 +69,11 @@ impl<P: Plan> RowJob<P> {
         let run =
             move |threads: &mut Option<rayon::ThreadPool>, (plan, rows): (Arc<P>, Sender<P::Row>), task: &Task| {
                 let teller = Teller { rows, wake: &each, task };
-                match threads {
+                let end = match threads {
                     Some(threads) => threads.install(|| plan.run(&teller)),
                     None => plan.run(&teller),
-                }
+                }?;
+                if task.is_cancelled() { Err(Failure::Cancelled) } else { Ok(end) }
             };
         // Threads of its own: on shared ones the maps would wait for the work.
         let worker = Worker::spawn(P::THREAD, || platform::pool(P::THREAD), run, wake);
@@ -98,9 +91,16 @@ impl<P: Plan> RowJob<P> {
         self.plan = Some(plan);
     }
 
-    /// The plan of the last run.
+    /// The plan of the last run, unless it was dropped.
     pub fn plan(&self) -> Option<&P> {
         self.plan.as_deref()
+    }
+
+    /// Drops the last run with its rows.
+    pub fn forget(&mut self) {
+        self.cancel();
+        self.rows.clear();
+        (self.plan, self.arriving) = (None, None);
     }
 
     /// Stops soon; finished rows stay.
@@ -139,10 +139,10 @@ impl<P: Plan> RowJob<P> {
         for reply in self.worker.replies() {
             match reply {
                 Reply::Done { result: Ok(end), .. } => self.end = Some(end),
-                Reply::Done { result: Err(Stopped::Cancelled), .. } => {
+                Reply::Done { result: Err(Failure::Cancelled), .. } => {
                     self.note = Some("cancelled; what was finished stays".to_owned());
                 }
-                Reply::Done { result: Err(Stopped::Failed(why)), .. } => self.note = Some(why),
+                Reply::Done { result: Err(Failure::Because(why)), .. } => self.note = Some(why),
                 Reply::Panicked { message, .. } => {
                     self.note = Some(format!("failed: {message}"));
                     panicked = Some(format!("{} failed ({message}). {}", P::WHAT, P::ADVICE));
@@ -172,11 +172,11 @@ mod tests {
         const WHAT: &'static str = "Counting";
         const ADVICE: &'static str = "Try another number.";
 
-        fn run(&self, teller: &Teller<'_, u32>) -> Result<u32, Stopped> {
+        fn run(&self, teller: &Teller<'_, u32>) -> Result<u32, Failure> {
             (0..self.0).for_each(|i| teller.row(i));
             match self.0 {
-                3 => Err(Stopped::Failed("three".to_owned())),
-                4 => Err(Stopped::Cancelled),
+                3 => Err(Failure::Because("three".to_owned())),
+                4 => Err(Failure::Cancelled),
                 5 => panic!("five"),
                 count => Ok(count),
             }

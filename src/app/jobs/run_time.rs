@@ -1,12 +1,12 @@
 //! Run time against error on this machine, measured in the background.
 
-use super::rows::{Plan, Stopped, Teller};
+use super::derived::Failure;
+use super::rows::{Plan, Teller};
 use crate::benchmark::front::{FrontRequest, FrontRow, measure};
 use crate::radar::Radar;
 
 /// A measurement of run times and errors.
 pub struct RunTimePlan {
-    /// Radar of the measured maps.
     pub radar: Radar,
     /// Whether many reflectors and repetitions are measured.
     pub thorough: bool,
@@ -20,14 +20,13 @@ impl Plan for RunTimePlan {
     const WHAT: &'static str = "The measurement";
     const ADVICE: &'static str = "Measure again.";
 
-    fn run(&self, teller: &Teller<'_, FrontRow>) -> Result<f64, Stopped> {
+    fn run(&self, teller: &Teller<'_, FrontRow>) -> Result<f64, Failure> {
         let front = if self.thorough { FrontRequest::full(vec![1, 10, 75, 300], 5) } else { FrontRequest::short() };
         let on_row = |part: f32, row: &FrontRow| {
             teller.part(part);
             teller.row(row.clone());
         };
         let front = measure(&self.radar, &front, on_row, || teller.task.is_cancelled());
-        let front = front.map_err(|e| Stopped::Failed(e.to_string()))?;
-        if teller.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(front.bare_fft_ms) }
+        Ok(front.map_err(|e| e.to_string())?.bare_fft_ms)
     }
 }

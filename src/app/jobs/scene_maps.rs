@@ -13,7 +13,7 @@ use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, EngineFrame, MapRequest, ReadyMap};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
 use crate::maps::cfar::{Cfar, DETECTED};
-use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::maps::{LambdaScale, Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Radar};
 use crate::recording::Recording;
@@ -23,14 +23,23 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
+/// What an output is made of. Equal ones have equal outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Origin {
+    pub source: Source,
+    pub normalisation: Normalisation,
+    /// Numbers of the elements that methods use in place of the two ends.
+    pub layout: Option<Vec<usize>>,
+    pub method: &'static str,
+}
+
 /// An output and its target. Figures always compare such a pair, even where the scene has changed since.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// The source of both maps' samples.
-    pub source: Source,
+    /// What the output is made of; the target is of the same samples.
+    pub origin: Origin,
     /// Map of the whole array; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
-    /// Output of a method from the ends of the same source.
     pub output: Shared<RangeAngleMap>,
     /// The method's expected error of each cell, where it gives one.
     pub doubt: Option<Shared<RangeAngleMap>>,
@@ -39,9 +48,7 @@ pub struct Pair {
 /// A request for maps, pictures and figures.
 #[derive(Clone, PartialEq)]
 pub struct MapsRequest {
-    /// Id of the document.
     pub document: u64,
-    /// The source of the samples.
     pub source: Source,
     /// The wanted maps, floor and normalisation.
     pub wanted: MapRequest,
@@ -49,38 +56,28 @@ pub struct MapsRequest {
     pub layout: Option<Vec<usize>>,
     /// Whether the scene rests. Its maps are then those of the command line, bit for bit.
     pub at_rest: bool,
-    /// Kinds of the maps in sight.
     pub pictures: BTreeSet<MapKind>,
     /// The latest output of either method, if there is one, with its target.
     pub pairs: [Option<Pair>; 2],
-    /// Colour map of Lambda.
     pub colours: ColourMap,
-    /// Coordinates of the pictures.
     pub projection: Projection,
-    /// Whether inputs, target and output are drawn on one scale.
     pub one_scale: bool,
     /// Whether maps of few elements are drawn on more columns.
     pub fine_columns: bool,
-    /// Sign and scale of the difference.
     pub difference: DifferenceView,
-    /// Whether the window is dark.
     pub dark: bool,
-    /// The target's threshold eta'.
     pub target_eta: f32,
-    /// The threshold eta of either method.
     pub etas: [f32; 2],
     /// The detector in place of these thresholds, if one is in use.
     pub cfar: Option<Cfar>,
     /// Whether P_D, P_FA, SE and blobs are wanted.
     pub scores: bool,
-    /// Whether the ROC is wanted.
     pub roc: bool,
 }
 
 /// Figures of an output against its target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scores {
-    /// SE, P_D and P_FA.
     pub metrics: Metrics,
     /// Connected regions of the target above eta'.
     pub target_blobs: usize,
@@ -91,7 +88,6 @@ pub struct Scores {
 /// Maps, pictures and figures of one request.
 #[derive(Clone)]
 pub struct MapsResult {
-    /// The request.
     pub request: MapsRequest,
     /// The engine's maps of the scene, or those of a recording.
     pub frame: EngineFrame,
@@ -99,11 +95,8 @@ pub struct MapsResult {
     pub heard: Option<Shared<LayoutSamples>>,
     /// The unexplained part of a recording, where its map is in sight, or the reason why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
-    /// Detections by a detector, where one is in use.
     pub detected: Detected,
-    /// The maps on a common scale, where they are drawn so.
     pub on_one_scale: BTreeMap<MapKind, Rescaled>,
-    /// The pictures in sight.
     pub pictures: BTreeMap<MapKind, Picture>,
     /// Figures of the requested pairs.
     pub scores: [Option<Scores>; 2],
@@ -111,20 +104,25 @@ pub struct MapsResult {
     pub roc: Option<Arc<Vec<RocPoint>>>,
     /// Pictures painted since the start.
     pub painted: u64,
-    /// Time of the whole request.
     pub took: Duration,
 }
 
 /// The reference that outputs are judged by.
 #[derive(Clone, PartialEq)]
 pub struct Truth {
-    /// The source of the samples.
     pub source: Source,
     /// Numbers of the elements that methods use in place of the two ends.
     pub layout: Option<Vec<usize>>,
-    /// Map of all elements.
     pub target: Shared<RangeAngleMap>,
     pub scale: LambdaScale,
+}
+
+impl MapsRequest {
+    /// The origin of an output that `method` makes of these maps' samples.
+    pub fn origin(&self, method: &'static str) -> Origin {
+        let (source, layout) = (self.source.clone(), self.layout.clone());
+        Origin { source, normalisation: self.wanted.normalisation, layout, method }
+    }
 }
 
 impl MapsResult {
@@ -146,7 +144,6 @@ pub struct MapsState {
     painter: Painter,
     one_scale: OneScale,
     detector: Detector,
-    /// Scores of either method's pair.
     scores: [Memo<Scored, Scores>; 2],
     roc: Memo<Pair, Arc<Vec<RocPoint>>>,
 }
@@ -180,18 +177,14 @@ impl MapsState {
         self.painter.keep(|kind| request.pictures.contains(&kind));
         // Objects drawn over a recording tell nothing of its echoes.
         let is_silent = request.source.recording.is_none() && request.source.scene.is_silent();
-        let mut scores = [None, None];
-        for (slot, pair) in request.pairs.iter().enumerate().filter(|_| request.scores) {
-            let Some(pair) = pair else { continue };
+        let scores = [0, 1].map(|slot| {
+            let pair = request.pairs[slot].as_ref().filter(|_| request.scores)?;
             let detected = detected.target.as_ref().zip(detected.outputs[slot].as_ref());
             let of = (pair.clone(), [request.target_eta, request.etas[slot]], request.cfar);
-            let kept = self.scores[slot]
-                .try_of(of, |(pair, etas, cfar)| scored(is_silent, pair, *etas, *cfar, detected).ok_or(()));
-            scores[slot] = kept.ok().copied();
-        }
+            let made = |(pair, etas, cfar): &Scored| scored(is_silent, pair, *etas, *cfar, detected).ok_or(());
+            self.scores[slot].try_of(of, made).ok().copied()
+        });
         let roc = request.pairs[0].as_ref().filter(|_| request.roc).and_then(|pair| self.roc(is_silent, pair));
-        let painted = self.painter.painted;
-        let took = Duration::ZERO;
         Ok(MapsResult {
             request,
             frame,
@@ -202,8 +195,8 @@ impl MapsState {
             pictures,
             scores,
             roc,
-            painted,
-            took,
+            painted: self.painter.painted,
+            took: Duration::ZERO,
         })
     }
 
@@ -302,24 +295,22 @@ fn subject(
     let output = pair.map(|p| p.output.clone());
     let colours = Paint::Lambda(request.colours);
     let dark = request.dark;
+    let (target, target_eta) = match request.cfar {
+        None => (lambda(&frame.full), request.target_eta),
+        Some(_) => (shared(&detected.target), DETECTED),
+    };
     let (map, minus, paint) = match kind {
         MapKind::Input0 => (lambda(&frame.first), None, colours),
         MapKind::Input1 => (lambda(&frame.last), None, colours),
         MapKind::Target => (lambda(&frame.full), None, colours),
         MapKind::Output | MapKind::Second => (output, None, colours),
         MapKind::Doubt => (pair?.doubt.clone(), None, Paint::Doubt(request.colours)),
-        MapKind::TargetAbove if request.cfar.is_some() => {
-            (shared(&detected.target), None, Paint::Above { eta: DETECTED, dark })
-        }
-        MapKind::TargetAbove => (lambda(&frame.full), None, Paint::Above { eta: request.target_eta, dark }),
+        MapKind::TargetAbove => (target, None, Paint::Above { eta: target_eta, dark }),
         MapKind::OutputAbove | MapKind::SecondAbove => {
-            let (output, eta) = match request.cfar {
-                None => (output, request.etas[slot?]),
-                Some(_) => (shared(&detected.outputs[slot?]), DETECTED),
-            };
-            let target = match request.cfar {
-                None => pair?.target.clone(),
-                Some(_) => shared(&detected.target).filter(|_| pair.is_some_and(|pair| pair.target.is_some())),
+            let of_pair = pair?.target.clone();
+            let (output, target, eta) = match request.cfar {
+                None => (output, of_pair, request.etas[slot?]),
+                Some(_) => (shared(&detected.outputs[slot?]), target.filter(|_| of_pair.is_some()), DETECTED),
             };
             match target {
                 Some(target) => (output, Some(target), Paint::Detections { eta, dark }),

@@ -25,7 +25,9 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
         (Paint::Doubt(_), _) => doubt(radar, map),
         (Paint::Above { eta, .. }, _) => match map.iter().filter(|v| **v > eta).count() {
             0 => "No cell exceeds the threshold.".to_owned(),
-            count => format!("{} above the threshold; {}", cells(count), lowered(&peaks(radar, map))),
+            count => {
+                format!("{} above the threshold; {}", counted(count, "cell", "cells"), lowered(&peaks(radar, map)))
+            }
         },
         (Paint::Detections { eta, .. }, Some(target)) => {
             let of = |kind| {
@@ -34,7 +36,8 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
             let [hits, alarms, misses] =
                 [CellVerdict::Hit, CellVerdict::FalseAlarm, CellVerdict::Miss].map(|kind| of(kind).count());
             let alarms = counted(alarms, "false alarm", "false alarms");
-            format!("{} hit, {alarms}, {misses} missed; {}", cells(hits), lowered(&peaks(radar, map)))
+            let hits = counted(hits, "cell", "cells");
+            format!("{hits} hit, {alarms}, {misses} missed; {}", lowered(&peaks(radar, map)))
         }
         (Paint::Difference { .. }, Some(target)) => largest_difference(radar, map, target),
         (Paint::Detections { .. } | Paint::Difference { .. }, None) => "There is no target to compare with.".to_owned(),
@@ -45,10 +48,6 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
 fn doubt(radar: &Radar, map: &Array2<f32>) -> String {
     let mean = map.mean().unwrap_or_default();
     format!("Expected errors of {mean:.3} on average; {}", lowered(&peaks(radar, map)))
-}
-
-fn cells(count: usize) -> String {
-    format!("{count} cell{}", if count == 1 { "" } else { "s" })
 }
 
 fn lowered(sentence: &str) -> String {

@@ -36,21 +36,15 @@ struct Request {
 /// A map's picture, or the reason why there is none.
 type Made = Result<Arc<ColorImage>, String>;
 
-/// A finished map, with its request and its value.
-struct Arrival {
-    request: u64,
-    label: String,
-    made: Made,
-}
+/// A finished map, with the number of its request and its value in words.
+type Arrival = (u64, String, Made);
 
 /// One small map on screen.
 #[derive(Clone)]
 pub struct Small {
-    /// Radar, floor and method of the map.
     pub variant: Variant,
     /// The latest picture, or the reason why there is none.
     pub made: Option<Made>,
-    /// Whether the picture is of the latest request.
     pub is_current: bool,
 }
 
@@ -126,7 +120,7 @@ impl SeveralMaps {
 
     /// Takes in finished maps. Returns a message for the user.
     pub fn poll(&mut self) -> Option<String> {
-        for Arrival { request, label, made } in self.arriving.try_iter() {
+        for (request, label, made) in self.arriving.try_iter() {
             let latest = self.requests == request;
             // During a drag, maps of the request before the last still show the movement.
             let of_value = |small: &&mut Small| small.variant.label == label && (latest || !small.is_current);
@@ -153,7 +147,7 @@ fn make(number: u64, request: &Request, task: &Task, done: &Sender<Arrival>, wak
             return;
         }
         // The window may be gone by now.
-        let _closed = done.send(Arrival { request: number, label: variant.label.clone(), made });
+        let _closed = done.send((number, variant.label.clone(), made));
         wake();
     }
 }
@@ -220,7 +214,7 @@ mod tests {
             let (done, arriving) = channel();
             let request = request(parameter);
             make(1, &request, &Task::default(), &done, &|| ());
-            let images: Vec<Arc<ColorImage>> = arriving.try_iter().map(|a| a.made.unwrap()).collect();
+            let images: Vec<Arc<ColorImage>> = arriving.try_iter().map(|(_, _, made)| made.unwrap()).collect();
             assert_eq!(images.len(), request.variants.len());
             assert!(images.windows(2).all(|pair| pair[0].pixels != pair[1].pixels), "{parameter:?}");
         }

@@ -17,7 +17,6 @@ pub struct Source {
     pub scene: Shared<Scene>,
     /// The recording in place of the scene's echoes.
     pub recording: Option<Shared<Recording>>,
-    /// The floor beneath the scene's echoes.
     pub floor: Floor,
 }
 

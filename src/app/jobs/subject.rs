@@ -8,18 +8,14 @@ use crate::picture::ColourMap;
 /// The way a map is painted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
-    /// Lambda in colours.
     Lambda(ColourMap),
-    /// Cells above a threshold, in two colours.
     Above {
-        /// The threshold.
         eta: f32,
         /// Whether the window is dark.
         dark: bool,
     },
     /// Cells above a threshold by their verdict against the target: flat fills with an outline around each patch.
     Detections {
-        /// The threshold.
         eta: f32,
         /// Whether the window is dark.
         dark: bool,
@@ -40,12 +36,9 @@ pub enum Paint {
 /// The maps, colours and coordinates of one picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
-    /// The map.
     pub map: Shared<RangeAngleMap>,
     /// Subtracted by [`Paint::Difference`]; the target of [`Paint::Detections`].
     pub minus: Option<Shared<RangeAngleMap>>,
-    /// Colours and thresholds.
     pub paint: Paint,
-    /// Coordinates.
     pub projection: Projection,
 }

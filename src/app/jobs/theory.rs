@@ -1,30 +1,22 @@
 //! Predictions and position bound of one reflector by formulas, drawn over the maps.
 
-use super::bounds::subject;
+use super::bounds::BoundsRequest;
 use super::derived::{Failure, Query};
 use crate::app::state::{BoundsSettings, Panel, State};
 use crate::bounds::{cramer_rao, noise_variance};
 use crate::maps::Aperture;
-use crate::radar::{End, Radar};
-use crate::scene::Reflector;
+use crate::radar::End;
 use crate::task::Task;
 use crate::theory::{Ellipse, Overlay};
 
-/// A query of the theory of one reflector.
+/// A query of the theory of the reflector whose bounds these are.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TheoryRequest {
-    pub radar: Radar,
-    /// Name of the reflector.
-    pub name: String,
-    pub reflector: Reflector,
-    /// Elements and noise that the bound is computed for.
-    pub settings: BoundsSettings,
-}
+pub struct TheoryRequest(BoundsRequest);
 
 /// Predictions and position bound of a reflector.
 pub struct TheoryResult {
-    /// The query.
-    pub request: TheoryRequest,
+    /// The reflector, and the elements and noise of the bound.
+    pub request: BoundsRequest,
     /// Overlays for the maps of the first end, the last end and the whole array; `None` for a reflector without an echo.
     pub overlays: [Option<Overlay>; 3],
     /// Ellipse of the position bound; `None` where the position isn't bounded.
@@ -35,8 +27,7 @@ impl TheoryRequest {
     /// The query of the reflector drawn over the maps on screen; `None` where none is drawn.
     pub fn of(state: &State) -> Option<Self> {
         let looked_at = state.arrangement.shown().iter().any(|panel| matches!(panel, Panel::Map(_)));
-        let (name, reflector) = subject(&state.editor).filter(|_| state.settings.show_theory && looked_at)?;
-        Some(TheoryRequest { radar: state.radar().clone(), name, reflector, settings: state.settings.bounds })
+        (state.settings.show_theory && looked_at).then(|| BoundsRequest::of(state)).flatten().map(TheoryRequest)
     }
 }
 
@@ -48,7 +39,7 @@ impl Query for TheoryRequest {
     const ADVICE: &'static str = "Move the reflector to try again.";
 
     fn compute(&self, (): &mut (), _: &Task) -> Result<TheoryResult, Failure> {
-        let TheoryRequest { radar, reflector, settings: BoundsSettings { elements, seed, snr, .. }, .. } = self;
+        let BoundsRequest { radar, reflector, settings: BoundsSettings { elements, seed, snr, .. }, .. } = &self.0;
         let apertures = [Aperture::End(End::First), Aperture::End(End::Last), Aperture::Full];
         let overlays = apertures.map(|aperture| Overlay::of(radar, reflector, aperture));
         let ellipse = elements.layout(radar, *seed).ok().and_then(|layout| {
@@ -56,23 +47,25 @@ impl Query for TheoryRequest {
             let bounds = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).ok()?;
             Ellipse::of(bounds.first()?)
         });
-        Ok(TheoryResult { overlays, ellipse, request: self.clone() })
+        Ok(TheoryResult { overlays, ellipse, request: self.0.clone() })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::radar::Radar;
+    use crate::scene::Reflector;
 
     /// The theory of a point `y_metres` ahead of the array.
     fn found(y_metres: f64) -> TheoryResult {
-        let request = TheoryRequest {
+        let request = BoundsRequest {
             radar: Radar { elements: 64, samples: 32, ..Radar::default() },
             name: "point 1".to_owned(),
             reflector: Reflector { x_metres: 1.5, y_metres, reflectivity: 1.0 },
             settings: BoundsSettings::default(),
         };
-        request.compute(&mut (), &Task::default()).unwrap()
+        TheoryRequest(request).compute(&mut (), &Task::default()).unwrap()
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Search for the threshold of a method at a given rate of false alarms, in the background.
 
-use super::rows::{Plan, Stopped, Teller};
+use super::derived::Failure;
+use super::rows::{Plan, Teller};
 use crate::app::state::{State, ThresholdChoice};
 use crate::evaluate::threshold::{KeptThreshold, ThresholdSearch};
 use crate::radar::counted;
@@ -17,9 +18,7 @@ pub struct ThresholdPlan {
 /// A threshold found by a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeptEta {
-    /// Name of the method.
     pub method: &'static str,
-    /// The method's threshold.
     pub eta: f32,
     /// Message about the threshold's rates and the scenes it was tried on.
     pub told: String,
@@ -50,13 +49,14 @@ impl Plan for ThresholdPlan {
     const WHAT: &'static str = "The search for a threshold";
     const ADVICE: &'static str = "Choose another method.";
 
-    fn run(&self, teller: &Teller<'_, KeptEta>) -> Result<(), Stopped> {
+    fn run(&self, teller: &Teller<'_, KeptEta>) -> Result<(), Failure> {
         let ThresholdPlan { search, method } = self;
         let found = search.run(method.as_ref(), teller.task, |part| teller.part(part));
         // Half a search has found no threshold that could stay.
-        let why =
-            |cancelled: bool, said: String| if cancelled { "Cancelled; η stays as it is.".to_owned() } else { said };
-        let found = found.map_err(|error| Stopped::Failed(why(error.is_cancelled(), error.to_string())))?;
+        let found = found.map_err(|error| match error.is_cancelled() {
+            true => "Cancelled; η stays as it is.".to_owned(),
+            false => error.to_string(),
+        })?;
         let found = KeptThreshold { eta: rounded_up(found.eta), ..found };
         teller.row(KeptEta { method: method.name(), eta: found.eta, told: told(search, method.name(), &found) });
         Ok(())

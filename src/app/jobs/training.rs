@@ -16,13 +16,10 @@ const POINTS: usize = 4000;
 /// The curves and the last line of a log.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Log {
-    /// Points of step and loss.
     pub loss: Vec<[f64; 2]>,
     /// Points of step and smoothed loss, where the log has it.
     pub smoothed: Vec<[f64; 2]>,
-    /// Names and values of the last line's columns.
     pub last: Vec<(String, String)>,
-    /// Last step.
     pub step: f64,
 }
 
@@ -72,7 +69,6 @@ const MAX_LOG_BYTES: u64 = 256 << 20;
 
 /// A log that is followed.
 pub struct Watched {
-    /// Path of the log.
     pub path: PathBuf,
     since: Instant,
 }

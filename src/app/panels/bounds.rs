@@ -209,15 +209,17 @@ fn millimetres(metres: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::jobs::Query;
     use crate::app::widgets::seen::{self, User};
     use crate::scene::Scene;
+    use crate::task::Task;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     /// The panel with the bounds of one point.
     fn panel(size: [f32; 2]) -> Harness<'static, (BoundsMemory, Vec<Command>)> {
         let state = State::of(Radar { elements: 64, samples: 32, ..Radar::default() }, Scene::of_points([(1.5, 9.0)]));
-        let result = BoundsRequest::of(&state).and_then(|request| crate::app::jobs::bounds_of(request).ok());
+        let result = BoundsRequest::of(&state).and_then(|request| request.compute(&mut (), &Task::default()).ok());
         let draw = move |ui: &mut Ui, (memory, asked): &mut (BoundsMemory, Vec<Command>)| {
             asked.extend(show(ui, &state, result.as_ref().map(Ok), memory));
         };

@@ -71,7 +71,7 @@ impl Content for ControlsPanel {
         let run = Run {
             progress: pipeline.method(MethodSlot::First).progress(),
             refusal: pipeline.method(MethodSlot::First).refusal(),
-            output: pipeline.output().map(|o| (o.method, o.took)),
+            output: pipeline.output().map(|o| (o.method(), o.took)),
             // Hidden while a question is open: the number of blobs answers many questions.
             scores: map::scores(state, jobs, MethodSlot::First),
             echoes: map::echoes_found(state, jobs, MethodSlot::First),

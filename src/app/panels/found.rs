@@ -55,7 +55,7 @@ impl Content for FoundPanel {
         let recording = state.editor.document().recording();
         let input = Input {
             draws_only: state.method().map(|m| m.name()).filter(|_| !state.finds_reflectors()),
-            method: output.map(|o| o.method),
+            method: output.map(|o| o.method()),
             found: output.and_then(|o| o.found.as_deref()),
             attempts: output.map_or(&[], |o| o.attempts.as_slice()),
             objects: &state.editor.scene().objects,

@@ -45,7 +45,7 @@ impl Content for RocPanel {
         let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
         let shown = pipeline.maps.result();
         let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
-        let method = pipeline.output().map_or("output", |o| o.method);
+        let method = pipeline.output().map_or("output", |o| o.method());
         let refusal = pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str());
         let eta = pipeline.eta(state, MethodSlot::First);
         let cfar = state.settings.cfar;

@@ -33,7 +33,7 @@ impl Content for TimingPanel {
             report: &r.frame.report,
             took: r.took,
             painted: r.painted,
-            output: pipeline.output().map(|o| (o.method, o.took)),
+            output: pipeline.output().map(|o| (o.method(), o.took)),
             outdated: pipeline.output_is_outdated(),
         });
         show(ui, update)

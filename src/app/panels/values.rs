@@ -44,7 +44,7 @@ impl Content for ValuesPanel {
         let compares = state.arrangement.shown().contains(&Panel::Compare);
         let listed = |kind: &MapKind| compares || kind.slot() != Some(MethodSlot::Second);
         let row = |kind: MapKind| {
-            let method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| o.method);
+            let method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| o.method());
             let cells = cells(jobs, kind)?;
             Some(Row { kind, method, cells, updating: is_updating(jobs, kind) })
         };

@@ -155,7 +155,6 @@ impl Arrangement {
         &self.views
     }
 
-    /// The view in front of a tile.
     pub fn view(&self, tile: Panel) -> Panel {
         self.views.get(&tile).copied().unwrap_or(tile)
     }
@@ -233,8 +232,10 @@ impl Arrangement {
         }
         let (view, panel) = (panel, panel.tile());
         let own = Task::of(panel).filter(|_| !self.has_tile(panel) || !open);
+        // A lesson does not open in its own task where the task on screen has a tile for it.
+        let is_placed = panel == Panel::Lesson && self.tree.tiles.find_pane(&panel).is_some();
         match own {
-            Some(task) if open && task != self.task && self.wants_own(panel) => return self.change_for(view, task),
+            Some(task) if open && task != self.task && !is_placed => return self.change_for(view, task),
             Some(task) if !open && task == self.task && task != Task::Explore => {
                 let before = self.before.take().unwrap_or_default();
                 return self.change(before);
@@ -250,11 +251,6 @@ impl Arrangement {
             None if open => self.insert(panel),
             None => {}
         }
-    }
-
-    /// Whether a panel opens in its own task. A lesson does not where the task on screen has a tile for it.
-    fn wants_own(&self, panel: Panel) -> bool {
-        panel != Panel::Lesson || self.tree.tiles.find_pane(&panel).is_none()
     }
 
     fn set_pane_open(&mut self, id: TileId, panel: Panel, open: bool) {

@@ -7,7 +7,6 @@ use std::path::PathBuf;
 /// Port, settings and board for listening to a capture card.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CardPlan {
-    /// The UDP port of this machine.
     pub port: u16,
     /// The `.cfg` that set the radar up.
     pub config: PathBuf,
@@ -18,10 +17,8 @@ pub struct CardPlan {
 /// A frame of a card as a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveFrame {
-    /// The frame's samples and radar.
     pub recording: Shared<Recording>,
     /// The `.cfg` that set the radar up.
     pub config: PathBuf,
-    /// Whether it is the first frame since listening began.
     pub is_first: bool,
 }

@@ -12,7 +12,6 @@ const PINS: usize = 3;
 /// A map available for cuts.
 #[derive(Debug, Clone)]
 pub struct CutMap {
-    /// Kind of the map.
     pub kind: MapKind,
     /// Lambda, `[range bins, columns]`.
     pub map: Arc<RangeAngleMap>,
@@ -23,11 +22,8 @@ pub struct CutMap {
 /// A pinned cut with its radar, cursor and maps.
 #[derive(Debug, Clone)]
 pub struct PinnedCut {
-    /// The radar of the maps.
     pub radar: Radar,
-    /// Cursor of the cut.
     pub cursor: Cursor,
-    /// The maps.
     pub maps: Vec<CutMap>,
 }
 

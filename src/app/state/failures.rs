@@ -13,22 +13,11 @@ use crate::scene::generate::Kind;
 use crate::signal::Floor;
 use serde::{Deserialize, Serialize};
 
-/// Documents whose failing part of the maps is to be shown, and is shown.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct FailureView {
-    /// Id of a document whose failure is to be shown once it is known.
-    pub wanted: Option<u64>,
-    /// Id of the document whose failure is shown, and the visible part of its maps.
-    pub shown: Option<(u64, MapView)>,
-}
-
 /// Conditions of rows: the values needed beside a row to make its scene again.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Conditions {
-    /// The floor beneath the reflectors.
     pub floor: Floor,
-    /// Normalisation of the maps.
     pub normalisation: Normalisation,
     /// Radar of generated scenes. A file has its own.
     pub radar: Radar,
@@ -69,50 +58,51 @@ impl Conditions {
 /// The methods to try and the scenes to try them on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FailureChoice {
-    /// Names of methods.
     pub methods: Vec<&'static str>,
-    /// Kinds of generated scenes.
     pub kinds: Vec<Kind>,
     /// Whether the user's own scenes are among the sets.
     pub own: bool,
     /// Generated scenes of each kind.
     pub count: u32,
-    /// Seed of the generated scenes.
     pub seed: u64,
 }
 
 /// Aim and limits of a search near the scene on screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchChoice {
-    /// A worse scene, or a repair.
     pub aim: Aim,
-    /// The measure of a worse scene.
     pub measure: WorseningMeasure,
     /// Largest distance that objects may move, metres.
     pub within_metres: f64,
-    /// Number of scenes to try.
     pub tries: u32,
+}
+
+/// The required rate of false alarms for a threshold, and the scenes to try the method on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ThresholdChoice {
+    /// The rate, percent of the target's dark cells.
+    pub false_alarm_percent: f64,
+    pub kinds: Vec<Kind>,
+    /// Scenes of each kind.
+    pub count: u32,
 }
 
 /// The row whose scene was opened last.
 #[derive(Debug, Clone)]
 pub struct OpenedRow {
-    /// The row when it was opened.
     pub row: Row,
-    /// Its index in the table.
     pub index: usize,
-    /// Generation of the table.
     pub generation: u64,
-    /// Id of the document of its scene.
     pub document: u64,
 }
 
 /// State of the rows in the app beside the table itself.
 #[derive(Debug, Default)]
 pub struct Failures {
-    /// Documents whose failing part of the maps is shown.
-    pub view: FailureView,
-    /// The row whose scene was opened last.
+    /// Id of a document whose failing part of the maps is to be shown once it is known.
+    pub wanted: Option<u64>,
+    /// Id of the document whose failing part is shown, and that part.
+    pub shown: Option<(u64, MapView)>,
     pub opened: Option<OpenedRow>,
     /// Indices of the rows that the panel showed last, from top to bottom.
     pub in_sight: Vec<usize>,

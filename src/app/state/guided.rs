@@ -8,11 +8,8 @@ use std::sync::Arc;
 /// Scene, radar and view at one moment.
 #[derive(Debug, Clone)]
 pub struct Setup {
-    /// The view of the scene.
     pub view: View,
-    /// The radar.
     pub radar: Radar,
-    /// The scene.
     pub scene: Arc<Scene>,
     /// Number of steps in the editor's history.
     pub depth: usize,
@@ -28,9 +25,7 @@ impl Setup {
 /// The change made by a button of the guide.
 #[derive(Debug, Clone)]
 pub struct GuidedStep {
-    /// State before the change.
     pub before: Setup,
-    /// State after the change.
     pub after: Setup,
 }
 

@@ -1,29 +1,19 @@
 //! Pages of help, each for a window of its own.
 
-/// A page of help.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HelpPage {
-    /// Every key, and the actions of the pointer.
-    Keys,
-    /// Origin of the figures on screen.
-    Figures,
-    /// Version, licence and description of the program.
-    About,
+named! {
+    /// A page of help. Its name is the title of the page, and its entry in the menu.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum HelpPage {
+        /// Every key, and the actions of the pointer.
+        Keys = "Keys and pointer",
+        /// Origin of the figures on screen.
+        Figures = "Where figures come from",
+        /// Version, licence and description of the program.
+        About = "About apertura",
+    }
 }
 
 impl HelpPage {
-    /// Every page, in the order of the menu.
-    pub const ALL: [HelpPage; 3] = [HelpPage::Keys, HelpPage::Figures, HelpPage::About];
-
-    /// Title of the page, and its name in the menu.
-    pub fn title(self) -> &'static str {
-        match self {
-            HelpPage::Keys => "Keys and pointer",
-            HelpPage::Figures => "Where figures come from",
-            HelpPage::About => "About apertura",
-        }
-    }
-
     /// The page's content in a sentence, for tooltips.
     pub fn describe(self) -> &'static str {
         match self {

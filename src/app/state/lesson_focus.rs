@@ -7,7 +7,7 @@ use crate::lesson::question::Answer;
 use crate::lesson::{Challenge, MapName, Step};
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
-use eframe::egui::{Pos2, Vec2, pos2, vec2};
+use eframe::egui::{pos2, vec2};
 
 /// Least part shown to either side of two blobs: a ratio of all columns, and metres of range.
 const LEAST_ACROSS: f32 = 0.15;
@@ -78,10 +78,7 @@ pub fn part_of(challenge: &Challenge, radar: &Radar, scene: &Scene) -> Option<Ma
     let least_range = (LEAST_RANGE_METRES / radar.max_range_metres()) as f32;
     // An end's beam is as wide as part of the map, so all directions stay in sight.
     let across = if matches!(map, MapName::Target | MapName::Output) { apart.x.max(LEAST_ACROSS) } else { 1.0 };
-    let half = vec2(across, apart.y.max(least_range)).min(Vec2::splat(0.5));
-    let middle = (a + b.to_vec2()) / 2.0;
-    let low = (middle - half).clamp(Pos2::ZERO, pos2(1.0, 1.0) - 2.0 * half);
-    Some(MapView { low, high: low + 2.0 * half })
+    Some(MapView::around((a + b.to_vec2()) / 2.0, vec2(across, apart.y.max(least_range))))
 }
 
 #[cfg(test)]

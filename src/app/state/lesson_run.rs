@@ -12,18 +12,13 @@ use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The prediction of a step, and its judgement.
 type Answered = (Guess, Option<Result<Judgement, String>>);
 
 /// State of the window before a lesson.
 pub struct Before {
-    /// Scene, radar and settings.
     pub setup: Setup,
-    /// The visible part of the scene.
     pub scene_view: SceneView,
-    /// The visible part of the maps.
     pub map_views: MapViews,
-    /// The task on screen.
     pub task: Task,
 }
 
@@ -31,11 +26,8 @@ pub struct Before {
 pub struct LessonRun {
     /// Key under which its progress is kept.
     pub id: String,
-    /// The lesson.
     pub lesson: Arc<Lesson>,
-    /// The step, from 0.
     pub step: usize,
-    /// The prediction in this step.
     pub guess: Option<Guess>,
     /// The judgement of the prediction, or the reason why it can't be judged.
     pub judgement: Option<Result<Judgement, String>>,
@@ -49,7 +41,6 @@ pub struct LessonRun {
     pub depth: usize,
     /// Panels closed because the lesson doesn't use them, and whether each tab was in front.
     pub closed: Vec<(Panel, bool)>,
-    /// State of the window before the lesson.
     pub before: Before,
     /// The part of the maps last shown for the challenge, until the learner zooms.
     pub part: Option<MapView>,

@@ -9,7 +9,6 @@ const ROBUST: [&str; 2] = ["capon", "baseline"];
 
 /// Every method, and the preferred one.
 pub struct Methods {
-    /// Every method, in order.
     pub all: Vec<Arc<dyn Reconstructor>>,
     /// Name of the method in use where the user chose none.
     preferred: &'static str,
@@ -28,19 +27,20 @@ impl Methods {
         self.all.push(method);
     }
 
+    /// The method called `name`, if there is one.
+    pub fn called(&self, name: &str) -> Option<&Arc<dyn Reconstructor>> {
+        self.all.iter().find(|method| method.name() == name)
+    }
+
     /// The method called `name`, or else the preferred one, or else the first.
     pub fn named(&self, name: &str) -> Option<&Arc<dyn Reconstructor>> {
-        let named = |name: &str| self.all.iter().find(|m| m.name() == name);
-        named(name).or_else(|| named(self.preferred)).or_else(|| self.all.first())
+        self.called(name).or_else(|| self.called(self.preferred)).or_else(|| self.all.first())
     }
 
     /// A method that works on samples of `radar`, other than the one called `name`, if there is one.
     pub fn instead_of(&self, name: &str, radar: &Radar) -> Option<&'static str> {
         let preferred = crate::methods::preferred_for(radar).name();
-        let works = |other: &&str| {
-            let method = self.all.iter().find(|m| m.name() == *other);
-            *other != name && method.is_some_and(|m| m.check_array(radar).is_ok())
-        };
+        let works = |other: &&str| *other != name && self.called(other).is_some_and(|m| m.check_array(radar).is_ok());
         [preferred].into_iter().chain(ROBUST).find(|other| works(other))
     }
 
@@ -54,10 +54,9 @@ impl Methods {
 
     /// The method to compare with the one called `first`: the one called `name`, else a robust one, else any other.
     pub fn second_to(&self, first: Option<&str>, name: &str) -> Option<&Arc<dyn Reconstructor>> {
-        let named = |name: &str| self.all.iter().find(|m| m.name() == name);
         let other = |m: &&Arc<dyn Reconstructor>| Some(m.name()) != first;
-        let plain = || ROBUST.iter().rev().find_map(|name| named(name).filter(other));
-        named(name).or_else(plain).or_else(|| self.all.iter().find(other)).or_else(|| self.all.first())
+        let plain = || ROBUST.iter().rev().find_map(|name| self.called(name).filter(other));
+        self.called(name).or_else(plain).or_else(|| self.all.iter().find(other)).or_else(|| self.all.first())
     }
 
     /// The next method after the one called `name` that `is_able`; the first follows the last.

@@ -4,12 +4,9 @@
 mod named;
 
 mod arrangement;
-mod bounds_settings;
 mod card;
-mod chirp_settings;
 mod command;
 mod command_table;
-mod compare;
 mod cuts;
 mod failures;
 mod guided;
@@ -22,7 +19,6 @@ mod methods;
 mod notices;
 mod page_commands;
 mod panel;
-mod phasor_settings;
 mod room;
 mod save_question;
 mod settings;
@@ -36,28 +32,26 @@ mod view;
 
 pub use crate::view::{DifferenceView, Directions, Projection, Units, View};
 pub use arrangement::Arrangement;
-pub use bounds_settings::{BoundsSettings, Elements};
 pub use card::{CardPlan, LiveFrame};
-pub use chirp_settings::ChirpSettings;
 pub use command::{
-    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, RadarCommand, RowsCommand,
-    ThresholdChoice, ViewCommand, Way, WindowCommand, WorkCommand,
+    Command, DocumentCommand, EditCommand, ExportCommand, LessonCommand, NewObject, Purpose, PurposeFacts,
+    RadarCommand, RowsCommand, ViewCommand, Way, WindowCommand, WorkCommand,
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
-pub use compare::{Compare, Layout};
 pub use cuts::{CutMap, PinnedCut, pin_cut};
-pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice};
+pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice, ThresholdChoice};
 pub use guided::{Guided, Setup};
 pub use help::HelpPage;
 pub use lesson_run::{Before, LessonRun};
 pub use menus::menu_path;
 pub use method_times::MethodTimes;
 pub use methods::Methods;
-pub use notices::{Notice, NoticeKind, Notices};
+pub use notices::{Notice, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
-pub use phasor_settings::{PhasorMap, PhasorSettings};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
-pub use settings::{Brightness, Settings};
+pub use settings::{
+    BoundsSettings, Brightness, ChirpSettings, Compare, Elements, Layout, PhasorMap, PhasorSettings, Settings,
+};
 pub use several::{MAX_MAPS as MAX_MAPS_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::synonyms;
 pub use task_layouts::Task;
@@ -81,35 +75,24 @@ const RECENT: usize = 10;
 pub struct State {
     /// The document in the editor: scene, radar and file.
     pub editor: Editor,
-    /// The user's settings.
     pub settings: Settings,
-    /// The reconstruction methods.
     pub methods: Methods,
     /// Times of each method on this machine.
     pub method_times: MethodTimes,
-    /// Arrangement of the panels.
     pub arrangement: Arrangement,
-    /// Messages on screen.
     pub notices: Notices,
-    /// The visible part of the scene.
     pub scene_view: SceneView,
-    /// The visible part of the maps.
     pub map_views: MapViews,
-    /// The pointer's place.
     pub pointer: Pointer,
-    /// Pinned cuts, the oldest first.
     pub pins: Vec<PinnedCut>,
-    /// Changes made by the guide.
     pub guided: Guided,
     /// The question before a scene is written to a file that can't hold all of it or was changed.
     pub save_question: Option<SaveQuestion>,
     /// The opened row and the rows in sight.
     pub failures: Failures,
-    /// The lesson in progress.
     pub lesson: Option<LessonRun>,
     /// The arrangement before a lesson or a presentation took the whole screen.
     pub before_presenting: Option<Arrangement>,
-    /// The learners' answers in lessons.
     pub progress: Progress,
     /// Files opened or saved lately, latest first.
     pub recent: Vec<PathBuf>,
@@ -119,9 +102,7 @@ pub struct State {
     pub tells_first_drag: bool,
     /// The time of the scene, and of the recording's next frame.
     pub timeline: Timeline,
-    /// The open page of help.
     pub help: Option<HelpPage>,
-    /// Whether the window is dark now.
     pub dark: bool,
 }
 
@@ -200,33 +181,31 @@ impl State {
 
     /// Gives the lesson the whole screen, or ends that.
     pub fn present_lesson(&mut self) {
-        match self.is_presenting() {
-            true => self.stop_presenting(),
-            false => {
-                let uses = self.uses();
-                let before = std::mem::replace(&mut self.arrangement, Arrangement::of_a_lesson());
-                self.arrangement.close_unused(uses);
-                self.before_presenting = Some(before);
-            }
-        }
+        let uses = self.uses();
+        self.present_as(|| {
+            let mut arrangement = Arrangement::of_a_lesson();
+            arrangement.close_unused(uses);
+            arrangement
+        });
     }
 
     /// Gives the scene and the maps the whole screen in large type, or ends a presentation or a lesson on the whole screen.
     pub fn present(&mut self) {
-        match self.is_presenting() {
-            true => self.stop_presenting(),
-            false => {
-                let before = std::mem::replace(&mut self.arrangement, Arrangement::presentation());
-                self.before_presenting = Some(before);
-            }
+        self.present_as(Arrangement::presentation);
+    }
+
+    fn present_as(&mut self, arrangement: impl FnOnce() -> Arrangement) {
+        if !self.stop_presenting() {
+            self.before_presenting = Some(std::mem::replace(&mut self.arrangement, arrangement()));
         }
     }
 
-    /// Restores the arrangement before a lesson or a presentation took the whole screen.
-    pub fn stop_presenting(&mut self) {
-        if let Some(before) = self.before_presenting.take() {
-            self.arrangement = before;
-        }
+    /// Restores the arrangement before a lesson or a presentation took the whole screen; true where one had.
+    pub fn stop_presenting(&mut self) -> bool {
+        let before = self.before_presenting.take();
+        let is_presented = before.is_some();
+        before.into_iter().for_each(|before| self.arrangement = before);
+        is_presented
     }
 
     /// The arrangement to keep for the next start.
@@ -370,7 +349,7 @@ impl State {
         let first =
             || self.editor.scene().objects.first().map(|o| Cursor::at_place(self.radar(), o.centre_metres().into()));
         let inside = |c: &Cursor| c.cell(self.radar()).is_some();
-        let last = self.pointer.last().or_else(first).filter(inside);
+        let last = self.pointer.last.or_else(first).filter(inside);
         last.unwrap_or_else(|| Cursor::at_cell(self.radar(), 0.0, 0.0))
     }
 }

@@ -3,22 +3,10 @@
 /// Most messages on screen; a new one replaces the oldest.
 const MAX_NOTICES: usize = 5;
 
-/// The kind of a message.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NoticeKind {
-    /// Success of a command, or another fact.
-    Info,
-    /// An error.
-    Error,
-}
-
 /// One message.
 pub struct Notice {
-    /// A number that no other message has.
     pub number: u64,
-    /// The kind of message.
-    pub kind: NoticeKind,
-    /// The message's text.
+    pub is_error: bool,
     pub text: String,
     /// Time at which it goes away, seconds of egui's clock; set when it is first drawn.
     pub until: Option<f64>,
@@ -27,18 +15,18 @@ pub struct Notice {
 /// The messages on screen, oldest first.
 #[derive(Default)]
 pub struct Notices {
-    list: Vec<Notice>,
+    pub list: Vec<Notice>,
     count: u64,
 }
 
 impl Notices {
     /// Shows a message. The same message already on screen stays longer instead.
-    pub fn add(&mut self, kind: NoticeKind, text: String) {
-        match self.list.iter_mut().find(|m| m.kind == kind && m.text == text) {
+    fn add(&mut self, is_error: bool, text: String) {
+        match self.list.iter_mut().find(|m| m.is_error == is_error && m.text == text) {
             Some(same) => same.until = None,
             None => {
                 self.count += 1;
-                self.list.push(Notice { number: self.count, kind, text, until: None });
+                self.list.push(Notice { number: self.count, is_error, text, until: None });
                 let excess = self.list.len().saturating_sub(MAX_NOTICES);
                 self.list.drain(..excess);
             }
@@ -47,29 +35,14 @@ impl Notices {
 
     /// Shows a message for a short time.
     pub fn info(&mut self, text: impl Into<String>) {
-        self.add(NoticeKind::Info, text.into());
+        self.add(false, text.into());
     }
 
     /// Shows an error for a longer time, and logs it.
     pub fn error(&mut self, text: impl Into<String>) {
         let text = text.into();
         tracing::warn!("{text}");
-        self.add(NoticeKind::Error, text);
-    }
-
-    /// Number of messages.
-    pub fn len(&self) -> usize {
-        self.list.len()
-    }
-
-    /// The messages, oldest first.
-    pub fn list_mut(&mut self) -> &mut Vec<Notice> {
-        &mut self.list
-    }
-
-    /// Closes all messages.
-    pub fn clear(&mut self) {
-        self.list.clear();
+        self.add(true, text);
     }
 }
 
@@ -80,11 +53,11 @@ mod tests {
     #[test]
     fn a_message_stands_there_once_until_others_need_its_room() {
         let mut notices = Notices::default();
-        notices.add(NoticeKind::Error, "a".to_owned());
-        notices.add(NoticeKind::Error, "a".to_owned());
-        assert_eq!(notices.len(), 1);
-        (0..9).for_each(|i| notices.add(NoticeKind::Info, i.to_string()));
-        assert_eq!(notices.len(), MAX_NOTICES);
+        notices.error("a");
+        notices.error("a");
+        assert_eq!(notices.list.len(), 1);
+        (0..9).for_each(|i| notices.info(i.to_string()));
+        assert_eq!(notices.list.len(), MAX_NOTICES);
         assert_eq!(notices.list.last().unwrap().text, "8");
     }
 }

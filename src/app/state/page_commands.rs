@@ -16,11 +16,6 @@ fn needs_a_desktop(command: &Command) -> bool {
     )
 }
 
-/// Whether a command needs a page's address.
-fn needs_a_page(command: &Command) -> bool {
-    matches!(command, Command::Export(ExportCommand::CopyLink))
-}
-
 /// The key of a command whose usual key belongs to the browser (reload, whole screen, tools, tabs and windows), pressed with Shift.
 fn free_key(command: &Command) -> Option<Key> {
     Some(match command {
@@ -41,5 +36,5 @@ pub fn on_a_page(command: &Command, key: Option<KeyboardShortcut>) -> Option<Opt
 
 /// The key of a command on a desktop, if any; the outer `None` where only a page can do it.
 pub fn on_a_desktop(command: &Command, key: Option<KeyboardShortcut>) -> Option<Option<KeyboardShortcut>> {
-    (!needs_a_page(command)).then_some(key)
+    (*command != Command::Export(ExportCommand::CopyLink)).then_some(key)
 }

@@ -6,15 +6,11 @@ use serde::{Deserialize, Serialize};
 /// The place of a panel in arrangement and menus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
-    /// A panel that edits, with a tile at first.
     Editing,
-    /// A panel of results, with a tile at first.
     Result,
-    /// A tool, closed at first.
     Tool,
     /// A tool for developers of the program and of methods, listed in menus where *Developer* is ticked.
     Developer,
-    /// A view in the tile of another panel.
     ViewOf(Panel),
 }
 
@@ -27,75 +23,35 @@ struct Facts {
     help: &'static str,
 }
 
-/// A tile of several views: its first panel, its title, that panel's name among the views, and the tile's purpose.
-struct SharedTile {
-    tile: Panel,
-    title: &'static str,
-    view: &'static str,
-    help: &'static str,
-}
+/// A tile of several views: its first panel; the tile's title, that panel's name among the views, and the tile's purpose.
+type SharedTile = (Panel, [&'static str; 3]);
 
 const SHARED: [SharedTile; 5] = [
-    SharedTile {
-        tile: Panel::Radar,
-        title: "Radar",
-        view: "Constants",
-        help: "The radar's constants, its elements as they are built, and what disturbs it",
-    },
-    SharedTile {
-        tile: Panel::Cuts,
-        title: "Cuts",
-        view: "Profiles",
-        help: "Range profile and angle cut of all maps through the cursor, and their values under it",
-    },
-    SharedTile {
-        tile: Panel::Chirp,
-        title: "Waveform",
-        view: "Chirp",
-        help: "The chirp sent and its echoes, the beat signal, and range against radial velocity",
-    },
-    SharedTile {
-        tile: Panel::Compare,
-        title: "Compare",
-        view: "Methods",
-        help: "Two methods on this scene, or its maps with another window, floor or radar",
-    },
-    SharedTile {
-        tile: Panel::Failures,
-        title: "Evaluate",
-        view: "Rows",
-        help: "Methods on many scenes: every row, the printed tables, and run time against error",
-    },
+    (
+        Panel::Radar,
+        ["Radar", "Constants", "The radar's constants, its elements as they are built, and what disturbs it"],
+    ),
+    (
+        Panel::Cuts,
+        ["Cuts", "Profiles", "Range profile and angle cut of all maps through the cursor, and their values under it"],
+    ),
+    (
+        Panel::Chirp,
+        ["Waveform", "Chirp", "The chirp sent and its echoes, the beat signal, and range against radial velocity"],
+    ),
+    (
+        Panel::Compare,
+        ["Compare", "Methods", "Two methods on this scene, or its maps with another window, floor or radar"],
+    ),
+    (
+        Panel::Failures,
+        ["Evaluate", "Rows", "Methods on many scenes: every row, the printed tables, and run time against error"],
+    ),
 ];
-
-/// Place or key of a panel, from the words of its line.
-macro_rules! listed_as {
-    (editing) => {
-        Place::Editing
-    };
-    (result) => {
-        Place::Result
-    };
-    (tool) => {
-        Place::Tool
-    };
-    (developer) => {
-        Place::Developer
-    };
-    (view $tile:ident) => {
-        Place::ViewOf(Panel::$tile)
-    };
-    (key none) => {
-        None
-    };
-    (key $key:ident) => {
-        Some(Key::$key)
-    };
-}
 
 /// The enum of all panels, and the facts of each.
 macro_rules! ids {
-    ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:ident $(of $tile:ident)?, $key:ident, $title:literal, $help:literal;)*) => {
+    ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:expr, $key:expr, $title:literal, $help:literal;)*) => {
         /// A panel, in a tile of its own or as one of several views of a tile.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         pub enum Panel {
@@ -104,13 +60,10 @@ macro_rules! ids {
             $(#[doc = $help] $(#[$meta])* $name,)*
         }
 
-        const FACTS: &[Facts] = &[$(Facts {
-            panel: Panel::$name,
-            place: listed_as!($place $($tile)?),
-            key: listed_as!(key $key),
-            title: $title,
-            help: $help,
-        }),*];
+        const FACTS: &[Facts] = {
+            use Place::*;
+            &[$(Facts { panel: Panel::$name, place: $place, key: $key, title: $title, help: $help }),*]
+        };
     };
 }
 
@@ -166,26 +119,26 @@ impl Panel {
         }
     }
 
-    fn shared(self) -> Option<&'static SharedTile> {
-        SHARED.iter().find(|shared| shared.tile == self.tile())
+    fn shared(self) -> Option<&'static [&'static str; 3]> {
+        SHARED.iter().find(|(tile, _)| *tile == self.tile()).map(|(_, texts)| texts)
     }
 
     /// Title of the panel's tile.
     pub fn tile_title(self) -> &'static str {
-        self.shared().map_or_else(|| self.title(), |shared| shared.title)
+        self.shared().map_or_else(|| self.title(), |[title, ..]| title)
     }
 
     /// Name of the panel among the views of its tile.
     pub fn view_title(self) -> &'static str {
         match self {
             Panel::Several => "Settings",
-            _ => self.shared().filter(|shared| shared.tile == self).map_or_else(|| self.title(), |shared| shared.view),
+            _ => self.shared().filter(|_| self.tile() == self).map_or_else(|| self.title(), |[_, view, _]| view),
         }
     }
 
     /// Purpose of the panel's tile.
     pub fn describe_tile(self) -> &'static str {
-        self.shared().map_or_else(|| self.describe(), |shared| shared.help)
+        self.shared().map_or_else(|| self.describe(), |[.., help]| help)
     }
 
     /// The key that shows and hides the panel.
@@ -193,24 +146,25 @@ impl Panel {
         self.facts().and_then(|facts| facts.key)
     }
 
+    fn texts(self) -> [&'static str; 2] {
+        match (self, self.facts()) {
+            (Panel::Map(kind), _) => [kind.title(), kind.describe()],
+            (_, facts) => facts.map_or([""; 2], |facts| [facts.title, facts.help]),
+        }
+    }
+
     /// Title of the panel.
     pub fn title(self) -> &'static str {
-        match (self, self.facts()) {
-            (Panel::Map(kind), _) => kind.title(),
-            (_, facts) => facts.map_or("", |facts| facts.title),
-        }
+        self.texts()[0]
     }
 
     /// Purpose of the panel.
     pub fn describe(self) -> &'static str {
-        match (self, self.facts()) {
-            (Panel::Map(kind), _) => kind.describe(),
-            (_, facts) => facts.map_or("", |facts| facts.help),
-        }
+        self.texts()[1]
     }
 }
 
-/// The enum of maps, with the title and the content of each.
+/// The enum of maps, with the title and the content of each: first those with a panel of their own, in reading order.
 macro_rules! map_kinds {
     ($($kind:ident, $title:literal, $help:literal;)*) => {
         /// One of the maps on screen.
@@ -220,6 +174,8 @@ macro_rules! map_kinds {
         }
 
         impl MapKind {
+            const KINDS: &[MapKind] = &[$(MapKind::$kind),*];
+
             /// Title of the map's panel.
             pub fn title(self) -> &'static str {
                 match self { $(MapKind::$kind => $title,)* }
@@ -241,9 +197,9 @@ map_kinds! {
     TargetAbove, "Target > η'", "Cells where the target exceeds η'";
     OutputAbove, "Output > η", "Cells where the output exceeds η: hits, false alarms, and what it misses of the target";
     Difference, "Difference", "Output minus target: red where the output is too bright, blue where it is too dark";
-    Unexplained, "Unexplained", "The rest of a recording, once the echoes of the reflectors laid over it are fitted and taken off";
     Doubt, "Doubt", "The error that the method expects of its output: nine of ten cells are nearer to the target than this, on scenes and over \
         noise like those it was trained on";
+    Unexplained, "Unexplained", "The rest of a recording, once the echoes of the reflectors laid over it are fitted and taken off";
     Second, "Second output", "The second method's map, from the two ends";
     SecondAbove, "Second output > η", "Cells where the second output exceeds its η";
     SecondDifference, "Second difference", "Second output minus target";
@@ -252,7 +208,6 @@ map_kinds! {
 /// One of the two methods on screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MethodSlot {
-    /// The method of the whole window.
     First,
     /// The second method, of the panel "Compare".
     Second,
@@ -273,17 +228,7 @@ impl MethodSlot {
 
 impl MapKind {
     /// All maps with a panel of their own, in reading order.
-    pub const ALL: [MapKind; 9] = [
-        MapKind::Input0,
-        MapKind::Input1,
-        MapKind::Target,
-        MapKind::Output,
-        MapKind::TargetAbove,
-        MapKind::OutputAbove,
-        MapKind::Difference,
-        MapKind::Doubt,
-        MapKind::Unexplained,
-    ];
+    pub const ALL: [MapKind; 9] = *MapKind::KINDS.first_chunk().expect("nine maps with a panel");
 
     /// The slot of the method whose output the map is made of, if any.
     pub fn slot(self) -> Option<MethodSlot> {

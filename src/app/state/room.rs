@@ -1,6 +1,6 @@
 //! Room for an opened panel: its least size, taken from its neighbours and returned when it is closed.
 
-use super::panel::{MapKind, Panel};
+use super::panel::Panel;
 use eframe::egui::Vec2;
 use egui_tiles::{Container, LinearDir, Shares, Tile, TileId, Tiles};
 use serde::{Deserialize, Serialize};
@@ -15,18 +15,14 @@ const TABS: f32 = 24.0;
 /// Shares of a container before a panel took room in it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Taken {
-    /// The panel.
     panel: Panel,
-    /// The container.
     container: TileId,
-    /// Shares of its children.
     before: Shares,
 }
 
 /// The least useful size of a panel, points.
 pub fn least_size(panel: Panel) -> Vec2 {
     let [width, height] = match panel {
-        Panel::Map(MapKind::Input0 | MapKind::Input1 | MapKind::Target | MapKind::Output) => [200.0, 140.0],
         Panel::Scene | Panel::Map(_) => [200.0, 140.0],
         Panel::Inspector => [250.0, 210.0],
         Panel::Objects | Panel::Timing => [250.0, 160.0],

@@ -5,9 +5,7 @@ use std::path::PathBuf;
 /// A file to be written, and the doubt about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SaveQuestion {
-    /// The file.
     pub path: PathBuf,
-    /// The reason why the file isn't written at once.
     pub doubt: Doubt,
 }
 
@@ -27,6 +25,5 @@ pub enum SaveAnswer {
     Anyway,
     /// Write the whole scene to another file.
     Elsewhere,
-    /// Write no file.
     Cancel,
 }

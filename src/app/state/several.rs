@@ -12,7 +12,6 @@ use std::sync::Arc;
 /// Most maps at once.
 pub const MAX_MAPS: usize = 8;
 
-/// The floors that are compared.
 const FLOORS: [(&str, Floor); 4] = [
     ("thesis", Floor::Thesis),
     ("exact", Floor::Exact),
@@ -24,16 +23,13 @@ named! {
     /// The parameter that differs from map to map.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     pub enum Parameter {
-        /// The window of both transforms.
         #[default]
         Window = "window",
-        /// Swept bandwidth, GHz.
         Bandwidth = "bandwidth",
         /// Elements of each end.
         EndElements = "elements of an end",
         /// Distance between elements, wavelengths.
         Spacing = "element spacing",
-        /// The floor beneath the reflectors.
         Floor = "floor",
         /// Signal-to-noise ratio of a sample, dB.
         Snr = "SNR",
@@ -82,13 +78,10 @@ impl Parameter {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Several {
-    /// The parameter that differs.
     pub parameter: Parameter,
-    /// Kind of the map.
     pub map: MapKind,
     /// The first value, in the parameter's unit.
     pub low: f64,
-    /// The last value.
     pub high: f64,
     /// Number of maps, where the parameter is a number.
     pub count: usize,
@@ -113,11 +106,8 @@ impl Default for Several {
 /// Label, radar, floor and method of one map.
 #[derive(Clone, PartialEq)]
 pub struct Variant {
-    /// Value of the parameter in words.
     pub label: String,
-    /// Radar of the map.
     pub radar: Radar,
-    /// Floor beneath the reflectors.
     pub floor: Floor,
     /// The method that makes the map, if it needs one.
     pub method: Option<Shared<dyn Reconstructor>>,
@@ -206,7 +196,6 @@ impl Parameter {
         Some((radar, floor))
     }
 
-    /// A value with its unit.
     fn label(self, value: f64) -> String {
         let unit = self.unit().unwrap_or_default();
         if self == Parameter::EndElements { format!("{value:.0}{unit}") } else { format!("{}{unit}", number(value)) }

@@ -1,4 +1,4 @@
-//! The state of a first start, and that of a test.
+//! The state of a first start.
 
 use super::{
     Arrangement, Failures, Guided, MapViews, MethodTimes, Methods, Notices, Pointer, SceneView, Settings, State,
@@ -41,16 +41,20 @@ impl State {
 }
 
 #[cfg(test)]
-impl State {
-    /// The state with this radar and scene, without methods.
-    pub fn of(radar: crate::radar::Radar, scene: crate::scene::Scene) -> State {
-        let document = Document::shipped(crate::scene::file::SceneFile { radar, scene });
-        State { editor: Editor::of(document), ..State::new(Vec::new()) }
-    }
+mod tests {
+    use super::*;
 
-    /// The state with this recording on screen, without methods.
-    pub fn recorded(recording: crate::recording::Recording) -> State {
-        let document = Document::of_frame(recording, std::path::Path::new("capture.cfg"));
-        State { editor: Editor::of(document), ..State::new(Vec::new()) }
+    impl State {
+        /// The state with this radar and scene, without methods.
+        pub fn of(radar: crate::radar::Radar, scene: crate::scene::Scene) -> State {
+            let document = Document::shipped(crate::scene::file::SceneFile { radar, scene });
+            State { editor: Editor::of(document), ..State::new(Vec::new()) }
+        }
+
+        /// The state with this recording on screen, without methods.
+        pub fn recorded(recording: crate::recording::Recording) -> State {
+            let document = Document::of_frame(recording, std::path::Path::new("capture.cfg"));
+            State { editor: Editor::of(document), ..State::new(Vec::new()) }
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! Default arrangement of the panels for each task, for a presentation, and for a lesson on the whole screen.
 
 use super::panel::{MapKind, Panel};
+use MapKind::{Difference, Doubt, Input0, Input1, Output, OutputAbove, Target, TargetAbove, Unexplained};
+use Panel::Map;
 use eframe::egui;
 use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
@@ -55,63 +57,49 @@ impl Task {
     }
 }
 
+/// Part of an arrangement: tabs, the first in front, or a row or column of parts with their shares.
+enum Part {
+    Tabs(Vec<Panel>),
+    Linear(LinearDir, Vec<(f32, Part)>),
+}
+
 /// The scene, its settings and all maps; tools have closed tiles.
 fn explore() -> Tree<Panel> {
-    let mut tiles = Tiles::default();
-    let mut pane = |panel| tiles.insert_pane(panel);
-    let [scene, controls, inspector, objects] =
-        [Panel::Scene, Panel::Controls, Panel::Inspector, Panel::Objects].map(&mut pane);
-    let [in0, in1, target, output, target_above, output_above, difference, doubt, unexplained] =
-        MapKind::ALL.map(|kind| pane(Panel::Map(kind)));
-    let [cuts, roc, timing] = [Panel::Cuts, Panel::Roc, Panel::Timing].map(&mut pane);
-    let [guide, lesson, recording, radar] =
-        [Panel::Guide, Panel::Lesson, Panel::Recording, Panel::Radar].map(&mut pane);
-    let of_results = [Panel::Found, Panel::Bounds, Panel::Phasors, Panel::Chirp, Panel::Training];
-    let tools = of_results.map(pane);
-    for closed in [timing, guide, lesson, recording, radar, doubt, unexplained].iter().chain(&tools) {
-        tiles.set_visible(*closed, false);
-    }
-    let tabs = |tiles: &mut Tiles<Panel>, children: Vec<TileId>| tiles.insert_tab_tile(children);
-    let scene = tabs(&mut tiles, vec![scene]);
-    let controls = tabs(&mut tiles, vec![controls, radar, timing]);
+    let tools = [Panel::Found, Panel::Bounds, Panel::Phasors, Panel::Chirp, Panel::Training];
     // Panels that are read while settings change are beside them.
-    let beside = tabs(&mut tiles, vec![guide, lesson, recording]);
-    let inspector = tabs(&mut tiles, vec![inspector, objects]);
-    let left = column(&mut tiles, vec![scene, controls, inspector], &[0.40, 0.37, 0.23]);
-    let first = tabs(&mut tiles, vec![in0]);
-    let second = tabs(&mut tiles, vec![target]);
-    let third = tabs(&mut tiles, vec![target_above, cuts]);
-    let left_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
-    let first = tabs(&mut tiles, vec![in1]);
-    let second = tabs(&mut tiles, vec![output, difference, doubt, unexplained]);
-    let third = tabs(&mut tiles, [output_above, roc].into_iter().chain(tools).collect());
-    let right_maps = column(&mut tiles, vec![first, second, third], &[1.0, 1.0, 1.0]);
-    let root = row(&mut tiles, vec![left, beside, left_maps, right_maps], &[1.1, 0.9, 1.0, 1.0]);
-    Tree::new(egui::Id::unique("panels"), root, tiles)
+    let beside = [Panel::Guide, Panel::Lesson, Panel::Recording];
+    let left = column([
+        (0.40, tabs([Panel::Scene])),
+        (0.37, tabs([Panel::Controls, Panel::Radar, Panel::Timing])),
+        (0.23, tabs([Panel::Inspector, Panel::Objects])),
+    ]);
+    let left_maps =
+        column([(1.0, tabs([Map(Input0)])), (1.0, tabs([Map(Target)])), (1.0, tabs([Map(TargetAbove), Panel::Cuts]))]);
+    let right_maps = column([
+        (1.0, tabs([Map(Input1)])),
+        (1.0, tabs([Output, Difference, Doubt, Unexplained].map(Map))),
+        (1.0, tabs([Map(OutputAbove), Panel::Roc].into_iter().chain(tools))),
+    ]);
+    let all = row([(1.1, left), (0.9, tabs(beside)), (1.0, left_maps), (1.0, right_maps)]);
+    let closed = [Panel::Timing, Panel::Radar, Map(Doubt), Map(Unexplained)];
+    tree("panels", all, closed.into_iter().chain(beside).chain(tools))
 }
 
 /// Two methods large, with scene, target and settings beside them.
 fn compare() -> Tree<Panel> {
-    let mut tiles = Tiles::default();
-    let scene = tabs(&mut tiles, &[Panel::Scene]);
-    let target = tabs(&mut tiles, &[Panel::Map(MapKind::Target)]);
-    let settings = tabs(&mut tiles, &[Panel::Controls, Panel::Inspector, Panel::Cuts]);
-    let left = column(&mut tiles, vec![scene, target, settings], &[1.0, 0.9, 1.0]);
-    let compare = tabs(&mut tiles, &[Panel::Compare]);
-    let root = row(&mut tiles, vec![left, compare], &[0.3, 0.7]);
-    Tree::new(egui::Id::unique("compare"), root, tiles)
+    let settings = tabs([Panel::Controls, Panel::Inspector, Panel::Cuts]);
+    let left = column([(1.0, tabs([Panel::Scene])), (0.9, tabs([Map(Target)])), (1.0, settings)]);
+    tree("compare", row([(0.3, left), (0.7, tabs([Panel::Compare]))]), [])
 }
 
 /// Rows on the whole width, since they are long, with the maps of the opened one above.
 fn failures() -> Tree<Panel> {
-    let mut tiles = Tiles::default();
-    let scene = tabs(&mut tiles, &[Panel::Scene, Panel::Inspector]);
-    let target = tabs(&mut tiles, &[MapKind::Target, MapKind::TargetAbove].map(Panel::Map));
-    let output = tabs(&mut tiles, &[MapKind::Output, MapKind::OutputAbove, MapKind::Difference].map(Panel::Map));
-    let above = row(&mut tiles, vec![scene, target, output], &[0.9, 1.0, 1.0]);
-    let rows = tabs(&mut tiles, &[Panel::Failures]);
-    let root = column(&mut tiles, vec![above, rows], &[0.42, 0.58]);
-    Tree::new(egui::Id::unique("failures"), root, tiles)
+    let above = row([
+        (0.9, tabs([Panel::Scene, Panel::Inspector])),
+        (1.0, tabs([Target, TargetAbove].map(Map))),
+        (1.0, tabs([Output, OutputAbove, Difference].map(Map))),
+    ]);
+    tree("failures", column([(0.42, above), (0.58, tabs([Panel::Failures]))]), [])
 }
 
 /// A lesson on the whole screen: its text is read from afar, and has more room.
@@ -122,52 +110,56 @@ pub fn projected_lesson() -> Tree<Panel> {
 /// A lesson large, with the scene and the controls of challenges, one map large, the others that lessons ask about, and the target above
 /// its threshold. `part` of the height is the lesson's, and the maps are so many times as wide.
 fn lesson(name: &'static str, [part, times]: [f32; 2]) -> Tree<Panel> {
-    let mut tiles = Tiles::default();
-    let lesson = tabs(&mut tiles, &[Panel::Lesson]);
-    let controls = [Panel::Radar, Panel::Inspector].map(|panel| tiles.insert_pane(panel));
-    controls.iter().for_each(|control| tiles.set_visible(*control, false));
-    let scene = tiles.insert_pane(Panel::Scene);
-    let scene = tiles.insert_tab_tile([scene].into_iter().chain(controls).collect());
-    let [in0, in1, target] =
-        [MapKind::Input0, MapKind::Input1, MapKind::Target].map(|kind| tabs(&mut tiles, &[Panel::Map(kind)]));
-    let output = tabs(&mut tiles, &[MapKind::Output, MapKind::TargetAbove].map(Panel::Map));
-    let left = column(&mut tiles, vec![lesson, scene], &[part, 1.0 - part]);
-    let others = row(&mut tiles, vec![in0, in1, output], &[1.0, 1.0, 1.0]);
-    let right = column(&mut tiles, vec![target, others], &[1.5, 1.0]);
-    let root = row(&mut tiles, vec![left, right], &[1.0, times]);
-    Tree::new(egui::Id::unique(name), root, tiles)
+    let controls = [Panel::Radar, Panel::Inspector];
+    let scene = tabs([Panel::Scene].into_iter().chain(controls));
+    let left = column([(part, tabs([Panel::Lesson])), (1.0 - part, scene)]);
+    let others = [vec![Input0], vec![Input1], vec![Output, TargetAbove]];
+    let others = row(others.map(|maps| (1.0, tabs(maps.into_iter().map(Map)))));
+    let right = column([(1.5, tabs([Map(Target)])), (1.0, others)]);
+    tree(name, row([(1.0, left), (times, right)]), controls)
 }
 
 /// Panels for an audience: target and output equally large, scene and the ends' maps below them.
 pub fn presentation() -> Tree<Panel> {
+    let side_by_side = |panels: &[Panel]| row(panels.iter().map(|panel| (1.0, tabs([*panel]))));
+    let upper = side_by_side(&[Map(Target), Map(Output)]);
+    let lower = side_by_side(&[Panel::Scene, Map(Input0), Map(Input1)]);
+    tree("presentation", column([(1.0, upper), (1.0, lower)]), [])
+}
+
+fn tabs(panels: impl IntoIterator<Item = Panel>) -> Part {
+    Part::Tabs(panels.into_iter().collect())
+}
+
+fn column(parts: impl IntoIterator<Item = (f32, Part)>) -> Part {
+    Part::Linear(LinearDir::Vertical, parts.into_iter().collect())
+}
+
+fn row(parts: impl IntoIterator<Item = (f32, Part)>) -> Part {
+    Part::Linear(LinearDir::Horizontal, parts.into_iter().collect())
+}
+
+/// The tiles of an arrangement; those of `closed` are hidden.
+fn tree(name: &'static str, all: Part, closed: impl IntoIterator<Item = Panel>) -> Tree<Panel> {
     let mut tiles = Tiles::default();
-    let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
-    let scene = tabs(&mut tiles, &[Panel::Scene]);
-    let [first, last, target, output] = maps.map(|kind| tabs(&mut tiles, &[Panel::Map(kind)]));
-    let upper = row(&mut tiles, vec![target, output], &[1.0, 1.0]);
-    let lower = row(&mut tiles, vec![scene, first, last], &[1.0, 1.0, 1.0]);
-    let root = column(&mut tiles, vec![upper, lower], &[1.0, 1.0]);
-    Tree::new(egui::Id::unique("presentation"), root, tiles)
-}
-
-/// Tabs of these panels, the first in front.
-fn tabs(tiles: &mut Tiles<Panel>, panels: &[Panel]) -> TileId {
-    let panes = panels.iter().map(|panel| tiles.insert_pane(*panel)).collect();
-    tiles.insert_tab_tile(panes)
-}
-
-fn column(tiles: &mut Tiles<Panel>, children: Vec<TileId>, shares: &[f32]) -> TileId {
-    linear(tiles, LinearDir::Vertical, children, shares)
-}
-
-fn row(tiles: &mut Tiles<Panel>, children: Vec<TileId>, shares: &[f32]) -> TileId {
-    linear(tiles, LinearDir::Horizontal, children, shares)
-}
-
-fn linear(tiles: &mut Tiles<Panel>, dir: LinearDir, children: Vec<TileId>, shares: &[f32]) -> TileId {
-    let mut linear = Linear::new(dir, children.clone());
-    for (child, share) in children.into_iter().zip(shares) {
-        linear.shares.set_share(child, *share);
+    let root = add(&mut tiles, all);
+    for id in closed.into_iter().filter_map(|panel| tiles.find_pane(&panel)).collect::<Vec<_>>() {
+        tiles.set_visible(id, false);
     }
-    tiles.insert_container(Container::Linear(linear))
+    Tree::new(egui::Id::unique(name), root, tiles)
+}
+
+fn add(tiles: &mut Tiles<Panel>, part: Part) -> TileId {
+    match part {
+        Part::Tabs(panels) => {
+            let panes = panels.into_iter().map(|panel| tiles.insert_pane(panel)).collect();
+            tiles.insert_tab_tile(panes)
+        }
+        Part::Linear(dir, parts) => {
+            let placed: Vec<_> = parts.into_iter().map(|(share, part)| (share, add(tiles, part))).collect();
+            let mut linear = Linear::new(dir, placed.iter().map(|(_, id)| *id).collect());
+            placed.into_iter().for_each(|(share, id)| linear.shares.set_share(id, share));
+            tiles.insert_container(Container::Linear(linear))
+        }
+    }
 }

@@ -8,9 +8,7 @@ use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 /// The visible part of a map, as fractions of its width and height; y counts upwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapView {
-    /// Lower left corner.
     pub low: Pos2,
-    /// Upper right corner.
     pub high: Pos2,
 }
 
@@ -21,6 +19,13 @@ impl Default for MapView {
 }
 
 impl MapView {
+    /// The part `half` to either side of `middle`, within the map; at most all of it.
+    pub fn around(middle: Pos2, half: Vec2) -> MapView {
+        let half = half.min(Vec2::splat(0.5));
+        let low = (middle - half).clamp(Pos2::ZERO, pos2(1.0, 1.0) - 2.0 * half);
+        MapView { low, high: low + 2.0 * half }
+    }
+
     fn size(&self) -> Vec2 {
         self.high - self.low
     }
@@ -63,7 +68,6 @@ impl MapView {
 /// The visible part of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneView {
-    /// Place in the middle.
     pub centre: Place,
     /// Scale: metres per point on screen.
     pub metres_per_point: f64,
@@ -134,7 +138,6 @@ impl SceneView {
 /// The pointer's place, in the coordinates of all panels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cursor {
-    /// Place in the scene.
     pub place: Place,
     /// Range from the middle of the array.
     pub range_metres: f64,
@@ -142,7 +145,6 @@ pub struct Cursor {
     pub cos_theta: f64,
     /// Range bin, fractional; beyond the last one for a place out of range.
     pub bin: f64,
-    /// Column, fractional.
     pub column: f64,
 }
 
@@ -151,7 +153,6 @@ pub struct Cursor {
 pub struct MapViews {
     /// Maps over cos(theta) and range.
     pub range_angle: MapView,
-    /// Maps over x and y.
     pub cartesian: MapView,
 }
 
@@ -163,15 +164,10 @@ impl MapViews {
             Projection::Cartesian => &mut self.cartesian,
         }
     }
-}
 
-impl MapViews {
-    /// The visible part of maps over these coordinates.
-    pub fn seen(&self, projection: Projection) -> MapView {
-        match projection {
-            Projection::RangeAngle => self.range_angle,
-            Projection::Cartesian => self.cartesian,
-        }
+    /// A copy of it.
+    pub fn seen(mut self, projection: Projection) -> MapView {
+        *self.of(projection)
     }
 }
 
@@ -183,7 +179,7 @@ pub struct Pointer {
     /// Place set by a panel of this frame.
     next: Option<Cursor>,
     /// Last place within the maps, for panels that need one while the pointer is elsewhere.
-    last: Option<Cursor>,
+    pub last: Option<Cursor>,
 }
 
 impl Pointer {
@@ -198,11 +194,6 @@ impl Pointer {
         self.now = self.next.take();
         self.last = self.now.filter(|c| c.cell(radar).is_some()).or(self.last);
         moved
-    }
-
-    /// Last place within the maps.
-    pub fn last(&self) -> Option<Cursor> {
-        self.last
     }
 }
 

@@ -10,11 +10,12 @@ pub use keep::keep;
 pub use store::{is_table_of_rows, write as write_rows_to};
 pub use table::RowTable;
 #[cfg(test)]
-pub use table::some_row;
+pub use table::tests::some_row;
 pub use thumbnails::{Album, HEIGHT as THUMBNAIL_HEIGHT, Thumbnail, WIDTH as THUMBNAIL_WIDTH};
 
 use super::background::Background;
-use super::rows::{Plan, RowJob, Stopped, Teller};
+use super::derived::Failure;
+use super::rows::{Plan, RowJob, Teller};
 use crate::app::state::{Conditions, State};
 use crate::evaluate::campaign::{Campaign, Unfit};
 use crate::evaluate::rows::{FORMAT, Row, WHY_NO_OTHER_FORMAT};
@@ -39,7 +40,6 @@ const FILE: &str = "failures.csv";
 
 /// Methods and scenes to be tried.
 pub struct FailuresPlan {
-    /// Radar, floor, scenes.
     pub campaign: Campaign,
     pub sets: Vec<SceneSet>,
     pub methods: Vec<Arc<dyn Reconstructor>>,
@@ -66,7 +66,7 @@ impl Plan for Run {
     const WHAT: &'static str = "Trying methods";
     const ADVICE: &'static str = "Leave the method out, or try another seed.";
 
-    fn run(&self, teller: &Teller<'_, (u64, Row)>) -> Result<Vec<Unfit>, Stopped> {
+    fn run(&self, teller: &Teller<'_, (u64, Row)>) -> Result<Vec<Unfit>, Failure> {
         let Run { plan, generation, album } = self;
         let methods: Vec<&dyn Reconstructor> = plan.methods.iter().map(AsRef::as_ref).collect();
         let (mut done, total) = (0, plan.maps().max(1));
@@ -78,8 +78,8 @@ impl Plan for Run {
         });
         match found {
             Ok((_, unfit)) => Ok(unfit),
-            Err(error) if error.is_cancelled() => Err(Stopped::Cancelled),
-            Err(error) => Err(Stopped::Failed(error.to_string())),
+            Err(error) if error.is_cancelled() => Err(Failure::Cancelled),
+            Err(error) => Err(error.to_string().into()),
         }
     }
 }
@@ -88,15 +88,12 @@ impl Plan for Run {
 pub struct Failures {
     /// The run of methods on scenes, whose rows go into the table.
     pub run: RowJob<Run>,
-    /// The rows.
     pub table: RowTable,
     /// The rows last replaced by others.
     before: Option<(Arc<Vec<Row>>, Conditions)>,
-    /// Small maps of rows.
     pub thumbnails: Thumbnails,
     /// Files of rows being read and written.
     files: Background<Done>,
-    /// The search near the scene on screen.
     pub search: Search,
     /// The app's own file of rows, if it keeps one.
     file: Option<PathBuf>,
@@ -114,7 +111,7 @@ impl Failures {
         let files = Background::new(ctx.clone());
         let file = folder.map(|folder| folder.join(FILE));
         if let Some(file) = file.clone().filter(|file| fs::exists(file)) {
-            begin(&files, move || Done::read(file, true));
+            begin(&files, move || Done::Read { kept: store::read(&file), path: file, own: true });
         }
         let search = Search::start(wake);
         let table = RowTable::default();
@@ -130,7 +127,8 @@ impl Failures {
         if *self.table.conditions() != conditions || !self.table.is_of_this_format() || !self.table.hears(&layout) {
             self.replace(Vec::new(), conditions);
         }
-        self.thumbnails.stop();
+        // The run's times are measured, so it needs the processor.
+        self.thumbnails.job.cancel();
         let album = self.thumbnails.album.clone();
         self.run.begin(Run { plan, generation: self.table.generation(), album });
     }
@@ -166,12 +164,12 @@ impl Failures {
     /// Reads the rows of a file, which replace all others once read.
     pub fn open(&mut self, path: PathBuf) {
         self.run.cancel();
-        begin(&self.files, move || Done::read(path, false));
+        begin(&self.files, move || Done::Read { kept: store::read(&path), path, own: false });
     }
 
     /// Whether files or thumbnails are under way.
     pub fn is_busy(&self) -> bool {
-        self.files.is_busy() || self.thumbnails.is_busy()
+        self.files.is_busy() || self.thumbnails.job.progress().is_some()
     }
 
     /// Whether the app's own file holds every row.
@@ -194,7 +192,7 @@ impl Failures {
     pub fn poll(&mut self) -> Vec<String> {
         let mut errors = Vec::from_iter(self.run.poll());
         self.take_in_rows();
-        errors.extend(self.thumbnails.poll());
+        errors.extend(self.thumbnails.job.poll());
         for done in self.files.finished() {
             match done {
                 Done::Read { own, kept: Ok((rows, conditions)), .. } => {
@@ -240,8 +238,7 @@ impl Failures {
         let runs = self.run.progress().is_some();
         if shown && !runs {
             let rows = state.failures.in_sight.iter().filter_map(|index| self.table.rows().get(*index));
-            let method = |name: &str| state.methods.all.iter().find(|m| m.name() == name).cloned();
-            self.thumbnails.ask(self.table.generation(), self.table.conditions(), rows, method);
+            self.thumbnails.ask(self.table.generation(), self.table.conditions(), rows, &state.methods);
         }
         let file = self.file.as_ref()?;
         if self.is_kept() || self.files.is_busy() {
@@ -252,7 +249,9 @@ impl Failures {
             let (rows, conditions, version) =
                 (self.table.rows().clone(), self.table.conditions().clone(), self.table.version());
             let file = file.clone();
-            begin(&self.files, move || Done::write(&file, &rows, &conditions, version));
+            begin(&self.files, move || {
+                store::write(&file, &rows, &conditions).map_or_else(Done::Unwritten, |()| Done::Wrote(version))
+            });
             self.written = Some(Instant::now());
         }
         wait

@@ -1,6 +1,7 @@
 //! The search for a worse scene near the one on screen, or for its repair, in the background.
 
-use crate::app::jobs::rows::{Plan, RowJob, Stopped, Teller};
+use crate::app::jobs::derived::Failure;
+use crate::app::jobs::rows::{Plan, RowJob, Teller};
 use crate::app::state::{SearchChoice, State};
 use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningSearch as Job};
 use crate::radar::counted;
@@ -8,10 +9,12 @@ use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// A search, its first scene and its method.
+/// A search, its first scene and that scene's document, and the user's choices.
 struct SearchPlan {
     job: Job,
     scene: Arc<Scene>,
+    document: u64,
+    choice: SearchChoice,
     method: Arc<dyn Reconstructor>,
 }
 
@@ -22,7 +25,7 @@ impl Plan for SearchPlan {
     const WHAT: &'static str = "The search";
     const ADVICE: &'static str = "Choose another method, or move something.";
 
-    fn run(&self, teller: &Teller<'_, Finding>) -> Result<(), Stopped> {
+    fn run(&self, teller: &Teller<'_, Finding>) -> Result<(), Failure> {
         let mut told = 0;
         let on_try = |tries: u32, path: &[Finding]| {
             path[told..].iter().for_each(|finding| teller.row(finding.clone()));
@@ -31,29 +34,16 @@ impl Plan for SearchPlan {
             !teller.task.is_cancelled()
         };
         let outcome = self.job.run(&self.scene, self.method.as_ref(), teller.task, on_try);
-        let outcome = outcome.map_err(|error| Stopped::Failed(error.to_string()))?;
+        let outcome = outcome.map_err(|error| error.to_string())?;
         // Findings of the last batch before it was stopped.
         outcome.path[told..].iter().for_each(|finding| teller.row(finding.clone()));
-        if teller.task.is_cancelled() { Err(Stopped::Cancelled) } else { Ok(()) }
+        Ok(())
     }
-}
-
-/// The start of a search and the user's choices for it.
-struct Subject {
-    scene: Arc<Scene>,
-    document: u64,
-    choice: SearchChoice,
-    method: &'static str,
 }
 
 /// The worker of searches, and the path of the last one.
 pub struct Search {
     job: RowJob<SearchPlan>,
-    subject: Option<Subject>,
-    /// Centres of every object along the path, `[x, y]` in metres.
-    trails: Vec<Vec<[f64; 2]>>,
-    /// Number of findings of the path that the trails hold.
-    drawn: usize,
     /// Whether `poll` has reported the end of the search.
     told: bool,
 }
@@ -61,8 +51,7 @@ pub struct Search {
 impl Search {
     /// Starts the worker, idle at first; `wake` is called from its thread.
     pub fn start(wake: impl Fn() + Clone + Send + Sync + 'static) -> Search {
-        let job = RowJob::start(wake);
-        Search { job, subject: None, trails: Vec::new(), drawn: 0, told: true }
+        Search { job: RowJob::start(wake), told: true }
     }
 
     /// Begins a search near the scene on screen.
@@ -81,9 +70,8 @@ impl Search {
             seed: 0,
         };
         let document = state.editor.document().id();
-        self.subject = Some(Subject { scene: scene.clone(), document, choice, method: method.name() });
-        (self.trails, self.drawn, self.told) = (Vec::new(), 0, false);
-        self.job.begin(SearchPlan { job, scene, method });
+        self.told = false;
+        self.job.begin(SearchPlan { job, scene, document, choice, method });
     }
 
     /// Stops soon; its findings stay.
@@ -93,9 +81,8 @@ impl Search {
 
     /// Drops the search with its path.
     pub fn forget(&mut self) {
-        self.job.cancel();
-        self.job.take_rows();
-        (self.subject, self.trails, self.told) = (None, Vec::new(), true);
+        self.job.forget();
+        self.told = true;
     }
 
     /// Finished part of the search, 0 to 1, while it runs.
@@ -105,40 +92,35 @@ impl Search {
 
     /// The reason why the search ended early, unless it was dropped since.
     pub fn note(&self) -> Option<&str> {
-        self.subject.as_ref().and(self.job.note())
+        self.job.plan().and(self.job.note())
     }
 
     /// Choices and method of the last search, unless it was dropped.
     pub fn subject(&self) -> Option<(SearchChoice, &'static str)> {
-        self.subject.as_ref().map(|s| (s.choice, s.method))
+        self.job.plan().map(|plan| (plan.choice, plan.method.name()))
     }
 
     /// The first scene, and every later one that was better for the aim than all before it.
     pub fn path(&self) -> &[Finding] {
-        if self.subject.is_some() { self.job.rows() } else { &[] }
+        self.job.rows()
     }
 
-    /// Centres of every object along the path, while the search's document is on screen.
-    pub fn trails(&self, document: u64) -> &[Vec<[f64; 2]>] {
-        let same = self.subject.as_ref().is_some_and(|s| s.document == document);
-        if same { &self.trails } else { &[] }
+    /// Centres of every object along the path, `[x, y]` in metres, while the search's document is on screen.
+    pub fn trails(&self, document: u64) -> Vec<Vec<[f64; 2]>> {
+        let is_shown = self.job.plan().is_some_and(|plan| plan.document == document);
+        let scenes = self.path().iter().map(|finding| &finding.scene.objects).filter(|_| is_shown);
+        let objects = scenes.clone().map(Vec::len).max().unwrap_or(0);
+        (0..objects).map(|i| scenes.clone().filter_map(|of| Some(of.get(i)?.centre_metres())).collect()).collect()
     }
 
     /// Whether the scene on screen is still the search's first one.
     pub fn is_about(&self, scene: &Arc<Scene>) -> bool {
-        self.subject.as_ref().is_some_and(|s| Arc::ptr_eq(&s.scene, scene))
+        self.job.plan().is_some_and(|plan| Arc::ptr_eq(&plan.scene, scene))
     }
 
     /// Takes in findings. Returns whether the search ended just now, and a message for the user.
     pub fn poll(&mut self) -> (bool, Option<String>) {
         let panicked = self.job.poll();
-        let path = if self.subject.is_some() { self.job.rows() } else { &[] };
-        for finding in &path[self.drawn.min(path.len())..] {
-            let objects = &finding.scene.objects;
-            self.trails.resize_with(objects.len(), Vec::new);
-            self.trails.iter_mut().zip(objects).for_each(|(trail, object)| trail.push(object.centre_metres()));
-        }
-        self.drawn = path.len();
         let ended = !self.told && self.job.progress().is_none();
         self.told |= ended;
         (ended, panicked)
@@ -162,7 +144,7 @@ impl Search {
 
     /// Drops a search that began in another document than the one on screen.
     pub fn keep_to(&mut self, document: u64) {
-        if self.subject.as_ref().is_some_and(|subject| subject.document != document) {
+        if self.job.plan().is_some_and(|plan| plan.document != document) {
             self.forget();
         }
     }

@@ -7,6 +7,7 @@ use crate::files::{read_bounded, write_atomically, write_bytes};
 use crate::platform::fs::{self, File};
 use crate::radar::Radar;
 use crate::scene::generate::{Purpose, Reading};
+use std::fmt::Display;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -27,18 +28,22 @@ fn beside(rows: &Path) -> PathBuf {
 /// The file that could not be written, and the reason.
 pub fn write(path: &Path, rows: &[Row], conditions: &Conditions) -> Result<(), String> {
     let other = beside(path);
-    let told = |path: &Path, error: io::Error| format!("{}: {error}", path.display());
     if *conditions == Conditions::default() {
         if let Err(error) = fs::remove_file(&other)
             && error.kind() != io::ErrorKind::NotFound
         {
-            return Err(told(&other, error));
+            return Err(told(&other)(error));
         }
     } else {
-        let text = toml::to_string_pretty(conditions).map_err(|e| format!("{}: {e}", other.display()))?;
-        write_bytes(&other, text.as_bytes()).map_err(|e| told(&other, e))?;
+        let text = toml::to_string_pretty(conditions).map_err(told(&other))?;
+        write_bytes(&other, text.as_bytes()).map_err(told(&other))?;
     }
-    write_atomically(path, |out| write_rows(out, rows)).map_err(|e| told(path, e))
+    write_atomically(path, |out| write_rows(out, rows)).map_err(told(path))
+}
+
+/// An error with the file that it is about.
+fn told<E: Display>(path: &Path) -> impl Fn(E) -> String {
+    move |error| format!("{}: {error}", path.display())
 }
 
 /// Reads a file of rows written by [`write`] or `apertura evaluate --rows`.
@@ -46,18 +51,15 @@ pub fn write(path: &Path, rows: &[Row], conditions: &Conditions) -> Result<(), S
 /// # Errors
 /// The file, the line and the text expected there.
 pub fn read(path: &Path) -> Result<KeptRows, String> {
-    let file = File::open(path).map_err(|e| format!("{}: {e}", path.display()))?;
-    let rows = read_rows(file).map_err(|e| format!("{}: {e}", path.display()))?;
+    let rows = read_rows(File::open(path).map_err(told(path))?).map_err(told(path))?;
     if rows.array_windows().any(|[a, b]| a.version != b.version) {
-        return Err(format!("{}: these rows are of several formats; {WHY_NO_OTHER_FORMAT}", path.display()));
+        return Err(told(path)(format!("these rows are of several formats; {WHY_NO_OTHER_FORMAT}")));
     }
     let other = beside(path);
     let conditions = match read_bounded(&other, MAX_CONDITIONS_BYTES) {
-        Ok(bytes) => read_conditions(&bytes).map_err(|e| format!("{}: {e}", other.display()))?,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            conditions_of(&rows).map_err(|e| format!("{}: {e}", path.display()))?
-        }
-        Err(error) => return Err(format!("{}: {error}", other.display())),
+        Ok(bytes) => read_conditions(&bytes).map_err(told(&other))?,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => conditions_of(&rows).map_err(told(path))?,
+        Err(error) => return Err(told(&other)(error)),
     };
     Ok((rows, conditions))
 }
@@ -71,16 +73,12 @@ fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
         let (Some(floor), Some(normalisation)) = (row.floor, row.normalisation) else { continue };
         if let Some(carrier) = row.carrier {
             if (row.purpose, row.reading) != (Some(Purpose::Test), Some(Reading::Program)) {
-                return Err(
-                    "these rows are not of the test scenes that the app makes; expected rows without --thesis-text"
-                        .into(),
-                );
+                let expected = "expected rows without --thesis-text";
+                return Err(format!("these rows are not of the test scenes that the app makes; {expected}"));
             }
             if !row.radar.is_empty() {
-                return Err(format!(
-                    "these rows are of another radar ({}); expected its .conditions.toml beside them",
-                    row.radar
-                ));
+                let expected = "expected its .conditions.toml beside them";
+                return Err(format!("these rows are of another radar ({}); {expected}", row.radar));
             }
             radar.carrier = carrier;
         }
@@ -91,9 +89,8 @@ fn conditions_of(rows: &[Row]) -> Result<Conditions, String> {
         };
         let own = Conditions { floor, normalisation, radar: radar.clone() };
         if found.as_ref().is_some_and(|found| (found.floor, found.normalisation) != (own.floor, own.normalisation)) {
-            return Err(
-                "these rows were made over several floors or normalisations; expected rows that were made alike".into(),
-            );
+            let expected = "expected rows that were made alike";
+            return Err(format!("these rows were made over several floors or normalisations; {expected}"));
         }
         found = Some(own);
     }
@@ -140,22 +137,9 @@ pub fn begin(files: &Background<Done>, work: impl FnOnce() -> Done + Send + 'sta
     }
 }
 
-impl Done {
-    /// Reads a file of rows; `own` for the app's own file.
-    pub fn read(path: PathBuf, own: bool) -> Done {
-        let kept = read(&path);
-        Done::Read { path, own, kept }
-    }
-
-    /// Writes the app's own file.
-    pub fn write(path: &Path, rows: &[Row], conditions: &Conditions, version: u64) -> Done {
-        write(path, rows, conditions).map_or_else(Done::Unwritten, |()| Done::Wrote(version))
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::table::some_row;
+    use super::super::some_row;
     use super::*;
     use crate::maps::Normalisation;
     use crate::radar::Decibels;

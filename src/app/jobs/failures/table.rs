@@ -102,40 +102,39 @@ impl RowTable {
     }
 }
 
-/// A row for tests.
 #[cfg(test)]
-pub fn some_row(index: u32, method: &str) -> Row {
+pub mod tests {
+    use super::*;
     use crate::evaluate::campaign::Campaign;
     use crate::evaluate::sets::SceneSet;
     use crate::reconstruct::{Baseline, Reconstructor};
     use crate::scene::generate::Kind;
-    let methods: [&dyn Reconstructor; 1] = [&Baseline];
-    let empty = Campaign::default().empty_rows(&[SceneSet::Generated(Kind::Set1)], &methods);
-    Row {
-        index,
-        method: method.into(),
-        eta: 0.8,
-        squared_error: 100.0 + f64::from(index * 7919 % 1000),
-        detection: (!index.is_multiple_of(5)).then_some(0.5),
-        false_alarm: 0.01,
-        milliseconds: 3.0,
-        objects: 1 + index as usize % 6,
-        reflectors: 3,
-        missed: index as usize % 3,
-        min_range_metres: Some(5.0),
-        strongest_over_weakest_db: Some(0.0),
-        found: Some(1),
-        merged: Some(0),
-        wrong_tooth: Some(0),
-        doubt: (method == "live").then_some(90.0 + f64::from(index)),
-        within_doubt: (method == "live").then_some(0.9),
-        ..empty.expect("one set and one method")[0][0].clone()
-    }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+    /// A row for tests.
+    pub fn some_row(index: u32, method: &str) -> Row {
+        let methods: [&dyn Reconstructor; 1] = [&Baseline];
+        let empty = Campaign::default().empty_rows(&[SceneSet::Generated(Kind::Set1)], &methods);
+        Row {
+            index,
+            method: method.into(),
+            eta: 0.8,
+            squared_error: 100.0 + f64::from(index * 7919 % 1000),
+            detection: (!index.is_multiple_of(5)).then_some(0.5),
+            false_alarm: 0.01,
+            milliseconds: 3.0,
+            objects: 1 + index as usize % 6,
+            reflectors: 3,
+            missed: index as usize % 3,
+            min_range_metres: Some(5.0),
+            strongest_over_weakest_db: Some(0.0),
+            found: Some(1),
+            merged: Some(0),
+            wrong_tooth: Some(0),
+            doubt: (method == "live").then_some(90.0 + f64::from(index)),
+            within_doubt: (method == "live").then_some(0.9),
+            ..empty.expect("one set and one method")[0][0].clone()
+        }
+    }
 
     #[test]
     fn a_later_row_takes_the_place_of_an_earlier_one() {

@@ -1,8 +1,9 @@
 //! Small maps of the scenes of rows, a byte per cell; only the latest are kept.
 
 use super::table::RowKey;
-use crate::app::jobs::rows::{Plan, RowJob, Stopped, Teller};
-use crate::app::state::Conditions;
+use crate::app::jobs::derived::Failure;
+use crate::app::jobs::rows::{Plan, RowJob, Teller};
+use crate::app::state::{Conditions, Methods};
 use crate::evaluate::Target;
 use crate::evaluate::rows::Row;
 use crate::evaluate::trial::{TimedAnswer, Trial};
@@ -30,9 +31,7 @@ pub type Bytes = Box<[u8]>;
 /// The two maps of a row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Thumbnail {
-    /// Map of the whole array.
     pub target: Bytes,
-    /// Output of the method.
     pub output: Bytes,
 }
 
@@ -85,11 +84,9 @@ impl Cache {
     fn insert(&mut self, key: (u64, RowKey), made: Made) {
         self.clock += 1;
         self.made.insert(key, (made, self.clock));
-        if self.made.len() > MAX_THUMBNAILS {
-            // A quarter at once, so that removal is rare.
-            let mut used: Vec<u64> = self.made.values().map(|(_, used)| *used).collect();
-            used.sort_unstable();
-            let oldest = used[MAX_THUMBNAILS / 4];
+        if self.made.len() > MAX_THUMBNAILS
+            && let Some(oldest) = self.made.values().map(|(_, used)| *used).min()
+        {
             self.made.retain(|_, (_, used)| *used > oldest);
         }
     }
@@ -118,7 +115,7 @@ impl Album {
 }
 
 /// Rows whose thumbnails are missing.
-struct MissingThumbnails {
+pub struct MissingThumbnails {
     generation: u64,
     conditions: Conditions,
     rows: Vec<(Row, Option<Arc<dyn Reconstructor>>)>,
@@ -127,9 +124,9 @@ struct MissingThumbnails {
 
 /// The maker of thumbnails of rows from files, one after the other.
 pub struct Thumbnails {
-    /// The finished thumbnails.
     pub album: Album,
-    job: RowJob<MissingThumbnails>,
+    /// The job that makes the missing ones.
+    pub job: RowJob<MissingThumbnails>,
     asked: Vec<RowKey>,
 }
 
@@ -145,33 +142,18 @@ impl Thumbnails {
         generation: u64,
         conditions: &Conditions,
         rows: impl Iterator<Item = &'a Row>,
-        method: impl Fn(&str) -> Option<Arc<dyn Reconstructor>>,
+        methods: &Methods,
     ) {
         let missing: Vec<&Row> = rows.filter(|row| self.album.get(generation, row).is_none()).collect();
         let keys: Vec<RowKey> = missing.iter().map(|row| RowKey::of(row)).collect();
-        if keys.is_empty() || (self.is_busy() && keys.iter().all(|key| self.asked.contains(key))) {
+        if keys.is_empty() || (self.job.progress().is_some() && keys.iter().all(|key| self.asked.contains(key))) {
             return;
         }
         self.job.cancel();
-        let rows = missing.into_iter().map(|row| (row.clone(), method(&row.method))).collect();
+        let rows = missing.into_iter().map(|row| (row.clone(), methods.called(&row.method).cloned())).collect();
         let album = self.album.clone();
         self.job.begin(MissingThumbnails { generation, conditions: conditions.clone(), rows, album });
         self.asked = keys;
-    }
-
-    /// Whether thumbnails are being made.
-    pub fn is_busy(&self) -> bool {
-        self.job.progress().is_some()
-    }
-
-    /// Stops, since the processor is needed for a run whose times are measured.
-    pub fn stop(&mut self) {
-        self.job.cancel();
-    }
-
-    /// Takes in finished work. Returns a message for the user.
-    pub fn poll(&mut self) -> Option<String> {
-        self.job.poll()
     }
 }
 
@@ -185,13 +167,13 @@ impl Plan for MissingThumbnails {
     const WHAT: &'static str = "Drawing small maps";
     const ADVICE: &'static str = "Their rows stay.";
 
-    fn run(&self, teller: &Teller<'_, ()>) -> Result<(), Stopped> {
+    fn run(&self, teller: &Teller<'_, ()>) -> Result<(), Failure> {
         let mut last: Last<'_> = None;
         for (row, method) in &self.rows {
             // A method that panics on one row would otherwise do so in every frame.
             let made = catch_unwind(AssertUnwindSafe(|| one(self, row, method.as_deref(), teller, &mut last)));
             if teller.task.is_cancelled() {
-                return Err(Stopped::Cancelled);
+                return Err(Failure::Cancelled);
             }
             self.album.insert(self.generation, row, made.unwrap_or_else(|panic| Err(panic_message(panic.as_ref()))));
             teller.part(0.5);
@@ -228,7 +210,7 @@ fn one<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::table::some_row;
+    use super::super::some_row;
     use super::*;
     use crate::radar::Convention;
     use ndarray::Array2;

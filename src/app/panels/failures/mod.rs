@@ -70,7 +70,7 @@ fn now(state: &State, jobs: &Jobs) -> Option<Now> {
     let fates = fates_of(&jobs.kinds, MethodSlot::First, pipeline).filter(|(_, current)| *current);
     let (output, scores) = (pipeline.output()?, pipeline.scores_in(MethodSlot::First)?);
     let fates = fates.map(|(fates, _)| summary(&fates.failures));
-    Some(Now { method: output.method, metrics: scores.metrics, fates })
+    Some(Now { method: output.method(), metrics: scores.metrics, fates })
 }
 
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<Command> {

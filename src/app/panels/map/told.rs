@@ -171,7 +171,7 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     let slot = kind.slot().unwrap_or(MethodSlot::First);
     caption(Caption {
         kind,
-        method: pipeline.method(slot).output().map(|o| o.method),
+        method: pipeline.method(slot).output().map(|o| o.method()),
         updating: is_updating(jobs, kind),
         running: kind.slot().and_then(|slot| running(state, jobs, slot)),
         verdict: verdict(state, jobs, slot, !kind.is_above()),
@@ -330,10 +330,10 @@ fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>
     }
     let is_recorded = state.is_recorded();
     if kind == MapKind::Unexplained {
-        let reason = match jobs.pipeline.why_unexplained() {
-            Some(reason) => reason,
-            None if is_recorded => return None,
-            None => "Open a recording: this map shows what reflectors laid over it leave unexplained.",
+        let reason = match jobs.pipeline.maps.result().and_then(|maps| maps.unexplained.as_ref()) {
+            Some(Err(reason)) => reason,
+            _ if is_recorded => return None,
+            _ => "Open a recording: this map shows what reflectors laid over it leave unexplained.",
         };
         return Some(Problem { reason, instead: None });
     }

@@ -34,7 +34,7 @@ pub struct Input<'a> {
     /// Whether the found reflectors are those of an earlier scene.
     pub found_stale: bool,
     /// Places through which a search moved each object, (x, y) in metres.
-    pub trails: &'a [Vec<[f64; 2]>],
+    pub trails: Vec<Vec<[f64; 2]>>,
     /// Place of the pointer, in any panel.
     pub cursor: Option<Cursor>,
     /// Reason why the scene can't be computed.
@@ -82,7 +82,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let scene = input.moved.map_or(&**editor.scene(), |(scene, _)| scene);
     objects(&painter, canvas, scene, editor, hovered.map(|h| h.object), input.tells_maps);
     canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
-    trail::draw(&painter, canvas, input.trails);
+    trail::draw(&painter, canvas, &input.trails);
     if input.moved.is_none() {
         handles::show(input.radar.range_resolution_metres(), editor, *view, ui, rect);
     }

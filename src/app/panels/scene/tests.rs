@@ -22,7 +22,7 @@ fn input(radar: &Radar) -> Input<'_> {
         fields_of_view: false,
         found: &[],
         found_stale: false,
-        trails: &[],
+        trails: Vec::new(),
         cursor: None,
         error: None,
         numbers: true,

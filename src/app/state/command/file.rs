@@ -1,13 +1,17 @@
 //! Purposes of file dialogs, with their titles, kinds of files and endings.
 
+use super::{CardPlan, Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
 use std::path::{Path, PathBuf};
 
 /// Texts of a purpose, as its line of the list has them.
-struct PurposeFacts {
-    title: &'static str,
-    kind: &'static str,
-    endings: &'static [&'static str],
-    name: &'static str,
+pub struct PurposeFacts {
+    /// Title of the dialog.
+    pub title: &'static str,
+    /// Kind of the files.
+    pub kind: &'static str,
+    pub endings: &'static [&'static str],
+    /// Name of the file where no other is chosen; empty for a file that is read.
+    pub name: &'static str,
 }
 
 /// The list of purposes. A line has a purpose's name, the dialog's title, the kind of the files, their endings, and the usual name of a file that is written.
@@ -20,7 +24,8 @@ macro_rules! purposes {
         }
 
         impl Purpose {
-            fn facts(self) -> PurposeFacts {
+            /// Texts of the dialog.
+            pub fn facts(self) -> PurposeFacts {
                 match self {
                     $(Purpose::$purpose { .. } => PurposeFacts {
                         title: $title,
@@ -35,49 +40,41 @@ macro_rules! purposes {
 }
 
 purposes! {
-    /// A scene to open.
     Open: "Open a scene or a recording", "Scenes, recordings and weights"
         ["toml", "npz", "bin", "dat", "raw", "cfg", "npy", "mat", "h5", "hdf5", "safetensors"], "";
     /// The `.cfg` of a capture card to listen to on this UDP port.
     Listen(u16): "Listen with the .cfg that set the radar up", "Settings of a radar" ["cfg"], "";
-    /// The log of a training to watch.
     OpenLog: "Open the log of a training", "Table" ["csv"], "";
-    /// A lesson to begin.
     OpenLesson: "Open a lesson", "Lessons" ["toml"], "";
-    /// The file to save the scene in.
     SaveScene: "Save the scene", "Scenes" ["toml", "npz"], "scene.toml";
-    /// The file to write a picture in.
     ExportPicture: "Export a picture", "Picture" ["png", "svg"], "apertura.png";
-    /// The file to write the maps in.
     ExportMaps: "Export the maps", "NumPy arrays" ["npz"], "maps.npz";
-    /// Rows of an evaluation to show.
     OpenRows: "Open rows of an evaluation", "Table" ["csv"], "";
-    /// The file to save the rows in.
     SaveRows: "Save the rows", "Table" ["csv"], "rows.csv";
     /// A scene of the user's own folder, which chooses the folder.
     OwnScenes: "Open any scene of your folder", "Scenes" ["toml", "npz"], "";
 }
 
 impl Purpose {
+    /// The command for the chosen file.
+    pub fn command(self, path: PathBuf) -> Command {
+        match self {
+            Purpose::Open => DocumentCommand::OpenPath(path).into(),
+            Purpose::Listen(port) => WorkCommand::Listen(CardPlan { port, config: path, board: None }).into(),
+            Purpose::OpenLog => WorkCommand::WatchLog(path).into(),
+            Purpose::OpenLesson => LessonCommand::OpenFile(path).into(),
+            Purpose::SaveScene => DocumentCommand::SaveTo(path).into(),
+            Purpose::ExportPicture => ExportCommand::PictureTo(path).into(),
+            Purpose::ExportMaps => ExportCommand::MapsTo(path).into(),
+            Purpose::OpenRows => RowsCommand::OpenFile(path).into(),
+            Purpose::SaveRows => RowsCommand::SaveTo(path).into(),
+            Purpose::OwnScenes => RowsCommand::SetOwnScenes(path).into(),
+        }
+    }
+
     /// Whether the file is read, not written.
     pub fn reads(self) -> bool {
-        self.name().is_empty()
-    }
-
-    /// Title of the dialog.
-    pub fn title(self) -> &'static str {
-        self.facts().title
-    }
-
-    /// Name of the kind of files, and their endings.
-    pub fn kind(self) -> (&'static str, &'static [&'static str]) {
-        let PurposeFacts { kind, endings, .. } = self.facts();
-        (kind, endings)
-    }
-
-    /// Name of the file where no other is chosen; empty for a file that is read.
-    pub fn name(self) -> &'static str {
-        self.facts().name
+        self.facts().name.is_empty()
     }
 
     /// The file to write for a chosen `path`: with the usual ending where it has none.
@@ -85,7 +82,7 @@ impl Purpose {
     /// # Errors
     /// A sentence with the known endings, where `path` has another.
     pub fn destination(self, path: PathBuf) -> Result<PathBuf, String> {
-        let endings = self.kind().1;
+        let endings = self.facts().endings;
         match path.extension() {
             _ if self.reads() => Ok(path),
             None => Ok(path.with_extension(endings[0])),
@@ -96,7 +93,7 @@ impl Purpose {
 
     /// The message about a file with an unknown ending.
     pub fn unknown_ending(self, path: &Path) -> String {
-        let endings: Vec<String> = self.kind().1.iter().map(|ending| format!(".{ending}")).collect();
+        let endings: Vec<String> = self.facts().endings.iter().map(|ending| format!(".{ending}")).collect();
         format!("{}: nothing is written with this ending; expected {}", path.display(), endings.join(" or "))
     }
 }

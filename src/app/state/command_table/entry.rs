@@ -7,13 +7,11 @@ use std::borrow::Cow;
 /// A command of the list, complete without further input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// The command.
     pub command: Command,
     /// Name in menus and the palette.
     pub name: Cow<'static, str>,
     /// One sentence for tooltips.
     pub tooltip: &'static str,
-    /// Its shortcut, if it has one.
     pub key: Option<KeyboardShortcut>,
 }
 

@@ -50,7 +50,7 @@ fn of_panels() -> Vec<Entry> {
         named(Command::Window(WindowCommand::Maximise(panel)), name, panel.describe(), None)
     };
     let help = |page: HelpPage| {
-        named(Command::Window(WindowCommand::Help(page)), page.title().to_owned(), page.describe(), None)
+        named(Command::Window(WindowCommand::Help(page)), page.name().to_owned(), page.describe(), None)
     };
     let copy = |kind: MapKind| {
         let tooltip = "Copy the whole map to the clipboard as a picture, a pixel a cell";
