@@ -82,6 +82,10 @@ pub fn flow(_: &SceneSource) -> Result<Sheet, FigureError> {
     };
     let mut shapes: Vec<SketchShape> =
         arrows.iter().map(|(a, b)| SketchShape::Arrow(side(*a, true), side(*b, false), Ink::Dark)).collect();
-    shapes.extend(boxes.iter().map(|((x, y), text)| SketchShape::Block((x - 1.6, y - 0.7), (x + 1.6, y + 0.7), (*text).to_owned())));
+    shapes.extend(
+        boxes
+            .iter()
+            .map(|((x, y), text)| SketchShape::Block((x - 1.6, y - 0.7), (x + 1.6, y + 0.7), (*text).to_owned())),
+    );
     Ok(Sheet::of(1, (1240, 330), vec![SheetPanel::sketch("From a scene to the loss", -2.0..22.0, -0.8..4.8, shapes)]))
 }

@@ -136,12 +136,7 @@ pub const ALL: &[Figure] = &[
         "Figure 2-8 projected into Cartesian coordinates: resolution falls towards the edge of the field of view.",
         SCENE_OPEN,
     ),
-    figure(
-        "3-1",
-        diagrams::unet,
-        "The U-Net.",
-        "The shipped U-Net's own sizes; the printed one's are not all given.",
-    ),
+    figure("3-1", diagrams::unet, "The U-Net.", "The shipped U-Net's own sizes; the printed one's are not all given."),
     figure(
         "3-2",
         outputs::unet_on_training,

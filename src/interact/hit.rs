@@ -45,9 +45,7 @@ fn body_distance(object: &Object, at: Place) -> f64 {
     let centre = Place::from(object.centre_metres());
     match object {
         Object::Point(_) => centre.distance_metres(at),
-        Object::Line(l) => {
-            from_stretch([at.x_metres, at.y_metres], [[l.x_metres, l.y_start_metres], l.end_metres()])
-        }
+        Object::Line(l) => from_stretch([at.x_metres, at.y_metres], [[l.x_metres, l.y_start_metres], l.end_metres()]),
         Object::Gaussian(g) => {
             let out_x = ((at.x_metres - g.x_metres).abs() - g.x_std_metres).max(0.0);
             let out_y = ((at.y_metres - g.y_metres).abs() - g.y_std_metres).max(0.0);

@@ -55,10 +55,7 @@ pub struct Step {
 #[derive(Debug, thiserror::Error)]
 pub enum LessonError {
     #[error("{}: {source}", path.display())]
-    Io {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Io { path: PathBuf, source: std::io::Error },
     #[error("{}: larger than {MAX_LESSON_BYTES} bytes, which no lesson is", path.display())]
     Large { path: PathBuf },
     #[error("{}: {source}", path.display())]

@@ -171,9 +171,8 @@ fn read_antennas(archive: &mut Npz) -> Result<Option<Antennas>, NpzError> {
     if !archive.has(ANTENNA_KEYS[0]) {
         return Ok(None);
     }
-    let damaged = |key: &'static str| {
-        move |e: AntennasError| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() }
-    };
+    let damaged =
+        |key: &'static str| move |e: AntennasError| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() };
     let [transmitters, receivers] = places(archive, ANTENNA_KEYS)?;
     let antennas = Antennas::new(&transmitters, &receivers).map_err(damaged(ANTENNA_KEYS[0]))?;
     if !archive.has(OFF_LINE_KEYS[0]) {

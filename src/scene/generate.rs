@@ -276,10 +276,8 @@ mod tests {
             assert!(bodies >= 60, "{kind}: {bodies} in 40 scenes");
         }
         let rough = scenes(Kind::Rough).into_iter().flatten();
-        let deviations: Vec<f64> = rough
-            .filter_map(|o| Some(o.body()?.roughness_millimetres))
-            .filter(|deviation| *deviation > 0.0)
-            .collect();
+        let deviations: Vec<f64> =
+            rough.filter_map(|o| Some(o.body()?.roughness_millimetres)).filter(|deviation| *deviation > 0.0).collect();
         assert!(deviations.len() >= 40 && deviations.iter().all(|d| (0.2..=1.5).contains(d)), "{deviations:?}");
     }
 

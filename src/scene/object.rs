@@ -2,8 +2,8 @@
 
 use super::Reflector;
 use super::body::{Block, Body, Polygon, Post, Wall, one};
-use super::shape::Shape;
 use super::common::{is_default, moving, of_each};
+use super::shape::Shape;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

@@ -39,7 +39,8 @@ pub(super) fn simulate_built_for(
     array.validate(radar).map_err(SceneError::from)?;
     let echoing = Echoing::of(radar, scene);
     let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
-    let mut signal = BeatSignal { samples: samples_of(radar, array, (&echoing).into(), &plan, 0..radar.elements, task) };
+    let mut signal =
+        BeatSignal { samples: samples_of(radar, array, (&echoing).into(), &plan, 0..radar.elements, task) };
     hear(radar, scene, array, &mut signal);
     task.check()?;
     if let Some(variance) = floor::noise_variance(radar, &echoing, floor) {

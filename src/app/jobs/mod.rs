@@ -48,7 +48,7 @@ pub use export::Exports;
 #[cfg(test)]
 pub use failures::some_row;
 pub use failures::{
-    Album, Failures, FailuresPlan, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, is_table_of_rows, keep,
+    Failures, FailuresPlan, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, is_table_of_rows, keep,
 };
 pub use frame_log::FrameLog;
 use kinds::KindsQuery;

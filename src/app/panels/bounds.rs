@@ -1,31 +1,25 @@
 //! The bounds panel: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
 
-mod ellipse;
-
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{BoundsRequest, BoundsResult, Jobs};
 use crate::app::state::{BoundsSettings, Command, Elements, State, ViewCommand};
 use crate::app::widgets::{
-    Axis, Bar, Chart, NumberField, Texture, axes, choice, colour_table, computed, direction, labelled, padded,
-    significant, theme,
+    Axis, Bar, Chart, Inks, MARK, NumberField, Texture, axes, choice, colour_table, computed, cross, direction, edged,
+    labelled, padded, significant, warning,
 };
 use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
 use crate::radar::{Layout, Radar};
-use eframe::egui::{self, Grid, Sense, Stroke, TextureOptions, Ui, vec2};
-use ellipse::ellipse;
-
-/// Texture of the ambiguity function.
-#[derive(Default)]
-pub struct BoundsMemory {
-    texture: Texture,
-}
+use eframe::egui::{Grid, Sense, Stroke, TextureId, TextureOptions, Ui, Vec2, vec2};
+use egui_plot::LineStyle;
+use std::f64::consts::TAU;
 
 pub struct BoundsPanel;
 
 impl Content for BoundsPanel {
     type Asks = BoundsRequest;
-    type Remembers = BoundsMemory;
+    /// Texture of the ambiguity function.
+    type Remembers = Texture;
     const TELLS_ANSWERS: bool = true;
 
     fn asks(state: &State, _: &Jobs) -> Option<BoundsRequest> {
@@ -42,7 +36,7 @@ pub fn show(
     ui: &mut Ui,
     state: &State,
     result: Option<Result<&BoundsResult, &str>>,
-    memory: &mut BoundsMemory,
+    texture: &mut Texture,
 ) -> Vec<Command> {
     if BoundsRequest::of(state).is_none() {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));
@@ -55,7 +49,7 @@ pub fn show(
             asked.push(ViewCommand::SetBounds(settings).into());
         }
         let Some(result) = computed(ui, result) else { return };
-        let texture = memory.texture.of(ui.ctx(), "ambiguity", &result.image, TextureOptions::LINEAR);
+        let texture = texture.of(ui.ctx(), "ambiguity", &result.image, TextureOptions::LINEAR);
         strip(ui, &result.request.radar, &result.layout);
         let size = ui.available_size();
         if size.x > 1.5 * size.y {
@@ -88,40 +82,34 @@ fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {
     });
 }
 
-/// Draws the aperture with the chosen elements.
 fn strip(ui: &mut Ui, radar: &Radar, layout: &Layout) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 14.0), egui::Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 14.0), Sense::hover());
     let half = radar.aperture_metres() / 2.0;
     let inner = rect.shrink2(vec2(8.0, 0.0));
     let at = |x: f64| inner.center().x + (x / half) as f32 * inner.width() / 2.0;
     let ink = ui.visuals().weak_text_color();
-    ui.painter().hline(inner.x_range(), rect.center().y, egui::Stroke::new(1.0, ink));
-    let colour = theme::Inks::of(ui.visuals()).selected;
+    ui.painter().hline(inner.x_range(), rect.center().y, Stroke::new(1.0, ink));
+    let colour = Inks::of(ui.visuals()).selected;
     for x in &layout.x_metres {
-        ui.painter().vline(at(*x), rect.center().y - 5.0..=rect.center().y + 5.0, egui::Stroke::new(1.0, colour));
+        ui.painter().vline(at(*x), rect.center().y - 5.0..=rect.center().y + 5.0, Stroke::new(1.0, colour));
     }
     response.on_hover_text(format!("{} elements of an aperture of {:.2} m", layout.len(), radar.aperture_metres()));
 }
 
 /// Draws the ambiguity function over columns and metres from the reflector, with its colour bar.
-fn picture(ui: &mut Ui, result: &BoundsResult, texture: egui::TextureId) {
+fn picture(ui: &mut Ui, result: &BoundsResult, texture: TextureId) {
     let BoundsRequest { radar, settings: BoundsSettings { columns, bins, .. }, .. } = &result.request;
     let half = [*columns, bins * radar.range_resolution_metres()];
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
     let bar = Bar::new(colour_table(ColourMap::Viridis), 0.0, 1.0, "likeness");
-    let right = axes::RIGHT;
     let x = Axis::new(-half[0], half[0], "cos θ off, columns");
     let mut chart = Chart::new("Ambiguity function", x, Axis::new(-half[1], half[1], "range off, m"));
     chart.image(texture, half.map(|half| -half), half);
-    let map = area.with_max_x(area.right() - right + 12.0);
+    let map = area.with_max_x(area.right() - axes::RIGHT + 12.0);
     let drawn = chart.show(ui, map, Sense::hover());
-    let cross = drawn.at([0.0, 0.0]);
-    for (width, colour) in [(3.0, theme::MARK_EDGE), (1.4, theme::MARK)] {
-        for corner in [vec2(5.0, 5.0), vec2(5.0, -5.0)] {
-            drawn.painter().line_segment([cross - corner, cross + corner], Stroke::new(width, colour));
-        }
-    }
+    let middle = drawn.at([0.0, 0.0]);
+    edged([3.0, 1.4], MARK, |stroke| cross(drawn.painter(), middle, Vec2::splat(5.0), stroke));
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
     drawn.tell(|[columns, metres]| Some(likeness_at(result, half, columns, metres)));
 }
@@ -146,10 +134,7 @@ fn bound(ui: &mut Ui, result: &BoundsResult) {
     let name = &result.request.name;
     let bound = match &result.bound {
         Ok(bound) => bound,
-        Err(error) => {
-            ui.colored_label(ui.visuals().warn_fg_color, error.to_string());
-            return;
-        }
+        Err(error) => return warning(ui, Some(&error.to_string())),
     };
     let column = 2.0 / result.request.radar.elements as f64;
     ui.strong(format!("Least error for {name}")).on_hover_text(
@@ -198,12 +183,44 @@ fn numbers(ui: &mut Ui, bound: &PositionBound, per_end: Option<&PositionBound>, 
     });
 }
 
-/// The assumption of the second bound.
 const PER_END: &str =
     "Either half of the elements has an unknown gain of its own: the phase between the ends is not known";
 
 fn millimetres(metres: f64) -> String {
     if metres.is_finite() { format!("{} mm", significant(metres * 1e3)) } else { "∞".to_owned() }
+}
+
+/// Draws the ellipse of one standard deviation, which holds 39 % of the estimates of the best unbiased estimator.
+fn ellipse(ui: &mut Ui, bound: &PositionBound) {
+    let Some(outline) = outline(bound) else { return };
+    let area = ui.available_rect_before_wrap();
+    if area.height() < 110.0 {
+        return;
+    }
+    let colour = Inks::of(ui.visuals()).selected;
+    let most = |i: usize| outline.iter().map(|p| 1.2 * p[i].abs()).fold(0.0, f64::max);
+    let axis = |i: usize, title| Axis::new(-most(i), most(i), title);
+    let (x, y) = (axis(0, "error of x, mm"), axis(1, "error of y, mm"));
+    let mut chart = Chart::new("Ellipse of one standard deviation", x, y).with_one_scale();
+    chart.line(outline, Stroke::new(1.8, colour), LineStyle::Solid);
+    chart.dot([0.0, 0.0], 2.5, colour);
+    let drawn = chart.show(ui, area, Sense::hover());
+    drawn.response.on_hover_text("39 % of the estimates of the best unbiased estimator lie within");
+}
+
+/// Points of the ellipse in millimetres: a circle through the Cholesky factor of the covariance.
+fn outline(bound: &PositionBound) -> Option<Vec<[f64; 2]>> {
+    let (x, y) = (bound.x_metres * 1e3, bound.y_metres * 1e3);
+    if !(x > 0.0 && y.is_finite()) {
+        return None;
+    }
+    let slanted = bound.xy_covariance_metres2 * 1e6 / x;
+    let upright = (y * y - slanted * slanted).max(0.0).sqrt();
+    let at = |i: i32| {
+        let (sin, cos) = (TAU * f64::from(i) / 96.0).sin_cos();
+        [x * cos, slanted * cos + upright * sin]
+    };
+    Some((0..=96).map(at).collect())
 }
 
 #[cfg(test)]
@@ -217,10 +234,10 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     /// The panel with the bounds of one point.
-    fn panel(size: [f32; 2]) -> Harness<'static, (BoundsMemory, Vec<Command>)> {
+    fn panel(size: [f32; 2]) -> Harness<'static, (Texture, Vec<Command>)> {
         let state = State::of(Radar { elements: 64, samples: 32, ..Radar::default() }, Scene::of_points([(1.5, 9.0)]));
         let result = BoundsRequest::of(&state).and_then(|request| request.compute(&mut (), &Task::default()).ok());
-        let draw = move |ui: &mut Ui, (memory, asked): &mut (BoundsMemory, Vec<Command>)| {
+        let draw = move |ui: &mut Ui, (memory, asked): &mut (Texture, Vec<Command>)| {
             asked.extend(show(ui, &state, result.as_ref().map(Ok), memory));
         };
         Harness::builder().with_size(size).build_ui_state(draw, Default::default())
@@ -269,5 +286,22 @@ mod tests {
             seen::assert_readable(bounds.output());
             assert!(wanted.iter().all(|text| bounds.reads(text)), "{:?}", seen::texts(bounds.output()));
         }
+    }
+
+    #[test]
+    fn the_ellipse_reaches_one_standard_deviation_in_x_and_y() {
+        let bound = PositionBound {
+            range_metres: 1e-3,
+            cos_theta: 1e-4,
+            x_metres: 3e-3,
+            y_metres: 1e-3,
+            xy_covariance_metres2: -2e-6,
+            amplitude: 1e-3,
+        };
+        let outline = outline(&bound).unwrap();
+        let most = |i: usize| outline.iter().map(|p| p[i]).fold(0.0, f64::max);
+        assert!((most(0) - 3.0).abs() < 1e-9 && (most(1) - 1.0).abs() < 3e-3, "{} {}", most(0), most(1));
+        assert!(outline[0][1] < 0.0, "it leans down to the right");
+        assert!(super::outline(&PositionBound { y_metres: f64::INFINITY, ..bound }).is_none());
     }
 }

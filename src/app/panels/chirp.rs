@@ -1,17 +1,15 @@
 //! The chirp panel: frequency against time of the sent chirp and of its echoes, the sampled beat, and the beat's spectrum.
 
-mod choices;
-
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{ChirpQuery, ChirpResult, Jobs};
-use crate::app::state::{Command, State};
-use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::{Axis, Chart, Drawn, Inks, axes, padded};
+use crate::app::state::{ChirpSettings, Command, RadarCommand, State, ViewCommand};
+use crate::app::widgets::legend::{self, Sign};
+use crate::app::widgets::{Axis, Chart, Drawn, Inks, NumberField, axes, labelled, padded};
 use crate::radar::{Carrier, Radar};
-use crate::scene::Scene;
+use crate::scene::Interferer;
 use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
 use eframe::egui::text::LayoutJob;
-use eframe::egui::{self, CursorIcon, FontId, Rect, Sense, Stroke, Ui, vec2};
+use eframe::egui::{self, CursorIcon, FontId, Rect, RichText, Sense, Stroke, Ui, vec2};
 use egui_plot::{LineStyle, PlotPoints, Points};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -43,12 +41,8 @@ const LEAST_CHARTS_HEIGHT: f32 = 230.0;
 /// Decibels that the spectrum spans.
 const SPECTRUM_DB: f64 = 100.0;
 
-/// The beat that the panel draws.
-pub struct Input<'a> {
-    pub state: &'a State,
-    /// The beat, or the reason why there is none; `None` before the first result.
-    pub result: Option<Result<&'a ChirpResult, &'a str>>,
-}
+/// Shortest and longest chirp duration that dragging reaches, seconds.
+const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
 
 pub struct ChirpPanel;
 
@@ -62,49 +56,84 @@ impl Content for ChirpPanel {
     }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, Input { state: cx.state, result: cx.value })
+        show(ui, cx.state, cx.value)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
+/// Draws the panel with the beat, or with the reason why there is none; `None` before the first. A low panel scrolls to its charts.
+pub fn show(ui: &mut Ui, state: &State, result: Option<Result<&ChirpResult, &str>>) -> Vec<Command> {
     padded(ui, |ui, asked| {
         let height = ui.available_height();
         let scroll = egui::ScrollArea::vertical().auto_shrink(false);
-        scroll.show(ui, |ui| contents(ui, &input, height, asked));
+        scroll.show(ui, |ui| contents(ui, state, result, height, asked));
     })
 }
 
-/// Draws the contents of a panel `height` points high; a low panel scrolls to its charts.
-fn contents(ui: &mut Ui, input: &Input<'_>, height: f32, asked: &mut Vec<Command>) {
-    let top = ui.cursor().top();
-    let chirp = ChirpShape::of(input.state.radar());
-    let element = input.state.settings.chirp.element.min(input.state.radar().elements - 1);
-    let echoes = match input.state.is_recorded() {
-        true => Vec::new(),
-        false => heard(input.state.radar(), input.state.scene(), element),
-    };
-    choices::show(ui, input.state.radar(), element, asked);
-    let stretch = stretch(input.state.radar(), &chirp);
-    legend(ui, input, stretch);
-    tell_beats(ui, input.state.scene(), &chirp, &echoes);
-    if input.state.radar().carrier == Carrier::OneWay {
-        let half_gigahertz = input.state.radar().carrier_hz / 2e9;
+/// Draws the contents of a panel `height` points high.
+fn contents(
+    ui: &mut Ui,
+    state: &State,
+    result: Option<Result<&ChirpResult, &str>>,
+    height: f32,
+    asked: &mut Vec<Command>,
+) {
+    let (radar, top) = (state.radar(), ui.cursor().top());
+    let element = state.settings.chirp.element.min(radar.elements - 1);
+    let echoes = if state.is_recorded() { Vec::new() } else { heard(radar, state.scene(), element) };
+    let interferer = state.scene().disturbances.interferer.filter(|_| !state.is_recorded());
+    let longest = delay_seconds(radar.max_range_metres());
+    let chirp = ChirpShape::of(radar);
+    let stretch = (DRAWN_DELAY * chirp.duration_seconds / longest).max(1.0);
+    let mut shown = Shown { state, chirp, echoes, interferer, stretch };
+    choices(ui, radar, element, asked);
+    shown.legend(ui);
+    shown.tell_beats(ui);
+    if radar.carrier == Carrier::OneWay {
+        let half_gigahertz = radar.carrier_hz / 2e9;
         ui.weak(format!("Drawn rising; the thesis' formula falls from {half_gigahertz} GHz: the same beats."));
     }
     let left = (height - 1.0 - (ui.cursor().top() - top)).max(LEAST_CHARTS_HEIGHT);
     let (_, area) = ui.allocate_space(vec2(ui.available_width(), left));
     let [frequencies, beat, spectrum] = parts(area);
-    let shown = Shown { input, chirp, echoes: &thinned(echoes), stretch };
+    shown.thin();
     shown.frequencies(ui, frequencies, asked);
-    match input.result {
-        None => _ = ui.put(beat, egui::Label::new(egui::RichText::new("computing…").weak())),
-        Some(Err(error)) => {
-            _ = ui.put(beat, egui::Label::new(egui::RichText::new(error).color(ui.visuals().error_fg_color)));
-        }
+    let text = match result {
         Some(Ok(result)) => {
             shown.beat(ui, beat, result);
             shown.spectrum(ui, spectrum, result);
+            return;
         }
+        Some(Err(error)) => RichText::new(error).color(ui.visuals().error_fg_color),
+        None => RichText::new("computing…").weak(),
+    };
+    ui.put(beat, egui::Label::new(text));
+}
+
+/// Draws the fields of element and chirp duration. `element` is the one on screen.
+fn choices(ui: &mut Ui, radar: &Radar, element: usize, asked: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        let mut settings = ChirpSettings { element };
+        let number = NumberField::new(&mut settings.element).range(0..=radar.elements - 1).speed(0.3);
+        labelled(ui, "Element", "The element whose chirp and beat are drawn, from the left", number);
+        if settings.element != element {
+            asked.push(ViewCommand::SetChirp(settings).into());
+        }
+        let tooltip = "Time that the samples span. No echo at rest depends on it: a beat turns 2RB/c times in a chirp of any length.";
+        let mut microseconds = 1e6 * radar.chirp_seconds;
+        let range = 1e6 * DRAGGED_SECONDS[0]..=1e6 * DRAGGED_SECONDS[1];
+        let field = NumberField::new(&mut microseconds).range(range).speed(0.05).suffix(" µs");
+        if labelled(ui, "Chirp", tooltip, field).changed() {
+            let mut changed = radar.clone();
+            changed.set_chirp_seconds(1e-6 * microseconds);
+            set(radar, changed, asked);
+        }
+    });
+}
+
+/// Sends the command for a radar, if it differs from the one on screen.
+fn set(radar: &Radar, changed: Radar, asked: &mut Vec<Command>) {
+    if changed != *radar {
+        asked.push(RadarCommand::Set(Box::new(changed)).into());
     }
 }
 
@@ -120,78 +149,63 @@ fn parts(area: Rect) -> [Rect; 3] {
     }
 }
 
-/// Factor by which delays are drawn longer: a chirp lasts far longer than the delays of its echoes.
-fn stretch(radar: &Radar, chirp: &ChirpShape) -> f64 {
-    let longest = delay_seconds(radar.max_range_metres());
-    (DRAWN_DELAY * chirp.duration_seconds / longest).max(1.0)
-}
-
-fn legend(ui: &mut Ui, input: &Input<'_>, stretch: f64) {
-    let inks = Inks::of(ui.visuals());
-    let line = |colour, name: &str| Entry { sign: Sign::Line, colour, name: name.to_owned() };
-    let mut entries = vec![line(inks.selected, "sent")];
-    if !input.state.is_recorded() {
-        let returns = match stretch > 1.0 {
-            true => format!("returns, delays drawn {stretch:.0} times as long"),
-            false => "returns".to_owned(),
-        };
-        entries.push(line(inks.ends[0], &returns));
-    }
-    if input.state.scene().disturbances.interferer.is_some() && !input.state.is_recorded() {
-        entries.push(line(inks.ends[1], "interferer"));
-    }
-    legend::row(ui, &entries);
-}
-
-/// The beats of all objects in megahertz, nearest first.
-fn tell_beats(ui: &mut Ui, scene: &Scene, chirp: &ChirpShape, echoes: &[BeatTone]) {
-    let mut beats: Vec<(usize, [f64; 2])> = Vec::new();
-    for echo in echoes {
-        let beat = chirp.beat_hz(echo.range_metres) / 1e6;
-        match beats.iter_mut().find(|(object, _)| *object == echo.object) {
-            Some((_, [_, high])) => *high = beat,
-            None => beats.push((echo.object, [beat, beat])),
-        }
-    }
-    let told = beats.iter().map(|(object, [low, high])| {
-        let name = scene.objects[*object].called(*object);
-        if high - low < 0.005 { format!("{name} {low:.2}") } else { format!("{name} {low:.2} to {high:.2}") }
-    });
-    if !beats.is_empty() {
-        let text = format!("Beats in MHz: {}", told.collect::<Vec<_>>().join(" · "));
-        let (font, ink) = (FontId::proportional(12.0), Inks::of(ui.visuals()).ends[0]);
-        let mut lines = LayoutJob::simple(text, font, ink, f32::INFINITY);
-        lines.wrap.max_rows = MAX_LINES_OF_BEATS;
-        ui.label(lines);
-    }
-}
-
-/// So many echoes that each can be seen: of every object about as many, spread over its ranges.
-fn thinned(echoes: Vec<BeatTone>) -> Vec<BeatTone> {
-    let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-    echoes.iter().for_each(|echo| *counts.entry(echo.object).or_default() += 1);
-    let of_each = (MAX_ECHOES / counts.len().max(1)).max(1);
-    let mut before: BTreeMap<usize, usize> = BTreeMap::new();
-    let is_drawn = |echo: &BeatTone| {
-        let before = before.entry(echo.object).or_default();
-        *before += 1;
-        (*before - 1).is_multiple_of(counts[&echo.object].div_ceil(of_each))
-    };
-    let mut echoes = echoes;
-    echoes.retain(is_drawn);
-    echoes
-}
-
-/// Data of all three charts.
 struct Shown<'a> {
-    input: &'a Input<'a>,
+    state: &'a State,
     chirp: ChirpShape,
-    echoes: &'a [BeatTone],
+    echoes: Vec<BeatTone>,
+    interferer: Option<Interferer>,
+    /// Factor by which delays are drawn longer: a chirp lasts far longer than the delays of its echoes.
     stretch: f64,
 }
 
 impl Shown<'_> {
-    /// Draws the frequency above the carrier against time.
+    fn legend(&self, ui: &mut Ui) {
+        let inks = Inks::of(ui.visuals());
+        let returns = match self.stretch > 1.0 {
+            true => format!("returns, delays drawn {:.0} times as long", self.stretch),
+            false => "returns".to_owned(),
+        };
+        let mut entries = vec![(Sign::Line, inks.selected, "sent".to_owned())];
+        entries.extend((!self.state.is_recorded()).then_some((Sign::Line, inks.ends[0], returns)));
+        entries.extend(self.interferer.map(|_| (Sign::Line, inks.ends[1], "interferer".to_owned())));
+        legend::row(ui, &entries);
+    }
+
+    fn tell_beats(&self, ui: &mut Ui) {
+        let mut beats: Vec<(usize, [f64; 2])> = Vec::new();
+        for echo in &self.echoes {
+            let beat = self.chirp.beat_hz(echo.range_metres) / 1e6;
+            match beats.iter_mut().find(|(object, _)| *object == echo.object) {
+                Some((_, [_, high])) => *high = beat,
+                None => beats.push((echo.object, [beat, beat])),
+            }
+        }
+        let told = beats.iter().map(|(object, [low, high])| {
+            let name = self.state.scene().objects[*object].called(*object);
+            if high - low < 0.005 { format!("{name} {low:.2}") } else { format!("{name} {low:.2} to {high:.2}") }
+        });
+        if !beats.is_empty() {
+            let text = format!("Beats in MHz: {}", told.collect::<Vec<_>>().join(" · "));
+            let (font, ink) = (FontId::proportional(12.0), Inks::of(ui.visuals()).ends[0]);
+            let mut lines = LayoutJob::simple(text, font, ink, f32::INFINITY);
+            lines.wrap.max_rows = MAX_LINES_OF_BEATS;
+            ui.label(lines);
+        }
+    }
+
+    /// Keeps so many echoes that each can be seen: of every object about as many, spread over its ranges.
+    fn thin(&mut self) {
+        let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+        self.echoes.iter().for_each(|echo| *counts.entry(echo.object).or_default() += 1);
+        let of_each = (MAX_ECHOES / counts.len().max(1)).max(1);
+        let mut before: BTreeMap<usize, usize> = BTreeMap::new();
+        self.echoes.retain(|echo| {
+            let before = before.entry(echo.object).or_default();
+            *before += 1;
+            (*before - 1).is_multiple_of(counts[&echo.object].div_ceil(of_each))
+        });
+    }
+
     fn frequencies(&self, ui: &mut Ui, area: Rect, asked: &mut Vec<Command>) {
         let (chirp, inks) = (self.chirp, Inks::of(ui.visuals()));
         let (microseconds, giga) = (1e6 * chirp.duration_seconds, chirp.bandwidth_hz / 1e9);
@@ -202,7 +216,7 @@ impl Shown<'_> {
         let mut chart = Chart::new("Frequency against time", x, Axis::new(-0.08 * giga, 1.12 * giga, title));
         let stroke = Stroke::new(1.2, inks.ends[0].gamma_multiply(0.9));
         let mut objects = BTreeSet::new();
-        for echo in self.echoes {
+        for echo in &self.echoes {
             let late = 1e6 * self.stretch * delay_seconds(echo.range_metres);
             chart.line([[late, 0.0], [late + microseconds, giga]], stroke, LineStyle::Solid);
             let place = BEAT_PLACES.get(objects.len());
@@ -212,15 +226,11 @@ impl Shown<'_> {
                 chart.line([[time, returned], [time, sent]], stroke, LineStyle::Dashed { length: 2.5 });
             }
         }
-        if let Some(interferer) =
-            self.input.state.scene().disturbances.interferer.filter(|_| !self.input.state.is_recorded())
-        {
+        if let Some(interferer) = &self.interferer {
             let at = |part: f64| {
                 let seconds = part * chirp.duration_seconds;
-                [
-                    1e6 * seconds,
-                    (chirp.sent_hz(seconds) - chirp.start_hz + chirp.interferer_above_hz(&interferer, seconds)) / 1e9,
-                ]
+                let above_hz = chirp.sent_hz(seconds) - chirp.start_hz + chirp.interferer_above_hz(interferer, seconds);
+                [1e6 * seconds, above_hz / 1e9]
             };
             chart.line([at(0.0), at(1.25)], Stroke::new(1.6, inks.ends[1]), LineStyle::dashed_dense());
         }
@@ -231,7 +241,7 @@ impl Shown<'_> {
 
     /// Draws the handles at both ends of the sent chirp: the beginning is dragged up and down for the carrier, the end for bandwidth and duration.
     fn handles(&self, ui: &mut Ui, drawn: &Drawn, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
-        let mut radar = self.input.state.radar().clone();
+        let mut radar = self.state.radar().clone();
         let size = vec2(6.0 * HANDLE, 6.0 * HANDLE);
         for (at, name, icon) in [
             ([0.0, 0.0], "Beginning of the chirp: its carrier", CursorIcon::ResizeVertical),
@@ -242,7 +252,7 @@ impl Shown<'_> {
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, name));
             let by = response.drag_delta();
             let up = f64::from(-by.y / drawn.rect.height());
-            if response.dragged() && !self.input.state.is_recorded() {
+            if response.dragged() && !self.state.is_recorded() {
                 let [low, high] = if at[1] == 0.0 { DRAGGED_CARRIER_HZ } else { DRAGGED_BANDWIDTH_HZ };
                 let hertz = if at[1] == 0.0 { &mut radar.carrier_hz } else { &mut radar.bandwidth_hz };
                 *hertz = (*hertz * (1.0 + up)).clamp(low, high);
@@ -250,22 +260,16 @@ impl Shown<'_> {
             if response.dragged() && at[1] != 0.0 {
                 let across = f64::from(by.x / drawn.rect.width());
                 let seconds = radar.chirp_seconds * (1.0 + across);
-                radar.set_chirp_seconds(seconds.clamp(choices::DRAGGED_SECONDS[0], choices::DRAGGED_SECONDS[1]));
+                radar.set_chirp_seconds(seconds.clamp(DRAGGED_SECONDS[0], DRAGGED_SECONDS[1]));
             }
-            let lit = response.hovered() || response.dragged();
-            let radius = if lit { HANDLE + 1.5 } else { HANDLE };
-            drawn.painter().circle(
-                centre,
-                radius,
-                Inks::of(ui.visuals()).selected,
-                Stroke::new(1.0, ui.visuals().text_color()),
-            );
+            let radius = if response.hovered() || response.dragged() { HANDLE + 1.5 } else { HANDLE };
+            let stroke = Stroke::new(1.0, ui.visuals().text_color());
+            drawn.painter().circle(centre, radius, Inks::of(ui.visuals()).selected, stroke);
             response.on_hover_cursor(icon).on_hover_text(name);
         }
-        choices::set(self.input.state.radar(), radar, asked);
+        set(self.state.radar(), radar, asked);
     }
 
-    /// Draws the beat over the time of the chirp, its samples as dots.
     fn beat(&self, ui: &mut Ui, area: Rect, result: &ChirpResult) {
         let inks = Inks::of(ui.visuals());
         let most = result.samples.iter().map(|s| s.norm()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
@@ -292,7 +296,7 @@ impl Shown<'_> {
         let title = axes::fitting(ui.painter(), area.width() - 70.0, &titles);
         let (x, y) = (Axis::new(-0.5, bins - 0.5, title), Axis::new(-SPECTRUM_DB, 5.0, "dB"));
         let mut chart = Chart::new("Spectrum of the beat", x, y);
-        for echo in self.echoes {
+        for echo in &self.echoes {
             let bin = self.chirp.range_bin(self.chirp.beat_hz(echo.range_metres));
             chart.upright(bin, Stroke::new(1.0, inks.ends[0].gamma_multiply(0.5)));
         }
@@ -303,7 +307,7 @@ impl Shown<'_> {
             let bin = bin.round().clamp(0.0, bins - 1.0);
             let level = result.spectrum.get(bin as usize).map_or(-SPECTRUM_DB, decibels);
             let beat = bin / self.chirp.duration_seconds / 1e6;
-            let range = self.input.state.radar().range_of_bin_metres(bin);
+            let range = self.state.radar().range_of_bin_metres(bin);
             Some(format!("range bin {bin:.0}: {range:.2} m, beat {beat:.3} MHz\n{level:.1} dB"))
         });
     }
@@ -312,8 +316,8 @@ impl Shown<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::state::RadarCommand;
     use crate::app::widgets::seen::{self, User};
+    use crate::scene::Scene;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use num_complex::Complex64;
@@ -326,7 +330,7 @@ mod tests {
         let beat =
             ChirpResult { element: 3, samples, spectrum: (0..64).map(|bin| 1.0 / (1.0 + f64::from(bin))).collect() };
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui, Input { state: &state, result: Some(result.map(|()| &beat)) }));
+            asked.extend(show(ui, &state, Some(result.map(|()| &beat))));
         };
         Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
     }

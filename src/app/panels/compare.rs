@@ -1,27 +1,11 @@
 //! The panel that compares two methods on the scene on screen: side by side, or flipped in place.
 
-use super::map::{self, MapMemory, caption_of as caption, is_updating, map_input, marks_of, verdict};
+use super::map::{self, MapMemory, caption_of, is_updating, map_input, marks_of, verdict};
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, Wants};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
 use crate::app::widgets::{LIST_HEIGHT, button, choice_told, labelled, method_list, padded, percent, progress};
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
-
-/// A map and its title.
-pub struct Titled<'a> {
-    /// The method and its figures.
-    pub title: String,
-    pub map: map::Input<'a>,
-}
-
-/// The compared maps.
-pub struct Input<'a> {
-    pub state: &'a State,
-    /// The maps of [`Compare::maps`].
-    pub maps: Vec<Titled<'a>>,
-    /// Progress of the second method, while it runs.
-    pub progress: Option<f32>,
-}
 
 /// Height of a map's title, points.
 const TITLE: f32 = 18.0;
@@ -41,13 +25,12 @@ impl Content for ComparePanel {
         let projection = state.settings.projection;
         let mut view = *state.map_views.of(projection);
         let marks = marks_of(ui, state);
-        let map = |(kind, texture): (&MapKind, _)| Titled {
-            title: title(state, jobs, *kind),
-            map: map_input(state, jobs, &marks, texture, *kind),
-        };
-        let second = jobs.pipeline.method(MethodSlot::Second);
-        let input = Input { state, maps: kinds.iter().zip(textures).map(map).collect(), progress: second.progress() };
-        let asked = show(ui, input, &mut view, &mut memory.hand);
+        let maps = kinds.iter().zip(textures).map(|(kind, texture)| {
+            let title = title(state, jobs, *kind);
+            (title, map_input(state, jobs, &marks, texture, *kind))
+        });
+        let (maps, progress) = (maps.collect(), jobs.pipeline.method(MethodSlot::Second).progress());
+        let asked = show(ui, state, maps, progress, &mut view, &mut memory.hand);
         *state.map_views.of(projection) = view;
         asked
     }
@@ -56,12 +39,10 @@ impl Content for ComparePanel {
 /// The title of a compared map: method, verdict and figures.
 fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let method = kind.slot().and_then(|slot| state.method_in(slot)).map_or("", |m| m.name());
-    let shown = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
-    let updating = match (shown, is_updating(jobs, kind)) {
-        (Some(shown), _) => return format!("{shown}'s result; {method} is running"),
-        (None, true) => " (updating)",
-        (None, false) => "",
-    };
+    if kind.slot().is_some_and(|slot| jobs.pipeline.method(slot).of_another_method().is_some()) {
+        return map::old(state, jobs, kind);
+    }
+    let updating = if is_updating(jobs, kind) { " (updating)" } else { "" };
     let slot = kind.slot().filter(|_| !state.is_predicting());
     let figures = slot.and_then(|slot| jobs.pipeline.scores_in(slot)).map(|s| s.metrics);
     match kind {
@@ -76,35 +57,36 @@ fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
         }
         MapKind::Difference | MapKind::SecondDifference => format!("{method} − target{updating}"),
         MapKind::OutputAbove | MapKind::SecondAbove => {
-            let figures = caption(state, jobs, kind).unwrap_or_default();
+            let figures = caption_of(state, jobs, kind).unwrap_or_default();
             format!("{method} > η · {figures}")
         }
         _ => format!("{}{updating}", kind.title()),
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut map::HandMemory) -> Vec<Command> {
+/// Draws the maps of [`Compare::maps`] with their titles, and the `progress` of the second method while it runs.
+pub fn show(
+    ui: &mut Ui,
+    state: &State,
+    maps: Vec<(String, map::Input<'_>)>,
+    progress: Option<f32>,
+    view: &mut MapView,
+    memory: &mut map::HandMemory,
+) -> Vec<Command> {
     padded(ui, |ui, asked| {
-        choices(ui, &input, asked);
-        let area = ui.available_rect_before_wrap();
-        let Input { state, maps, .. } = input;
-        let compare = &state.settings.compare;
-        let places = match compare.layout {
-            Layout::Beside => grid(area, maps.len()),
-            Layout::Flip => vec![area],
+        choices(ui, state, progress, asked);
+        let (area, compare) = (ui.available_rect_before_wrap(), &state.settings.compare);
+        let (places, skipped) = match compare.layout {
+            Layout::Beside => (grid(area, maps.len()), 0),
+            Layout::Flip => (vec![area], compare.front),
         };
-        let maps = match compare.layout {
-            Layout::Beside => maps,
-            Layout::Flip => maps.into_iter().skip(compare.front).take(1).collect(),
-        };
-        for (index, (place, Titled { title, map })) in places.into_iter().zip(maps).enumerate() {
-            let is_old = map.stale;
+        for (index, (place, (title, map))) in places.into_iter().zip(maps.into_iter().skip(skipped)).enumerate() {
             let (above, below) = place.split_top_bottom_at_y(place.top() + TITLE);
+            // With the opacity of the map below.
+            let old_ink = map.stale.then(|| ui.visuals().weak_text_color().gamma_multiply(0.55));
+            let title = RichText::new(title).size(12.0);
+            let title = if let Some(ink) = old_ink { title.color(ink) } else { title };
             ui.scope_builder(UiBuilder::new().max_rect(above).id_salt(("title", index)), |ui| {
-                let title = RichText::new(title).size(12.0);
-                // With the opacity of the map below.
-                let title =
-                    if is_old { title.color(ui.visuals().weak_text_color().gamma_multiply(0.55)) } else { title };
                 ui.add(Label::new(title).truncate().selectable(false));
             });
             ui.scope_builder(UiBuilder::new().max_rect(below).id_salt(("map", index)), |ui| {
@@ -121,8 +103,7 @@ fn grid(area: Rect, count: usize) -> Vec<Rect> {
     (0..count).map(|i| Rect::from_min_size(corner(i), size).shrink(2.0)).collect()
 }
 
-fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let state = input.state;
+fn choices(ui: &mut Ui, state: &State, second_progress: Option<f32>, asked: &mut Vec<Command>) {
     let mut compare = state.settings.compare.clone();
     ui.horizontal_wrapped(|ui| {
         let [first, second] = MethodSlot::BOTH.map(|slot| state.method_in(slot).map_or("", |m| m.name()));
@@ -151,7 +132,7 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         let room = vec2(170.0, ui.spacing().interact_size.y);
         ui.allocate_ui(room, |ui| {
             ui.set_min_size(room);
-            if let Some(part) = input.progress
+            if let Some(part) = second_progress
                 && progress(ui, part, 100.0, "Stop the second method; its last output stays")
             {
                 asked.push(WorkCommand::CancelSecond.into());
@@ -163,7 +144,6 @@ fn choices(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     }
 }
 
-/// Draws the list of methods.
 fn method(
     ui: &mut Ui,
     label: &str,
@@ -204,14 +184,10 @@ mod tests {
                 let error = refused.then_some(map::Problem { reason: "needs more samples", instead: None });
                 let texture = (!refused).then(TextureId::default);
                 let map = map::Input::bare(kind, state);
-                Titled { title: kind.title().to_owned(), map: map::Input { texture, error, ..map } }
+                (kind.title().to_owned(), map::Input { texture, error, ..map })
             };
-            let input = Input {
-                state,
-                maps: state.settings.compare.maps().into_iter().map(titled).collect(),
-                progress: held.progress,
-            };
-            let asked = show(ui, input, &mut view, &mut memory);
+            let maps = state.settings.compare.maps().into_iter().map(titled).collect();
+            let asked = show(ui, state, maps, held.progress, &mut view, &mut memory);
             held.asked.extend(asked.into_iter().filter(|c| !matches!(c, Command::View(ViewCommand::Hover(_)))));
         };
         let mut state = State::new(vec![Arc::new(Baseline), Arc::new(CAPON)]);

@@ -1,12 +1,10 @@
 //! The settings panel: reconstruction with its current figures, maps, and display.
 
-mod detector;
-mod display;
 mod false_alarms;
-mod maps;
+mod settings;
 
 use crate::app::content::{Content, Cx, Nothing};
-pub use false_alarms::{FalseAlarmsMemory, Search};
+pub use false_alarms::Search;
 
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::panels::map;
@@ -15,6 +13,7 @@ use crate::app::widgets::{
     LIST_HEIGHT, NumberField, group, level, method_list, percent, progress, row, scrolled, with_unit,
 };
 use crate::evaluate::eta_text;
+use crate::evaluate::threshold::ThresholdSearch;
 use crate::lesson::Uses;
 use crate::reconstruct::Reconstructor;
 use eframe::egui::{self, ComboBox, Grid, Slider, SliderClamping, Ui};
@@ -26,11 +25,9 @@ const FIGURES_GAP: f32 = 20.0;
 /// Settings, and the state of the reconstruction.
 pub struct Input<'a> {
     pub state: &'a State,
-    /// η of the method in use.
     pub eta: f32,
     /// Decibels that the target's Lambda spans, where its scale is known.
     pub range_db: Option<f64>,
-    /// State of the reconstruction.
     pub run: Run<'a>,
     /// Settings that the current lesson uses; the others are hidden.
     pub uses: Uses,
@@ -41,9 +38,7 @@ pub struct Input<'a> {
 pub struct Run<'a> {
     /// Completed part of the reconstruction, 0 to 1, while it runs.
     pub progress: Option<f32>,
-    /// The method's refusal, the reason for a missing output.
     pub refusal: Option<&'a Refusal>,
-    /// The method whose output is shown, and its run time.
     pub output: Option<(&'static str, Duration)>,
     /// Figures of that output against the target of the same scene.
     pub scores: Option<Scores>,
@@ -53,9 +48,7 @@ pub struct Run<'a> {
     pub outdated: bool,
     /// Whether a visible panel needs an output.
     pub wanted: bool,
-    /// The error of the detector in use.
     pub detector_error: Option<&'a str>,
-    /// State of the threshold search.
     pub search: Search<'a>,
 }
 
@@ -63,7 +56,7 @@ pub struct ControlsPanel;
 
 impl Content for ControlsPanel {
     type Asks = Nothing;
-    type Remembers = FalseAlarmsMemory;
+    type Remembers = ThresholdSearch;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let (state, jobs) = (&*cx.state, cx.jobs);
@@ -91,19 +84,19 @@ impl Content for ControlsPanel {
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut FalseAlarmsMemory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ThresholdSearch) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
         if input.uses.output {
             group(ui, "Reconstruction", |ui| reconstruction(ui, &input, memory, asked));
         } else if input.uses.threshold {
             group(ui, "Threshold", |ui| thresholds(ui, &input, None, memory, asked));
         }
-        group(ui, "Maps", |ui| maps::show(ui, input.state, asked));
-        group(ui, "Display", |ui| display::show(ui, &input.state.settings, asked));
+        group(ui, "Maps", |ui| settings::maps(ui, input.state, asked));
+        group(ui, "Display", |ui| settings::display(ui, &input.state.settings, asked));
     })
 }
 
-fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut FalseAlarmsMemory, asked: &mut Vec<Command>) {
+fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut ThresholdSearch, asked: &mut Vec<Command>) {
     let Some(method) = input.state.method().map(AsRef::as_ref) else {
         ui.weak("This build has no reconstruction method.");
         return;
@@ -126,12 +119,12 @@ fn thresholds(
     ui: &mut Ui,
     input: &Input<'_>,
     method: Option<&dyn Reconstructor>,
-    memory: &mut FalseAlarmsMemory,
+    memory: &mut ThresholdSearch,
     asked: &mut Vec<Command>,
 ) {
-    detector::choice(ui, &input.state.settings, asked);
+    settings::detector(ui, &input.state.settings, asked);
     match &input.state.settings.cfar {
-        Some(cfar) => detector::cells(ui, cfar, input.run.detector_error, asked),
+        Some(cfar) => settings::detector_cells(ui, cfar, input.run.detector_error, asked),
         None => {
             if let Some(method) = method {
                 output_eta(ui, input, method, asked);
@@ -144,14 +137,11 @@ fn thresholds(
     }
 }
 
-/// Draws the threshold of the method's output.
 fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked: &mut Vec<Command>) {
     row(ui, "η", "Cells of the output above this count as detections", |ui| {
         let mut eta = input.eta;
         let slider = threshold(ui, "η in numbers", &mut eta);
-        asked.extend(
-            moved(input.eta, eta).map(|eta| Command::View(ViewCommand::SetMethodEta(method.name(), Some(eta)))),
-        );
+        asked.extend(moved(input.eta, eta).map(|v| Command::View(ViewCommand::SetMethodEta(method.name(), Some(v)))));
         let own = input.state.settings.method_eta.contains_key(method.name());
         let reset = ui.add_enabled(own, egui::Button::new("Reset").small());
         let back = match method.reads_eta() {
@@ -166,7 +156,6 @@ fn output_eta(ui: &mut Ui, input: &Input<'_>, method: &dyn Reconstructor, asked:
     });
 }
 
-/// Draws the threshold of the target.
 fn target_eta(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     row(ui, "η'", "Cells of the target above this are drawn in the panel Target > η'", |ui| {
         let mut eta = input.state.settings.target_eta;
@@ -184,7 +173,6 @@ fn in_decibels(ui: &mut Ui, input: &Input<'_>, eta: f32) {
     }
 }
 
-/// The new eta, if it differs.
 fn moved(before: f32, after: f32) -> Option<f32> {
     (before != after).then_some(after)
 }
@@ -246,14 +234,10 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
             }
             ui.end_row();
         });
-        blobs(ui, scores);
+        let plural = if scores.target_blobs == 1 { "" } else { "s" };
+        ui.weak(format!("{} blob{plural} in the target, {} in the output", scores.target_blobs, scores.output_blobs))
+            .on_hover_text("Regions of touching cells above η' and η");
     });
-}
-
-fn blobs(ui: &mut Ui, scores: Scores) {
-    let plural = if scores.target_blobs == 1 { "" } else { "s" };
-    ui.weak(format!("{} blob{plural} in the target, {} in the output", scores.target_blobs, scores.output_blobs))
-        .on_hover_text("Regions of touching cells above η' and η");
 }
 
 #[cfg(test)]

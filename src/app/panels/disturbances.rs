@@ -41,8 +41,7 @@ fn percent(name: &'static str, tooltip: &'static str, low: f64, high: f64) -> Qu
 fn number(ui: &mut Ui, quantity: Quantity, value: &mut f64) {
     let scale = if quantity.unit == " %" { 100.0 } else { 1.0 };
     let mut shown = *value * scale;
-    let response = labelled(ui, quantity.name, quantity.tooltip, quantity.field(&mut shown));
-    if response.changed() && (shown - *value * scale).abs() >= 0.5e-4 {
+    if labelled(ui, quantity.name, quantity.tooltip, quantity.field(&mut shown)).changed() {
         *value = shown / scale;
     }
     ui.end_row();
@@ -103,7 +102,7 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::panels::recording::some_recording;
+    use crate::app::panels::recording::tests::some_recording;
     use crate::app::widgets::seen::User;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;

@@ -5,13 +5,13 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::{DopplerQuery, DopplerResult, Jobs};
 use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
 use crate::app::widgets::{
-    Axis, Bar, Chart, Drawn, NumberField, Texture, axes, colour_table, computed, labelled, padded, press, theme, tick,
-    warning,
+    Axis, Bar, Chart, Drawn, MARK, MARK_EDGE, NumberField, Texture, axes, colour_table, computed, edged, labelled,
+    padded, press, tick, warning,
 };
 use crate::maps::Normalisation;
 use crate::radar::{MAX_CHIRPS, Radar};
 use crate::theory::doppler::{DopplerBlob, folded};
-use eframe::egui::{self, Rect, Sense, Slider, Stroke, TextureOptions, Ui, vec2};
+use eframe::egui::{Align2, Sense, Slider, Stroke, TextureId, TextureOptions, Ui, vec2};
 use egui_plot::{LineStyle, VLine};
 
 /// Number of chirps that the button of an empty map sets.
@@ -23,24 +23,11 @@ const MARKS: usize = 200;
 /// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.
 const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
 
-/// The map that the panel draws.
-pub struct Input<'a> {
-    pub state: &'a State,
-    /// The map, or the reason why there is none; `None` before the first result.
-    pub result: Option<Result<&'a DopplerResult, &'a str>>,
-}
-
-/// Texture of the map, kept between frames.
-#[derive(Default)]
-pub struct DopplerMemory {
-    texture: Texture,
-}
-
 pub struct DopplerPanel;
 
 impl Content for DopplerPanel {
     type Asks = DopplerQuery;
-    type Remembers = DopplerMemory;
+    type Remembers = Texture;
     const TELLS_ANSWERS: bool = true;
 
     fn asks(state: &State, _: &Jobs) -> Option<DopplerQuery> {
@@ -48,35 +35,34 @@ impl Content for DopplerPanel {
     }
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, Input { state: cx.state, result: cx.value }, cx.memory)
+        show(ui, cx.state, cx.value, cx.memory)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut DopplerMemory) -> Vec<Command> {
+/// The map, or the reason why there is none; `None` before the first.
+type Shown<'a> = Option<Result<&'a DopplerResult, &'a str>>;
+
+pub fn show(ui: &mut Ui, state: &State, result: Shown<'_>, texture: &mut Texture) -> Vec<Command> {
     padded(ui, |ui, asked| {
-        chirps(ui, &input, asked);
-        match (input.state.frames(), input.state.is_recorded()) {
-            (Some(frames), _) => frames_played(ui, &input, frames, asked),
-            (None, true) => {}
-            (None, false) => timeline(ui, &input, asked),
+        chirps(ui, state, result, asked);
+        match state.frames() {
+            Some(frames) => frames_played(ui, state, frames, asked),
+            None if state.is_recorded() => {}
+            None => timeline(ui, state, asked),
         }
-        said(ui, &input, asked);
-        match input.result {
-            _ if !input.state.is_recorded() && input.state.radar().chirps < 2 => {}
-            None if input.state.is_recorded() => {}
-            value => {
-                let Some(result) = computed(ui, value) else { return };
-                let texture = memory.texture.of(ui.ctx(), "range-Doppler", &result.image, TextureOptions::NEAREST);
-                map(ui, &input, result, texture);
-            }
+        said(ui, state, result, asked);
+        let has_loops = if state.is_recorded() { result.is_some() } else { state.radar().chirps > 1 };
+        if let Some(result) = has_loops.then(|| computed(ui, result)).flatten() {
+            let texture = texture.of(ui.ctx(), "range-Doppler", &result.image, TextureOptions::NEAREST);
+            map(ui, state, result, texture);
         }
     })
 }
 
 /// Draws the fields of the chirps' number and interval, and the velocities that follow.
-fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    let mut radar = input.state.radar().clone();
-    ui.add_enabled_ui(!input.state.is_recorded(), |ui| {
+fn chirps(ui: &mut Ui, state: &State, result: Shown<'_>, asked: &mut Vec<Command>) {
+    let mut radar = state.radar().clone();
+    ui.add_enabled_ui(!state.is_recorded(), |ui| {
         ui.horizontal_wrapped(|ui| {
             let count = NumberField::new(&mut radar.chirps).range(1..=MAX_CHIRPS).speed(0.5);
             labelled(ui, "Chirps", "Chirps that are sent one after another: columns of the map", count);
@@ -91,9 +77,9 @@ fn chirps(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             }
         });
     });
-    let of_file = input.result.and_then(Result::ok).filter(|_| input.state.is_recorded()).map(|result| &result.radar);
-    ui.weak(follows(of_file.unwrap_or(input.state.radar())));
-    if radar != *input.state.radar() && !input.state.is_recorded() {
+    let of_file = result.and_then(Result::ok).filter(|_| state.is_recorded()).map(|result| &result.radar);
+    ui.weak(follows(of_file.unwrap_or(state.radar())));
+    if radar != *state.radar() && !state.is_recorded() {
         radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
         asked.push(RadarCommand::Set(Box::new(radar)).into());
     }
@@ -108,46 +94,38 @@ fn follows(radar: &Radar) -> String {
     }
 }
 
-/// Draws the time of the scene, and the buttons that play it.
-fn timeline(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    ui.add_enabled_ui(input.state.scene().is_moving(), |ui| {
+fn timeline(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
+    ui.add_enabled_ui(state.scene().is_moving(), |ui| {
         ui.horizontal_wrapped(|ui| {
-            play(
-                ui,
-                input.state.timeline.is_playing(),
-                "Let every object move by its velocity; all maps follow",
-                asked,
-            );
-            let mut seconds = input.state.timeline.seconds();
+            play(ui, state, "Let every object move by its velocity; all maps follow", asked);
+            let mut seconds = state.timeline.seconds();
             let slider = Slider::new(&mut seconds, 0.0..=TIMELINE_SECONDS).fixed_decimals(2).suffix(" s");
             let tooltip = "Time at which the scene is looked at; its file has time 0";
             if labelled(ui, "Time", tooltip, slider).changed() {
                 asked.push(ViewCommand::SetTime(seconds).into());
             }
-            if input.state.timeline.seconds() > 0.0 {
+            if state.timeline.seconds() > 0.0 {
                 press(ui, "Back to 0 s", "", ViewCommand::SetTime(0.0), asked);
             }
         });
     });
 }
 
-/// Draws the frames of a recording, and the button that plays them.
-fn frames_played(ui: &mut Ui, input: &Input<'_>, frames: [u64; 2], asked: &mut Vec<Command>) {
+fn frames_played(ui: &mut Ui, state: &State, frames: [u64; 2], asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        play(ui, input.state.timeline.is_playing(), "Show one frame after another; all maps and methods follow", asked);
+        play(ui, state, "Show one frame after another; all maps and methods follow", asked);
         asked.extend(frame_slider(ui, frames).map(|way| DocumentCommand::ReadAnotherWay(way).into()));
     });
 }
 
-/// Draws the button that plays or pauses.
-fn play(ui: &mut Ui, is_playing: bool, tip: &str, asked: &mut Vec<Command>) {
-    press(ui, if is_playing { "Pause" } else { "Play" }, tip, ViewCommand::TogglePlay, asked);
+fn play(ui: &mut Ui, state: &State, tip: &str, asked: &mut Vec<Command>) {
+    press(ui, if state.timeline.is_playing() { "Pause" } else { "Play" }, tip, ViewCommand::TogglePlay, asked);
 }
 
 /// Writes why there is no map, or a note on the map.
-fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
-    if input.state.is_recorded() {
-        let text = match input.result {
+fn said(ui: &mut Ui, state: &State, result: Shown<'_>, asked: &mut Vec<Command>) {
+    if state.is_recorded() {
+        let text = match result {
             None => "The loops of a raw capture's frame, or of an array, make this map. One chirp tells no velocity.",
             Some(Ok(result)) if !result.knows_interval => {
                 "Nothing says the interval of chirps: a step of velocity is shown as 1 m/s."
@@ -156,22 +134,22 @@ fn said(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         };
         ui.weak(text);
         let tooltip = "The mean over the loops, which holds all that stands still";
-        if input.result.is_some() {
-            let out = input.state.settings.static_clutter_out;
+        if result.is_some() {
+            let out = state.settings.static_clutter_out;
             tick(ui, out, "Static clutter out", tooltip, ViewCommand::TakeOutStaticClutter, asked);
         }
-    } else if input.state.radar().chirps < 2 {
+    } else if state.radar().chirps < 2 {
         ui.horizontal_wrapped(|ui| {
             ui.label("One chirp tells no velocity.");
-            let mut radar = input.state.radar().clone();
+            let mut radar = state.radar().clone();
             radar.chirps = FIRST_CHIRPS;
             radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
             press(ui, format!("Send {FIRST_CHIRPS} chirps"), "", RadarCommand::Set(Box::new(radar)), asked);
         });
-    } else if !input.state.scene().is_moving() {
+    } else if !state.scene().is_moving() {
         ui.weak("Nothing moves: everything stands at 0 m/s. The Inspector sets velocities.");
     } else {
-        warning(ui, folded(input.state.radar(), input.state.scene()).as_deref());
+        warning(ui, folded(state.radar(), state.scene()).as_deref());
     }
 }
 
@@ -182,7 +160,7 @@ fn reach(radar: &Radar) -> ([f64; 2], [f64; 2]) {
     ([velocity(-0.5), velocity(radar.chirps as f64 - 0.5)], [range(-0.5), range(radar.samples as f64 - 0.5)])
 }
 
-fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::TextureId) {
+fn map(ui: &mut Ui, state: &State, result: &DopplerResult, texture: TextureId) {
     let radar = &result.radar;
     let (velocities, ranges) = reach(radar);
     let beyond = 0.06 * (velocities[1] - velocities[0]);
@@ -197,33 +175,29 @@ fn map(ui: &mut Ui, input: &Input<'_>, result: &DopplerResult, texture: egui::Te
         chart.add(VLine::new("", edge).stroke(stroke).style(LineStyle::dashed_dense()));
     }
     let drawn = chart.show(ui, area.with_max_x(area.right() - axes::RIGHT + 12.0), Sense::hover());
-    if input.state.settings.show_reflectors {
-        marks(ui, input, &drawn, radar);
+    if state.settings.show_reflectors {
+        marks(ui, state, &drawn, radar);
     }
-    let (low, high, title) = match input.state.settings.normalisation {
+    let (low, high, title) = match state.settings.normalisation {
         Normalisation::DynamicRange(range) => (-range.0, 0.0, "dB"),
         Normalisation::MinMax => (0.0, 1.0, "Λ"),
     };
-    let bar = Bar::new(colour_table(input.state.settings.colours), low, high, title);
+    let bar = Bar::new(colour_table(state.settings.colours), low, high, title);
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
     drawn.tell(|[velocity, range]| told(result, velocity, range));
 }
 
 /// Draws a ring at the predicted place of each object, dashed where its velocity folds.
-fn marks(ui: &Ui, input: &Input<'_>, drawn: &Drawn, radar: &Radar) {
-    for (index, object) in input.state.scene().objects.iter().take(MARKS).enumerate() {
+fn marks(ui: &Ui, state: &State, drawn: &Drawn, radar: &Radar) {
+    for (index, object) in state.scene().objects.iter().take(MARKS).enumerate() {
         let blob = DopplerBlob::of(radar, object);
         let at = drawn.at([blob.apparent_velocity_metres_per_second, blob.apparent_range_metres]);
-        for (width, colour) in [(3.0, theme::MARK_EDGE), (1.4, theme::MARK)] {
-            drawn.painter().circle_stroke(at, 7.0, Stroke::new(width, colour));
-        }
+        edged([3.0, 1.4], MARK, |stroke| drawn.painter().circle_stroke(at, 7.0, stroke));
         let name = if blob.is_folded() { format!("{} folded", index + 1) } else { format!("{}", index + 1) };
-        let text = at + vec2(9.0, 0.0);
-        let font = egui::FontId::proportional(12.0);
-        let galley = ui.painter().layout_no_wrap(name, font, theme::MARK);
-        let rect = Rect::from_min_size(text - vec2(0.0, galley.size().y / 2.0), galley.size());
-        drawn.painter().rect_filled(rect.expand(2.0), 2.0, theme::MARK_EDGE);
-        drawn.painter().galley(rect.min, galley, theme::MARK);
+        let galley = ui.painter().layout_no_wrap(name, axes::tick_font(), MARK);
+        let rect = Align2::LEFT_CENTER.anchor_size(at + vec2(9.0, 0.0), galley.size());
+        drawn.painter().rect_filled(rect.expand(2.0), 2.0, MARK_EDGE);
+        drawn.painter().galley(rect.min, galley, MARK);
     }
 }
 

@@ -2,7 +2,6 @@
 //! and calibration on the selected reflector.
 
 mod heard;
-mod list;
 mod strip;
 #[cfg(test)]
 mod tests;
@@ -12,24 +11,24 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Calibrated, CalibrationQuery, Jobs};
 use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::{NumberField, labelled, press, scrolled};
-use crate::radar::{BuiltArray, Decibels, ElementError, Tolerances};
-use eframe::egui::{Grid, Ui};
+use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
+use eframe::egui::{CollapsingHeader, Grid, TextEdit, Ui};
 use std::sync::Arc;
 
 /// State of the fields, kept between frames.
 pub struct ElementsMemory {
-    /// The element whose numbers are drawn.
     chosen: usize,
     tolerances: Tolerances,
     seed: u64,
-    heard: heard::HeardMemory,
-    list: list::ElementListMemory,
+    list: String,
+    /// Distance of a bent line's ends behind its middle, millimetres.
+    back_millimetres: f64,
 }
 
 impl Default for ElementsMemory {
     fn default() -> Self {
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 10.0, position_millimetres: 0.0 };
-        ElementsMemory { chosen: 0, tolerances, seed: 0, heard: Default::default(), list: Default::default() }
+        ElementsMemory { chosen: 0, tolerances, seed: 0, list: String::new(), back_millimetres: 0.0 }
     }
 }
 
@@ -58,24 +57,25 @@ pub fn show(
     memory.chosen = memory.chosen.min(state.radar().elements - 1);
     scrolled(ui, |ui, asked| {
         summary(ui, state.elements(), asked);
-        heard::show(ui, state, &mut memory.heard, asked);
+        heard::show(ui, state, asked);
         if let Some((n, error)) = strip::show(ui, state, &mut memory.chosen) {
-            asked.push(with(state, n, |e| *e = error));
+            asked.push(with(state, n, error));
         }
         one(ui, state, memory, asked);
         ui.separator();
         draw_from_seed(ui, state, memory, asked);
-        list::show(ui, state.radar(), state.elements(), &mut memory.list, asked);
+        bend(ui, state, memory, asked);
+        list(ui, state.radar(), memory, asked);
         ui.separator();
         calibration(ui, calibrated, asked);
     })
 }
 
-/// The command for an array with element `n` changed.
-fn with(state: &State, n: usize, change: impl FnOnce(&mut ElementError)) -> Command {
+/// The command for an array whose element `n` has these errors.
+fn with(state: &State, n: usize, error: ElementError) -> Command {
     let mut elements = state.elements().elements.clone();
     elements.resize(state.radar().elements, ElementError::default());
-    change(&mut elements[n]);
+    elements[n] = error;
     Command::Radar(RadarCommand::SetElements(Arc::new(BuiltArray { elements })))
 }
 
@@ -120,41 +120,29 @@ fn spread_tooltip(living: usize) -> String {
     )
 }
 
-/// A number field for typing or dragging. Returns the new number after an edit; focus alone keeps all decimals.
-fn number(ui: &mut Ui, name: &str, unit: &str, value: f64, most: f64, speed: f64) -> Option<f64> {
-    let mut edited = value;
-    let drag = NumberField::new(&mut edited).range(-most..=most).clamp_existing_to_range(false);
-    let changed = labelled(ui, name, "", drag.speed(speed).max_decimals(3).suffix(unit)).changed();
-    (changed && (edited - value).abs() >= 0.5e-3).then_some(edited)
-}
-
 /// Draws the fields of the chosen element.
 fn one(ui: &mut Ui, state: &State, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
     let n = memory.chosen;
-    let error = state.elements().element(n);
+    let mut error = state.elements().element(n);
     ui.horizontal_wrapped(|ui| {
         let most = state.radar().elements - 1;
         labelled(ui, "element", "", NumberField::new(&mut memory.chosen).range(0..=most).speed(0.2));
-        let mut dead = error.dead;
-        if ui.checkbox(&mut dead, "dead").changed() {
-            asked.push(with(state, n, |e| e.dead = dead));
-        }
-        if let Some(db) = number(ui, "gain", " dB", error.gain.0, 60.0, 0.05) {
-            asked.push(with(state, n, |e| e.gain = Decibels(db)));
-        }
-        if let Some(degrees) = number(ui, "phase", "°", error.phase_degrees, 360.0, 0.5) {
-            asked.push(with(state, n, |e| e.phase_degrees = degrees));
-        }
-        if let Some(mm) = number(ui, "place", " mm", error.position_millimetres, MOST_MILLIMETRES, 0.01) {
-            asked.push(with(state, n, |e| e.position_millimetres = mm));
-        }
-        if let Some(mm) = number(ui, "forward", " mm", error.forward_millimetres, MOST_MILLIMETRES, 0.01) {
-            asked.push(with(state, n, |e| e.forward_millimetres = mm));
+        ui.checkbox(&mut error.dead, "dead");
+        for (name, value, unit, most, speed) in [
+            ("gain", &mut error.gain.0, " dB", 60.0, 0.05),
+            ("phase", &mut error.phase_degrees, "°", 360.0, 0.5),
+            ("place", &mut error.position_millimetres, " mm", MOST_MILLIMETRES, 0.01),
+            ("forward", &mut error.forward_millimetres, " mm", MOST_MILLIMETRES, 0.01),
+        ] {
+            let field = NumberField::new(value).range(-most..=most).clamp_existing_to_range(false);
+            labelled(ui, name, "", field.speed(speed).max_decimals(3).suffix(unit));
         }
     });
+    if error != state.elements().element(n) {
+        asked.push(with(state, n, error));
+    }
 }
 
-/// Draws the fields of random errors for all elements, from a seed.
 fn draw_from_seed(ui: &mut Ui, state: &State, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let Tolerances { gain, phase_degrees, position_millimetres } = &mut memory.tolerances;
@@ -176,17 +164,45 @@ fn draw_from_seed(ui: &mut Ui, state: &State, memory: &mut ElementsMemory, asked
     });
 }
 
-fn calibration(ui: &mut Ui, calibrated: Option<Result<&Calibrated, &str>>, asked: &mut Vec<Command>) {
-    let found = match calibrated {
-        None => {
-            ui.weak("Select a point to calibrate the elements on its echo.");
-            return;
+/// Draws the field that puts the elements on a bent line, as on a bumper.
+fn bend(ui: &mut Ui, state: &State, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        let field = NumberField::new(&mut memory.back_millimetres).range(-1000.0..=1000.0).speed(0.05);
+        let tooltip = "How far the ends of a bent line stand behind its middle";
+        labelled(ui, "ends back by", tooltip, field.max_decimals(2).suffix(" mm"));
+        let bent = state.elements().bent(state.radar(), memory.back_millimetres);
+        let tooltip =
+            "Put the elements on a parabola. Maps and methods still take them for a straight line: compare the target";
+        press(ui, "Bend", tooltip, RadarCommand::SetElements(Arc::new(bent)), asked);
+    });
+}
+
+/// Hint in the field of the list: its columns and their units.
+const LIST_COLUMNS: &str = "place mm, forward mm, gain dB, phase °";
+
+fn list(ui: &mut Ui, radar: &Radar, memory: &mut ElementsMemory, asked: &mut Vec<Command>) {
+    let tooltip = "One line an element from the leftmost, as a spreadsheet copies it. Missing numbers are 0";
+    CollapsingHeader::new("From a list").id_salt("elements from a list").show(ui, |ui| {
+        let lines = TextEdit::multiline(&mut memory.list).desired_rows(4).desired_width(f32::INFINITY).code_editor();
+        labelled(ui, LIST_COLUMNS, tooltip, lines);
+        match BuiltArray::from_list(&memory.list, radar.elements) {
+            _ if memory.list.trim().is_empty() => {}
+            Ok(elements) => {
+                let command = RadarCommand::SetElements(Arc::new(elements));
+                press(ui, "Use the list", "Replace all elements; undo brings them back", command, asked);
+            }
+            Err(error) => _ = ui.colored_label(ui.visuals().error_fg_color, error.to_string()),
         }
-        Some(Err(reason)) => {
+    });
+}
+
+fn calibration(ui: &mut Ui, calibrated: Option<Result<&Calibrated, &str>>, asked: &mut Vec<Command>) {
+    let found = match calibrated.unwrap_or(Err("Select a point to calibrate the elements on its echo.")) {
+        Ok(found) => found,
+        Err(reason) => {
             ui.weak(reason);
             return;
         }
-        Some(Ok(found)) => found,
     };
     ui.strong(format!("Calibration on {}", found.name));
     Grid::new("calibration").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {

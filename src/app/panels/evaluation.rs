@@ -30,7 +30,6 @@ pub struct Input<'a> {
     pub radar: &'a Radar,
     /// Completed part of the run, 0 to 1, while methods are tried.
     pub progress: Option<f32>,
-    /// Figures of the rows.
     pub lines: &'a [Line],
     /// Message of the last run, where it did not succeed.
     pub note: Option<&'a str>,
@@ -42,13 +41,11 @@ pub struct Line {
     set: usize,
     /// The method's name, its threshold, and the optimisers of its weights.
     label: String,
-    /// How many scenes.
     scenes: usize,
     /// SE, P_D, P_FA, and P_D where every scene's P_FA is held to the printed one of experiment 2.
     figures: [String; 4],
     /// P_D and P_FA by a detector of constant false-alarm rate, where one was in use.
     cfar: Option<[String; 2]>,
-    /// Time of a map.
     milliseconds: String,
 }
 
@@ -114,9 +111,7 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
             let choice = FailureChoice { methods, kinds, own: false, count: SCENES_A_SET, seed: 0 };
             asked.push(RowsCommand::Try(choice).into());
         }
-        if let Some(part) = input.progress {
-            bar(ui, part, 180.0);
-        }
+        bar(ui, input.progress, 180.0);
     });
 }
 

@@ -1,14 +1,14 @@
 //! The found panel: the method's echoes as a list of angle, range and strength.
 
-mod attempts;
-
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
-use crate::app::state::{Command, MapKind, MethodSlot};
-use crate::app::widgets::{CONVENTION, angle_degrees, padded, plain, signed};
+use crate::app::state::{Command, EditCommand, MapKind, MethodSlot};
+use crate::app::widgets::{CONVENTION, angle_degrees, headings, padded, plain, right_aligned, signed};
+use crate::interact::SelectionMode;
+use crate::reconstruct::search::{LADDER, MOST_ATTEMPTS};
 use crate::reconstruct::{Attempt, Detection};
 use crate::scene::Object;
-use eframe::egui::{Align, Grid, Layout, ScrollArea, Ui};
+use eframe::egui::{CollapsingHeader, Grid, ScrollArea, Ui};
 
 /// Most lines that are shown.
 const LINES: usize = 200;
@@ -16,7 +16,6 @@ const LINES: usize = 200;
 /// Opacity of a list that belongs to an earlier scene.
 const OLD_OPACITY: f32 = 0.45;
 
-/// Tooltip of the last column.
 const NEEDED: &str = "How far the samples need this echo: of the energy around its range that the other echoes leave unexplained, the part \
     that it explains. Low: the other echoes, noise or side lobes would do without it. – where the method does not say";
 
@@ -24,7 +23,6 @@ const NEEDED: &str = "How far the samples need this echo: of the energy around i
 pub struct Input<'a> {
     /// Name of the method in use, where it draws a map and lists no echoes.
     pub draws_only: Option<&'static str>,
-    /// The method whose output is shown.
     pub method: Option<&'static str>,
     /// The found echoes, the strongest first; `None` until the list is computed.
     pub found: Option<&'a [Detection]>,
@@ -32,7 +30,6 @@ pub struct Input<'a> {
     pub attempts: &'a [Attempt],
     /// The objects of the scene on screen.
     pub objects: &'a [Object],
-    /// The method's refusal, the reason for a missing output.
     pub refusal: Option<&'a str>,
     /// Whether the list has belonged to an earlier scene for so long that the panel says so.
     pub stale: bool,
@@ -93,24 +90,18 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("found").num_columns(6).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
                 if !found.is_empty() {
-                    for (heading, tooltip) in [
-                        ("", ""),
-                        ("angle", CONVENTION),
-                        ("cos θ", "Cosine of the angle to the array's axis, as the maps count directions"),
-                        ("range", "From the centre of the array"),
-                        ("dB", "Power of the echo, relative to the strongest"),
-                        ("needed", NEEDED),
-                    ] {
-                        ui.strong(heading).on_hover_text(tooltip);
-                    }
-                    ui.end_row();
+                    let cosine = "Cosine of the angle to the array's axis, as the maps count directions";
+                    let (range, power) =
+                        ("From the centre of the array", "Power of the echo, relative to the strongest");
+                    let measured = [("angle", CONVENTION), ("cos θ", cosine), ("range", range), ("dB", power)];
+                    headings(ui, [("", "")].into_iter().chain(measured).chain([("needed", NEEDED)]));
                 }
                 found.iter().take(LINES).enumerate().for_each(|(i, d)| line(ui, i + 1, d, input.has_ranges));
             });
             if more > 0 {
                 ui.weak(format!("and {more} weaker ones"));
             }
-            asked.extend(attempts::show(ui, input.attempts, input.objects));
+            asked.extend(attempts(ui, input.attempts, input.objects));
         });
     })
 }
@@ -119,19 +110,87 @@ fn line(ui: &mut Ui, number: usize, found: &Detection, has_ranges: bool) {
     ui.weak(number.to_string());
     let range = if has_ranges { format!("{:.2} m", found.range_metres) } else { "–".to_owned() };
     let angle = format!("{}°", signed(angle_degrees(found.cos_theta), 2));
-    for text in [angle, signed(found.cos_theta, 4), range] {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(text));
+    for text in [angle, signed(found.cos_theta, 4), range, plain(found.relative_power.0, 1)] {
+        right_aligned(ui, |ui| ui.monospace(text));
     }
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.monospace(plain(found.relative_power.0, 1)));
     // The last column takes all the room that is left: nothing is aligned to its end.
     ui.monospace(found.confidence.map_or("–".to_owned(), |c| format!("{:.0} %", 100.0 * c)));
     ui.end_row();
 }
 
+/// Largest distance from an attempt's place to the object that a click selects, metres.
+const SAME_PLACE_METRES: f64 = 1.0;
+
+const ATTEMPTS_HEADING: &str = "How the search found them";
+
+/// Heading and tooltip of each column of attempts.
+const ATTEMPT_COLUMNS: [(&str, &str); 4] = [
+    ("step", "The step of the search that tried it."),
+    ("tried", "A reflector or a row, at the place where it was tried."),
+    ("gain", "Decades by which the unexplained energy falls with it. One decade is 10 dB."),
+    ("verdict", "Whether the search kept it, or the reason why not."),
+];
+
+/// Draws the folded group; nothing where there is no attempt. `objects` are those of the scene on screen.
+fn attempts(ui: &mut Ui, attempts: &[Attempt], objects: &[Object]) -> Vec<Command> {
+    let mut commands = Vec::new();
+    if attempts.is_empty() {
+        return commands;
+    }
+    CollapsingHeader::new(ATTEMPTS_HEADING).id_salt("attempts").show_unindented(ui, |ui| {
+        Grid::new("attempts").num_columns(4).striped(true).spacing([14.0, 3.0]).show(ui, |ui| {
+            headings(ui, ATTEMPT_COLUMNS);
+            for attempt in attempts {
+                commands.extend(attempt_line(ui, attempt, objects));
+            }
+        });
+        if attempts.len() == MOST_ATTEMPTS {
+            ui.weak(format!("The search tried more. The first {MOST_ATTEMPTS} attempts are listed."));
+        }
+    });
+    commands
+}
+
+/// Draws the line of an attempt. A click selects the object at its place.
+fn attempt_line(ui: &mut Ui, attempt: &Attempt, objects: &[Object]) -> Option<Command> {
+    let does = LADDER.iter().find(|rung| rung.name == attempt.rung).map_or("Starts from the last answer.", |r| r.does);
+    ui.label(attempt.rung).on_hover_text(does);
+    let place = attempt.tried.place_metres();
+    let clicked = match place {
+        Some([x, y]) => {
+            let text = format!("{} at x {} m, y {} m", attempt.tried, signed(x, 2), signed(y, 2));
+            ui.link(text).on_hover_text("Click: select the object of the scene that stands here").clicked()
+        }
+        None => ui.label(attempt.tried.to_string()).clicked(),
+    };
+    ui.monospace(plain(attempt.gain_decades, 2));
+    ui.label(attempt.verdict.to_string());
+    ui.end_row();
+    let selected = |place| {
+        Command::from(EditCommand::Select(nearest(objects, place).into_iter().collect(), SelectionMode::Replace))
+    };
+    place.filter(|_| clicked).map(selected)
+}
+
+/// The object that has a reflector nearest to a place; `None` where none is near. Samples do not distinguish y from -y.
+fn nearest(objects: &[Object], [x, y]: [f64; 2]) -> Option<usize> {
+    let apart = |object: &Object| {
+        let to = |r: &crate::scene::Reflector| (r.x_metres - x).hypot(r.y_metres.abs() - y.abs());
+        object.reflectors().iter().map(to).fold(f64::INFINITY, f64::min)
+    };
+    let apart = objects.iter().map(apart).enumerate().filter(|(_, metres)| *metres < SAME_PLACE_METRES);
+    apart.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::radar::Decibels;
+    use crate::app::widgets::seen::User;
+    use crate::radar::{Decibels, Radar};
+    use crate::reconstruct::search::Nomp;
+    use crate::reconstruct::{Reconstructor, Refusal, Request, Tried, Verdict};
+    use crate::scene::Scene;
+    use crate::signal::{Floor, simulate};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -201,5 +260,46 @@ mod tests {
         }
         let snapshot = panel(Some(two()), |input| Input { has_ranges: false, ..input });
         assert!(snapshot.query_by_label("15.00 m").is_none(), "one sample tells no range");
+    }
+
+    fn attempts_panel(attempts: Vec<Attempt>, scene: Scene) -> Harness<'static, Vec<Command>> {
+        let draw = move |ui: &mut Ui, commands: &mut Vec<Command>| {
+            commands.extend(super::attempts(ui, &attempts, &scene.objects));
+        };
+        let mut panel = Harness::builder().with_size([700.0, 300.0]).build_ui_state(draw, Vec::new());
+        panel.run();
+        panel
+    }
+
+    fn attempt(tried: Tried, verdict: Verdict) -> Attempt {
+        Attempt { rung: "tones", tried, gain_decades: 3.25, verdict, work: 12 }
+    }
+
+    #[test]
+    fn attempts_are_listed_once_the_group_is_opened() {
+        let point = attempt(Tried::Point { at_metres: [3.0, 9.0] }, Verdict::Refused(Refusal::EndsDisagree));
+        let mut panel = attempts_panel(vec![point], Scene::default());
+        assert!(panel.query_by_label("tones").is_none());
+        panel.clicks(&[ATTEMPTS_HEADING]);
+        let _told = ["tones", "point at x +3.00 m, y +9.00 m", "3.25", "refused: the ends disagree on its strength"]
+            .map(|text| panel.get_by_label(text));
+    }
+
+    #[test]
+    fn a_click_selects_the_object_that_the_search_found() {
+        let radar = Radar { elements: 64, samples: 128, ..Radar::default() };
+        let scene = Scene::of_points([(0.0, 4.0), (3.0, 6.0)]);
+        let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
+        let found = Nomp::default().reconstruct(&radar, &ends, &Request::default()).unwrap();
+        let mut panel = attempts_panel(found.trace, scene);
+        panel.clicks(&[ATTEMPTS_HEADING, "point at x +3.00 m, y +6.00 m"]);
+        assert_eq!(panel.state()[..], [Command::from(EditCommand::Select(vec![1], SelectionMode::Replace))]);
+    }
+
+    #[test]
+    fn a_place_where_nothing_stands_selects_nothing() {
+        let objects = Scene::of_points([(0.0, 4.0)]).objects;
+        assert_eq!(nearest(&objects, [0.3, -4.2]), Some(0));
+        assert_eq!(nearest(&objects, [5.0, 9.0]), None);
     }
 }

@@ -14,7 +14,6 @@ use eframe::egui::{self, ScrollArea, Ui};
 /// The text: chapters that begin with a heading, in the order of [`CHAPTERS`].
 const TEXT: &str = include_str!("../../../assets/guide.md");
 
-/// A button: its label and its commands.
 type Step = (&'static str, fn() -> Vec<Command>);
 
 /// The buttons below each chapter of the text.
@@ -80,7 +79,6 @@ const CHAPTERS: &[&[Step]] = &[
     ],
 ];
 
-/// The command that opens a panel.
 fn open(panel: Panel) -> Vec<Command> {
     vec![WindowCommand::OpenPanel(panel).into()]
 }
@@ -102,12 +100,10 @@ fn failure(which: &str, method: &'static str) -> Vec<Command> {
     scene(&format!("failure-{which}"), then)
 }
 
-/// Commands that choose a method and open its map.
 fn output_by(method: &'static str) -> Vec<Command> {
     [open(Panel::Map(MapKind::Output)), vec![ViewCommand::Method(method).into()]].concat()
 }
 
-/// Commands that set the thesis' conventions.
 fn thesis() -> Vec<Command> {
     vec![
         Command::View(ViewCommand::SetFloor(Floor::Thesis)),
@@ -156,7 +152,6 @@ fn heading(chapter: &str) -> &str {
 /// State of the guide, kept between frames.
 #[derive(Default)]
 pub struct GuideMemory {
-    /// Index of the open chapter.
     open: usize,
 }
 
@@ -195,7 +190,6 @@ pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
     })
 }
 
-/// Draws the buttons Previous, Next and Contents.
 fn turn(ui: &mut Ui, open: &mut usize) {
     let last = CHAPTERS.len().saturating_sub(1);
     *open = (*open).min(last);

@@ -1,8 +1,6 @@
 //! The inspector panel: the numbers of a selected object with their units, or those that several selected objects share.
 
-mod look;
 mod number;
-mod slider;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand, NewObject, State};
@@ -33,24 +31,18 @@ pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
 }
 
 fn nothing(ui: &mut Ui, scene: &Scene, asked: &mut Vec<Command>) {
-    if scene.objects.is_empty() {
-        named(ui, scene);
-        ui.weak("The scene is empty.");
-        press(ui, "Add a point", "", EditCommand::Add(NewObject::Point, None), asked);
-        return;
-    }
-    named(ui, scene);
-    ui.add_space(4.0);
-    ui.weak("Click an object to see and edit its numbers; drag a box around several.");
-}
-
-/// Draws the name and the notes of the scene, or of the recording under it.
-fn named(ui: &mut Ui, scene: &Scene) {
     if !scene.name.is_empty() {
         ui.strong(&scene.name);
     }
     if !scene.notes.is_empty() {
         ui.label(&scene.notes);
+    }
+    if scene.objects.is_empty() {
+        ui.weak("The scene is empty.");
+        press(ui, "Add a point", "", EditCommand::Add(NewObject::Point, None), asked);
+    } else {
+        ui.add_space(4.0);
+        ui.weak("Click an object to see and edit its numbers; drag a box around several.");
     }
 }
 
@@ -86,7 +78,6 @@ fn selected(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     });
 }
 
-/// Draws the field of the object's name, with kind and number as its hint.
 fn title(ui: &mut Ui, object: &Object, index: usize, asked: &mut Vec<Command>) {
     let (mut name, kind) = (object.name().to_owned(), format!("{} {}", capital(object.noun()), index + 1));
     let hint = egui::RichText::new(&kind).strong();

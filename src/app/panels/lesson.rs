@@ -1,18 +1,14 @@
 //! The lesson panel: predict first, then look, then change something until a condition holds.
 
 mod answer;
-mod challenge;
-mod large;
 mod list;
 mod memory;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, LessonCommand, LessonRun, State};
-use crate::app::widgets::{button, inline, press};
-use answer::{answer, answered, judgement};
-use challenge::requirements;
+use crate::app::widgets::{LARGE_TEXT_RATIO, button, inline, large, press};
+use answer::{answer, answered, judgement, requirements};
 use eframe::egui::{self, ScrollArea, TextureId, TextureOptions, Ui};
-use large::{LARGE_TEXT_RATIO, large};
 use list::list;
 pub use memory::LessonMemory;
 
@@ -150,7 +146,6 @@ fn steps(ui: &mut Ui, run: &LessonRun, presenting: bool, asked: &mut Vec<Command
     });
 }
 
-/// Draws the button of the whole screen, for a projector.
 fn whole_screen(ui: &mut Ui, presenting: bool, asked: &mut Vec<Command>) {
     let label = if presenting { "Back to the window" } else { "Whole screen" };
     button(ui, label, LessonCommand::Present, true, asked);

@@ -2,12 +2,11 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand, State};
-use crate::app::widgets::{Window, axes, bring_in_sight, colour_behind, focus_after_click};
+use crate::app::widgets::{axes, focus_after_click, keep_arrows};
 use crate::interact::{Coordinates, Field, SelectionMode};
 use crate::scene::Object;
-use eframe::egui::{
-    self, Align2, EventFilter, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2,
-};
+use eframe::egui::style::ScrollAnimation;
+use eframe::egui::{self, Align2, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 
 /// State of the list, kept between frames.
 #[derive(Default)]
@@ -56,8 +55,7 @@ pub fn show(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory) -> Vec<Comma
 
 /// Handles the arrow keys: an arrow selects the next object, with Shift the objects between, too.
 fn keys(ui: &Ui, list: &Response, state: &State) -> Option<Command> {
-    let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
-    ui.memory_mut(|m| m.set_focus_lock_filter(list.id, filter));
+    keep_arrows(list, [false, true]);
     let last = state.editor.scene().objects.len() - 1;
     ui.input_mut(|i| {
         let mut asked = None;
@@ -69,13 +67,8 @@ fn keys(ui: &Ui, list: &Response, state: &State) -> Option<Command> {
             }
             let to = match state.editor.selection().latest() {
                 Some(from) => (from + down).saturating_sub(up).min(last),
-                None => {
-                    if down > up {
-                        0
-                    } else {
-                        last
-                    }
-                }
+                None if down > up => 0,
+                None => last,
             };
             asked = Some(Command::Edit(EditCommand::Select(vec![to], mode)));
         }
@@ -98,14 +91,10 @@ fn heading(ui: &mut Ui, coordinates: Coordinates) {
     let ink = ui.visuals().weak_text_color();
     let [x, y] = place_fields(coordinates).map(|(_, name)| name);
     cells(ui, rect, ["object", x, y, "σ"].map(str::to_owned), ink);
-    ui.painter().hline(
-        rect.x_range(),
-        rect.bottom(),
-        Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color),
-    );
+    let stroke = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
+    ui.painter().hline(rect.x_range(), rect.bottom(), stroke);
 }
 
-/// Draws the cells of a row, the first aligned to the left, the numbers to the right.
 fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
     for (column, text) in texts.into_iter().enumerate() {
         let (at, align) = match column {
@@ -119,17 +108,16 @@ fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
 fn rows(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory, asked: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     let latest = state.editor.selection().latest();
-    let mut area = ScrollArea::vertical().auto_shrink([false, false]);
-    if latest != memory.latest
-        && let Some(row) = latest
-    {
-        // An object that was selected elsewhere is scrolled into sight.
-        if let Some(window) = ui.data(|d| d.get_temp::<Window>(list_window(ui))) {
-            area = bring_in_sight(area, row, ROW_HEIGHT, window);
-        }
-    }
+    // An object that was selected elsewhere is scrolled into sight.
+    let sought = latest.filter(|_| latest != memory.latest);
     memory.latest = latest;
-    let output = area.show_rows(ui, ROW_HEIGHT, state.editor.scene().objects.len(), |ui, range| {
+    let area = ScrollArea::vertical().auto_shrink([false, false]);
+    area.show_rows(ui, ROW_HEIGHT, state.editor.scene().objects.len(), |ui, range| {
+        if let Some(row) = sought {
+            let first = ui.cursor().left_top();
+            let at = first + vec2(0.0, (row as f32 - range.start as f32) * ROW_HEIGHT);
+            ui.scroll_to_rect_animation(Rect::from_min_size(at, vec2(1.0, ROW_HEIGHT)), None, ScrollAnimation::none());
+        }
         for index in range {
             let Some(object) = state.editor.scene().objects.get(index) else { break };
             if let Some(mode) = row(ui, state, index, object) {
@@ -138,12 +126,6 @@ fn rows(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory, asked: &mut Vec<
             }
         }
     });
-    let shown = Window { offset: output.state.clamped_offset().y, room: output.inner_rect.height() };
-    ui.data_mut(|d| d.insert_temp(list_window(ui), shown));
-}
-
-fn list_window(ui: &Ui) -> egui::Id {
-    ui.scope_id().with("rows in sight")
 }
 
 /// Draws a row. Returns the mode of selection, if it was clicked.
@@ -155,7 +137,8 @@ fn row(ui: &mut Ui, state: &State, index: usize, object: &Object) -> Option<Sele
         egui::WidgetInfo::selected(egui::Role::ListBoxOption, true, selected, format!("{name} in the list"))
     });
     let visuals = ui.visuals();
-    if let Some(colour) = colour_behind(visuals, &response, selected) {
+    let hovered = response.hovered().then_some(visuals.widgets.hovered.weak_bg_fill);
+    if let Some(colour) = selected.then_some(visuals.selection.bg_fill).or(hovered) {
         ui.painter().rect_filled(rect, 2.0, colour);
     }
     let place = |(field, _): (Field, &str)| {

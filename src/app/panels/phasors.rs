@@ -4,7 +4,9 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, PhasorsQuery, PhasorsResult};
 use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::{Axis, Chart, Drawn, Inks, computed, direction, labelled, padded, plain, theme};
+use crate::app::widgets::{
+    Axis, Chart, Drawn, Inks, MARK, computed, direction, edged, empty_text, labelled, padded, plain,
+};
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
 use eframe::egui::{self, Color32, Sense, Slider, Stroke, Ui, emath::Rot2};
@@ -84,7 +86,6 @@ fn choices(ui: &mut Ui, state: &State, settings: &mut PhasorSettings) {
     });
 }
 
-/// Draws the slider of the number of drawn elements, and the button that plays them.
 fn play(ui: &mut Ui, result: &PhasorsResult, memory: &mut PhasorsMemory) {
     let count = result.measured.contributions.len();
     ui.horizontal(|ui| {
@@ -119,14 +120,11 @@ fn said(ui: &mut Ui, radar: &Radar, result: &PhasorsResult) {
     let [bin, column] = result.cell;
     let (sum, length) = (result.measured.sum(), whole_length(&result.measured));
     let part = if length > 0.0 { 100.0 * sum.norm() / length } else { 0.0 };
-    let place = format!(
-        "{}, {:.2} m: amplitude {:.3e}, phase {}°; {part:.1} % of the length of all contributions",
-        direction(radar.cos_of_column(column as f64), 1),
-        radar.range_of_bin_metres(bin as f64),
-        sum.norm(),
-        plain(sum.arg().to_degrees(), 0)
-    );
-    ui.label(place).on_hover_text("100 % where all contributions have one phase, 0 % where they cancel");
+    let (way, range) = (direction(radar.cos_of_column(column as f64), 1), radar.range_of_bin_metres(bin as f64));
+    let (amplitude, phase) = (sum.norm(), plain(sum.arg().to_degrees(), 0));
+    let share = format!("{part:.1} % of the length of all contributions");
+    ui.label(format!("{way}, {range:.2} m: amplitude {amplitude:.3e}, phase {phase}°; {share}"))
+        .on_hover_text("100 % where all contributions have one phase, 0 % where they cancel");
 }
 
 fn whole_length(chain: &Phasors) -> f64 {
@@ -135,9 +133,8 @@ fn whole_length(chain: &Phasors) -> f64 {
 
 /// Draws the chains in the complex plane, both axes to one scale.
 fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
-    let entry =
-        |(_, kind): (&Phasors, Kind)| Entry { sign: Sign::Line, colour: kind.colour(ui), name: kind.name().to_owned() };
-    let entries: Vec<Entry> = drawn(result).map(entry).collect();
+    let entries: Vec<Entry> =
+        drawn(result).map(|(_, kind)| (Sign::Line, kind.ink(ui).1, kind.ink(ui).0.to_owned())).collect();
     if entries.len() > 1 {
         legend::row(ui, &entries);
     }
@@ -145,20 +142,19 @@ fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
     ui.advance_cursor_after_rect(area);
     let unit = whole_length(&result.measured);
     if unit <= 0.0 {
-        ui.painter().text(
-            area.center(),
-            egui::Align2::CENTER_CENTER,
-            "No element hears anything.",
-            egui::FontId::proportional(14.0),
-            ui.visuals().weak_text_color(),
-        );
+        empty_text(ui, area, "No element hears anything.");
         return;
     }
     let place = |z: &Complex64| [z.re / unit, z.im / unit];
     let chains: Vec<(Vec<[f64; 2]>, Kind)> =
         drawn(result).map(|(chain, kind)| (chain.chain().iter().map(place).collect(), kind)).collect();
-    let corners = chains.iter().flat_map(|(chain, _)| chain.iter().copied());
-    let [x, y] = spans(corners);
+    let axis = |i: usize, title| {
+        let values = chains.iter().flat_map(|(chain, _)| chain.iter().map(|place| place[i]));
+        let (low, high) = values.fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)));
+        let room = 0.08 * (high - low).max(1e-6);
+        Axis::new(low - room, high + room, title)
+    };
+    let (x, y) = (axis(0, "real part, of the length of all contributions"), axis(1, "imaginary part"));
     let mut chart = Chart::new("Phasors in the complex plane", x, y).with_one_scale();
     let count = drawn_count(part, result.measured.contributions.len());
     for (chain, kind) in &chains {
@@ -168,21 +164,6 @@ fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
     if let Some(end) = chains.first().and_then(|(chain, _)| chain.get(count)) {
         arrow(&drawn, *end);
     }
-}
-
-/// Axes that contain every corner.
-fn spans(corners: impl Iterator<Item = [f64; 2]>) -> [Axis<'static>; 2] {
-    let (mut low, mut high) = ([0.0f64; 2], [0.0f64; 2]);
-    for corner in corners {
-        for i in 0..2 {
-            (low[i], high[i]) = (low[i].min(corner[i]), high[i].max(corner[i]));
-        }
-    }
-    let axis = |i: usize, title| {
-        let room = 0.08 * (high[i] - low[i]).max(1e-6);
-        Axis::new(low[i] - room, high[i] + room, title)
-    };
-    [axis(0, "real part, of the length of all contributions"), axis(1, "imaginary part")]
 }
 
 /// The samples that a chain is made of.
@@ -195,22 +176,14 @@ enum Kind {
 }
 
 impl Kind {
-    fn name(self) -> &'static str {
-        match self {
-            Kind::Measured => "all elements",
-            Kind::Focused => "focused",
-            Kind::Echoes => "echoes alone",
-            Kind::Residual => "residual",
-        }
-    }
-
-    fn colour(self, ui: &Ui) -> Color32 {
+    /// Name and colour of the chain.
+    fn ink(self, ui: &Ui) -> (&'static str, Color32) {
         let inks = Inks::of(ui.visuals());
         match self {
-            Kind::Measured => inks.reflector,
-            Kind::Focused => inks.selected,
-            Kind::Echoes => inks.grid_text,
-            Kind::Residual => inks.found,
+            Kind::Measured => ("all elements", inks.reflector),
+            Kind::Focused => ("focused", inks.selected),
+            Kind::Echoes => ("echoes alone", inks.grid_text),
+            Kind::Residual => ("residual", inks.found),
         }
     }
 }
@@ -224,7 +197,7 @@ fn drawn(result: &PhasorsResult) -> impl Iterator<Item = (&Phasors, Kind)> {
 /// Draws a chain, the pieces of the two ends of the array in their colours.
 fn line(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], kind: Kind, first_element: usize) {
     let style = if kind == Kind::Echoes { LineStyle::dashed_dense() } else { LineStyle::Solid };
-    chart.line(chain.iter().copied(), Stroke::new(1.4, kind.colour(ui)), style);
+    chart.line(chain.iter().copied(), Stroke::new(1.4, kind.ink(ui).1), style);
     if kind != Kind::Measured {
         return;
     }
@@ -238,14 +211,11 @@ fn line(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], kind:
     }
 }
 
-/// Draws an arrow from the origin to the end of the chain, the value of the cell.
 fn arrow(drawn: &Drawn, end: [f64; 2]) {
     let (from, to) = (drawn.at([0.0, 0.0]), drawn.at(end));
     let back = HEAD * (from - to).normalized();
-    for (width, colour) in [(4.0, theme::MARK_EDGE), (1.8, theme::MARK)] {
-        let ends = [from, to + Rot2::from_angle(0.4) * back, to + Rot2::from_angle(-0.4) * back];
-        ends.into_iter().for_each(|end| _ = drawn.painter().line_segment([end, to], Stroke::new(width, colour)));
-    }
+    let ends = [from, to + Rot2::from_angle(0.4) * back, to + Rot2::from_angle(-0.4) * back];
+    edged([4.0, 1.8], MARK, |stroke| ends.map(|end| drawn.painter().line_segment([end, to], stroke)));
 }
 
 #[cfg(test)]

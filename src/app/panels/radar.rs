@@ -8,36 +8,13 @@ mod table;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, RadarCommand, State};
-use crate::app::widgets::{Quantity, labelled, scrolled_both};
+use crate::app::widgets::{Quantity, headings, labelled, scrolled_both};
 use crate::lesson::Step;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::theory::Consequences;
 use budget::Selected;
-use eframe::egui::{ComboBox, Grid, Label, RichText, Ui};
-use table::{GAP, Table, number};
-
-/// Record of the challenge whose constant was scrolled into sight.
-#[derive(Default)]
-pub struct RadarMemory {
-    /// Lesson and step whose challenge it was for.
-    step: Option<(String, usize)>,
-}
-
-/// A recording made with the radar.
-#[derive(Debug, Clone, Copy)]
-pub struct Measured {
-    /// Whether all elements were recorded, so that the size of the ends can be chosen.
-    pub by_all_elements: bool,
-}
-
-impl Measured {
-    fn told(self) -> &'static str {
-        match self.by_all_elements {
-            true => "Recorded radar: only the size of the ends and the windows can be changed.",
-            false => "Recorded radar, two ends alone: only the windows can be changed.",
-        }
-    }
-}
+use eframe::egui::{ComboBox, Label, RichText, Ui};
+use table::{Table, number};
 
 /// Kinds of fields that can be edited.
 #[derive(Clone, Copy)]
@@ -50,13 +27,14 @@ pub struct RadarPanel;
 
 impl Content for RadarPanel {
     type Asks = Nothing;
-    type Remembers = RadarMemory;
+    /// Lesson and step of the challenge whose constant was scrolled into sight.
+    type Remembers = Option<(String, usize)>;
     const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let run = cx.state.lesson.as_ref().filter(|run| !run.is_predicting());
         let step = run.map(|run| (run.id.clone(), run.step));
-        let is_new = std::mem::replace(&mut cx.memory.step, step.clone()) != step;
+        let is_new = std::mem::replace(cx.memory, step.clone()) != step;
         let sought = run.filter(|_| is_new).and_then(|run| solved_by(run.current()?));
         show(ui, cx.state, sought)
     }
@@ -91,30 +69,26 @@ fn selected(state: &State) -> Option<Selected> {
 /// Draws the panel; `sought` is the constant or the group that is to be brought into sight.
 pub fn show(ui: &mut Ui, state: &State, sought: Option<&'static str>) -> Vec<Command> {
     let recording = state.editor.document().recording();
-    let measured = recording.map(|r| Measured { by_all_elements: r.signal().is_some() });
+    let has_all_elements = recording.is_some_and(|r| r.signal().is_some());
+    let free = Free { constants: recording.is_none(), ends: recording.is_none() || has_all_elements };
     scrolled_both(ui, |ui, asked| {
-        match measured {
-            Some(measured) => _ = ui.weak(measured.told()),
-            None => preset(ui, state.radar(), asked),
+        match free {
+            Free { constants: true, .. } => preset(ui, state.radar(), asked),
+            Free { ends: true, .. } => {
+                _ = ui.weak("Recorded radar: only the size of the ends and the windows can be changed.")
+            }
+            _ => _ = ui.weak("Recorded radar, two ends alone: only the windows can be changed."),
         }
         ui.add_space(4.0);
         let mut radar = state.radar().clone();
         let follows = Consequences::of(&radar);
-        let constants = measured.is_none();
-        let free = Free { constants, ends: measured.is_none_or(|m| m.by_all_elements) };
         let table = Table::that_fits(ui, NAMES, sought);
-        match table.consequence_width {
-            Some(_) => {
-                _ = Grid::new("radar").num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
-                    for heading in ["Constant", "Value", "Consequence"] {
-                        ui.strong(heading);
-                    }
-                    ui.end_row();
-                    rows(ui, table, &mut radar, &follows, free);
-                })
+        table.show(ui, "radar", |ui| {
+            if table.consequence_width.is_some() {
+                headings(ui, ["Constant", "Value", "Consequence"].map(|heading| (heading, "")));
             }
-            None => rows(ui, table, &mut radar, &follows, free),
-        }
+            rows(ui, table, &mut radar, &follows, free);
+        });
         strip::show(ui, &mut radar, free.constants);
         places::show(ui, &mut radar, free.constants);
         budget::show(ui, table, &mut radar, selected(state).as_ref());
@@ -125,7 +99,6 @@ pub fn show(ui: &mut Ui, state: &State, sought: Option<&'static str>) -> Vec<Com
     })
 }
 
-/// Draws the list of presets.
 fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
     let chosen = presets::ALL.iter().find(|p| p.radar == *radar);
     ui.horizontal(|ui| {
@@ -153,7 +126,6 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
     ui.add(Label::new(RichText::new(about).weak()).truncate());
 }
 
-/// Description of a radar that is no preset.
 const OF_YOUR_OWN: &str = "Its constants are those of no radar in the list.";
 
 const CARRIER: Quantity = Quantity::metres(
@@ -188,7 +160,6 @@ const POWER: Quantity = Quantity::metres(
 
 const WINDOWS: &str = "windows";
 
-/// Names of the constants, as they stand in the first column.
 const NAMES: [&str; 14] = [
     CARRIER.name,
     BANDWIDTH.name,
@@ -206,61 +177,53 @@ const NAMES: [&str; 14] = [
     "range migration",
 ];
 
-/// Consequence of the bandwidth of a snapshot.
 const NO_RANGES: &str = "one sample has no range resolution";
 
 fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, free: Free) {
     let is_free = free.constants;
     let wavelength = radar.wavelength_metres();
     let text = format!("wavelength {:.3} mm", wavelength * 1e3);
-    if let Some(ghz) = number(ui, table, &CARRIER, radar.carrier_hz * 1e-9, &text, is_free) {
-        radar.carrier_hz = ghz * 1e9;
-    }
+    number(ui, table, &CARRIER, (&mut radar.carrier_hz, 1e9), &text, is_free);
     let is_snapshot = radar.samples == 1;
     if is_snapshot && !is_free {
         table.row(ui, (BANDWIDTH.name, BANDWIDTH.tooltip), NO_RANGES, |ui, _| ui.weak("not known"));
     } else {
         let bin = format!("range bin {}", metres(follows.range_bin_metres));
         let text = if is_snapshot { NO_RANGES } else { &bin };
-        if let Some(mhz) = number(ui, table, &BANDWIDTH, radar.bandwidth_hz * 1e-6, text, is_free) {
-            radar.bandwidth_hz = mhz * 1e6;
-        }
+        number(ui, table, &BANDWIDTH, (&mut radar.bandwidth_hz, 1e6), text, is_free);
     }
     let text = match is_snapshot {
         true => "a snapshot: one range bin".to_owned(),
         false => format!("maximum range {}", metres(follows.max_range_metres)),
     };
-    if let Some(samples) = number(ui, table, &SAMPLES, radar.samples as f64, &text, is_free) {
-        radar.samples = samples as usize;
-    }
+    count(ui, table, &SAMPLES, &mut radar.samples, &text, is_free);
     let beam = follows.full_beam;
     let text = format!("beam {:.2}°, {:.2} columns", beam.radians.to_degrees(), beam.columns);
-    if let Some(elements) = number(ui, table, &ELEMENTS, radar.elements as f64, &text, is_free && radar.is_monostatic())
-    {
-        radar.elements = elements as usize;
-    }
+    let has_pairs = !radar.is_monostatic();
+    count(ui, table, &ELEMENTS, &mut radar.elements, &text, is_free && !has_pairs);
     let beam = follows.end_beam;
     let text = format!("beam of an end {:.1}°, {:.0} columns", beam.radians.to_degrees(), beam.columns);
-    if let Some(elements) = number(ui, table, &END_ELEMENTS, radar.end_elements as f64, &text, free.ends) {
-        radar.end_elements = elements as usize;
-    }
+    count(ui, table, &END_ELEMENTS, &mut radar.end_elements, &text, free.ends);
     let far = metres(follows.full_far_field_metres);
     let text = format!("far field beyond {far}; of an end, {}", metres(follows.end_far_field_metres));
-    if let Some(mm) = number(ui, table, &SPACING_MILLIMETRES, radar.element_spacing_metres * 1e3, &text, is_free) {
-        *radar = radar.clone().with_spacing(mm * 1e-3);
-    }
-    let spacing = radar.element_spacing_metres / wavelength;
-    if let Some(wavelengths) = number(ui, table, &SPACING_WAVELENGTHS, spacing, &grating(follows), is_free) {
-        *radar = radar.clone().with_spacing(wavelengths * wavelength);
+    let mut spacing = radar.element_spacing_metres;
+    if number(ui, table, &SPACING_MILLIMETRES, (&mut spacing, 1e-3), &text, is_free)
+        | number(ui, table, &SPACING_WAVELENGTHS, (&mut spacing, wavelength), &grating(follows), is_free)
+    {
+        *radar = radar.clone().with_spacing(spacing);
     }
     let text = format!("an echo from 10 m has amplitude {:.3}", radar.transmit_power_watts / 100.0);
-    if let Some(watts) = number(ui, table, &POWER, radar.transmit_power_watts, &text, is_free) {
-        radar.transmit_power_watts = watts;
-    }
+    number(ui, table, &POWER, (&mut radar.transmit_power_watts, 1.0), &text, is_free);
     table.row(ui, (antennas::NAME, antennas::TOOLTIP), &antennas::follows(radar), |ui, label| {
         ui.add_enabled_ui(is_free, |ui| ui.vertical(|ui| antennas::choices(ui, radar, label)));
     });
     choices(ui, table, radar, follows, is_free);
+}
+
+fn count(ui: &mut Ui, table: Table, field: &Quantity, value: &mut usize, consequence: &str, is_free: bool) {
+    let mut shown = *value as f64;
+    number(ui, table, field, (&mut shown, 1.0), consequence, is_free);
+    *value = shown as usize;
 }
 
 /// Text of the number of columns between a blob and its first grating lobe, and whether that lobe is visible.
@@ -354,7 +317,6 @@ fn choices(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences,
     table.row(ui, ("range migration", tooltip), &text, |ui, label| _ = ui.label("").labelled_by(label));
 }
 
-/// Text of a length, in the unit that suits it.
 fn metres(metres: f64) -> String {
     match metres {
         m if m < 1.0 => format!("{:.2} cm", m * 100.0),

@@ -2,7 +2,7 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{CardPlan, Command, DocumentCommand, Purpose, Way, WorkCommand};
-use crate::app::widgets::{NumberField, button, choice_told, labelled, scrolled, theme};
+use crate::app::widgets::{Inks, NumberField, button, choice_told, labelled, scrolled, warning};
 use crate::platform;
 use crate::recording::card::{CardSummary, USUAL_PORT};
 use crate::recording::raw::boards;
@@ -14,55 +14,38 @@ use egui_plot::{Line, Plot, PlotPoints};
 const PROFILE: egui::Vec2 = vec2(180.0, 44.0);
 const SHOWN_DB: f64 = 80.0;
 
-/// The recording and the capture card that the panel draws.
-pub struct Input<'a> {
-    /// The recording in place of a scene, where there is one.
-    pub recording: Option<&'a Recording>,
-    /// The capture card, where there may be one.
-    pub card: Option<CardInput<'a>>,
-}
-
-/// State of a capture card.
-#[derive(Clone, Copy)]
-pub struct CardInput<'a> {
-    /// Port and configuration of the card; `None` while the program doesn't listen.
-    pub plan: Option<&'a CardPlan>,
-    /// Numbers of frames and packets since listening began.
-    pub summary: CardSummary,
-}
-
-/// The UDP port in the field.
-pub struct CardMemory {
-    port: u16,
-}
-
-impl Default for CardMemory {
-    fn default() -> Self {
-        CardMemory { port: USUAL_PORT }
-    }
-}
-
 pub struct RecordingPanel;
 
 impl Content for RecordingPanel {
     type Asks = Nothing;
-    type Remembers = CardMemory;
+    /// The UDP port in the field of a capture card.
+    type Remembers = Option<u16>;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let recording = cx.state.editor.document().recording().cloned();
-        let card = (!platform::IN_A_BROWSER)
-            .then(|| CardInput { plan: cx.jobs.listening.plan(), summary: cx.jobs.listening.summary() });
-        show(ui, Input { recording: recording.as_deref(), card }, cx.memory)
+        let listening = &cx.jobs.listening;
+        let card = (!platform::IN_A_BROWSER).then(|| (listening.plan(), listening.summary()));
+        show(ui, recording.as_deref(), card, cx.memory)
     }
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CardMemory) -> Vec<Command> {
+/// A capture card: port and configuration while the program listens, and numbers of frames and packets since then.
+type Card<'a> = (Option<&'a CardPlan>, CardSummary);
+
+/// Draws the recording in place of a scene, and the capture card, where there may be one.
+pub fn show(
+    ui: &mut Ui,
+    recording: Option<&Recording>,
+    of_card: Option<Card<'_>>,
+    port: &mut Option<u16>,
+) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
-        if let Some(of_card) = input.card {
-            card(ui, of_card, input.recording, memory, asked);
+        if let Some(of_card) = of_card {
+            let origin = recording.and_then(|recording| recording.origin.as_deref());
+            card(ui, of_card, origin, port.get_or_insert(USUAL_PORT), asked);
             ui.separator();
         }
-        let Some(recording) = input.recording else {
+        let Some(recording) = recording else {
             ui.weak("No recording is on screen. Drop a capture, an array or the TOML of a recording on the window.");
             return;
         };
@@ -75,12 +58,14 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CardMemory) -> Vec<Comma
                     [only] if only.power.is_empty() => _ = ui.weak(&only.described),
                     _ => layouts(ui, origin, &mut ways),
                 }
-                frames(ui, origin, &mut ways);
+                if origin.frames > 1 {
+                    ui.horizontal_wrapped(|ui| ways.extend(frame_slider(ui, [origin.frame, origin.frames])));
+                }
                 board(ui, origin, &mut ways);
             }
         }
         for doubt in &recording.doubts {
-            ui.colored_label(ui.visuals().warn_fg_color, doubt);
+            warning(ui, Some(doubt));
         }
         if let Some(origin) = &recording.origin {
             ui.add_space(6.0);
@@ -91,28 +76,21 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CardMemory) -> Vec<Comma
 }
 
 /// Draws the state of a capture card, or the fields to listen to one.
-fn card(
-    ui: &mut Ui,
-    input: CardInput<'_>,
-    recording: Option<&Recording>,
-    memory: &mut CardMemory,
-    asked: &mut Vec<Command>,
-) {
-    let origin = recording.and_then(|recording| recording.origin.as_deref());
-    ui.horizontal_wrapped(|ui| match input.plan {
+fn card(ui: &mut Ui, (plan, summary): Card<'_>, origin: Option<&Origin>, port: &mut u16, asked: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| match plan {
         Some(plan) => {
             ui.label(format!("Listening on UDP port {}", plan.port)).on_hover_text(plan.config.display().to_string());
             button(ui, "Stop listening", WorkCommand::StopListening, true, asked);
-            ui.weak(told(input.summary)).on_hover_text(input.summary.sentence());
+            ui.weak(told(summary)).on_hover_text(summary.sentence());
         }
         None => {
-            let port = NumberField::new(&mut memory.port).range(1..=u16::MAX);
-            labelled(ui, "Capture card on UDP port", "The port of this machine that it sends to", port);
+            let field = NumberField::new(port).range(1..=u16::MAX);
+            labelled(ui, "Capture card on UDP port", "The port of this machine that it sends to", field);
             if let Some(config) = origin.and_then(|origin| origin.config.clone()) {
-                let plan = CardPlan { port: memory.port, config, board: origin.and_then(|origin| origin.board) };
+                let plan = CardPlan { port: *port, config, board: origin.and_then(|origin| origin.board) };
                 button(ui, "Listen", WorkCommand::Listen(plan), true, asked);
             }
-            button(ui, "Listen with a .cfg…", Purpose::Listen(memory.port), true, asked);
+            button(ui, "Listen with a .cfg…", Purpose::Listen(*port), true, asked);
         }
     });
 }
@@ -131,17 +109,14 @@ fn told(summary: CardSummary) -> String {
     told
 }
 
-/// Draws the layouts to choose from, the most likely first.
 fn layouts(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
     let best = origin.offers.first().map_or(0.0, |offer| offer.log_odds);
     for (n, offer) in origin.offers.iter().enumerate() {
         ui.horizontal(|ui| {
-            let less = if n > 0 {
-                format!("\nlog-odds {:.1} less than the best", best - offer.log_odds)
-            } else {
-                String::new()
-            };
-            let tooltip = format!("Read the file so: range profile, {SHOWN_DB} dB{less}");
+            let mut tooltip = format!("Read the file so: range profile, {SHOWN_DB} dB");
+            if n > 0 {
+                tooltip += &format!("\nlog-odds {:.1} less than the best", best - offer.log_odds);
+            }
             let is_taken = n == origin.taken;
             let clicked = profile(ui, n, offer, is_taken).on_hover_text(tooltip.as_str()).clicked();
             ui.vertical(|ui| {
@@ -156,7 +131,7 @@ fn layouts(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
 
 /// Draws the powers of range bins as a small chart without axes.
 fn profile(ui: &mut Ui, number: usize, offer: &Offer, is_taken: bool) -> egui::Response {
-    let colour = if is_taken { theme::Inks::of(ui.visuals()).selected } else { ui.visuals().weak_text_color() };
+    let colour = if is_taken { Inks::of(ui.visuals()).selected } else { ui.visuals().weak_text_color() };
     let peak = offer.power.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let decibels = |power: &f64| (10.0 * (power / peak).max(f64::MIN_POSITIVE).log10()).max(-SHOWN_DB);
     let points = offer.power.iter().enumerate().map(|(bin, power)| [bin as f64, decibels(power)]);
@@ -167,12 +142,6 @@ fn profile(ui: &mut Ui, number: usize, offer: &Offer, is_taken: bool) -> egui::R
     let response = plot.include_y(0.0).include_y(-SHOWN_DB).show(ui, |plot| plot.line(line)).response;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Range profile"));
     response
-}
-
-fn frames(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
-    if origin.frames > 1 {
-        ui.horizontal_wrapped(|ui| asked.extend(frame_slider(ui, [origin.frame, origin.frames])));
-    }
 }
 
 /// Draws a slider over the frames of a file. Returns the chosen frame.
@@ -200,39 +169,38 @@ fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
     });
 }
 
-/// A recording of 20 frames, whose layout is in doubt.
 #[cfg(test)]
-pub fn some_recording() -> Recording {
-    let offer = |described: &str, log_odds: f64| Offer {
-        described: described.to_owned(),
-        log_odds,
-        power: (0..64).map(|bin| if bin == 9 { 1e6 } else { 1.0 }).collect(),
-        toml: String::new(),
-    };
-    let origin = Origin {
-        data: "a.bin".into(),
-        config: Some("a.cfg".into()),
-        offers: vec![offer("I Q in pairs", 9.0), offer("Q I in pairs", 2.0)],
-        taken: 0,
-        sentences: vec!["One echo stands out.".to_owned()],
-        doubts: Vec::new(),
-        board: Some("xWR1642"),
-        frames: 20,
-        frame: 3,
-    };
-    let radar = crate::radar::Radar { elements: 8, end_elements: 3, samples: 64, ..crate::radar::Radar::default() };
-    let silence = crate::signal::BeatSignal::silence(&radar);
-    let doubts = vec!["Antennas are taken for granted.".to_owned()];
-    Recording { origin: Some(std::sync::Arc::new(origin)), doubts, ..Recording::of_signal(radar, silence) }
-}
-
-#[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use crate::app::widgets::seen::{self, User};
     use crate::recording::packets::PacketCounts;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+
+    /// A recording of 20 frames, whose layout is in doubt.
+    pub fn some_recording() -> Recording {
+        let offer = |described: &str, log_odds: f64| Offer {
+            described: described.to_owned(),
+            log_odds,
+            power: (0..64).map(|bin| if bin == 9 { 1e6 } else { 1.0 }).collect(),
+            toml: String::new(),
+        };
+        let origin = Origin {
+            data: "a.bin".into(),
+            config: Some("a.cfg".into()),
+            offers: vec![offer("I Q in pairs", 9.0), offer("Q I in pairs", 2.0)],
+            taken: 0,
+            sentences: vec!["One echo stands out.".to_owned()],
+            doubts: Vec::new(),
+            board: Some("xWR1642"),
+            frames: 20,
+            frame: 3,
+        };
+        let radar = crate::radar::Radar { elements: 8, end_elements: 3, samples: 64, ..crate::radar::Radar::default() };
+        let silence = crate::signal::BeatSignal::silence(&radar);
+        let doubts = vec!["Antennas are taken for granted.".to_owned()];
+        Recording { origin: Some(std::sync::Arc::new(origin)), doubts, ..Recording::of_signal(radar, silence) }
+    }
 
     fn panel(recording: Option<Recording>) -> Harness<'static, Vec<Command>> {
         listening(recording, None)
@@ -242,10 +210,9 @@ mod tests {
     fn listening(recording: Option<Recording>, plan: Option<CardPlan>) -> Harness<'static, Vec<Command>> {
         let packets = PacketCounts { packets: 90, lost_bytes: 1456, ..PacketCounts::default() };
         let summary = CardSummary { frames: 7, dropped: 2, packets };
-        let mut memory = CardMemory::default();
+        let mut port = None;
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let card = Some(CardInput { plan: plan.as_ref(), summary });
-            asked.extend(show(ui, Input { recording: recording.as_ref(), card }, &mut memory));
+            asked.extend(show(ui, recording.as_ref(), Some((plan.as_ref(), summary)), &mut port));
         };
         Harness::builder().with_size([520.0, 420.0]).build_ui_state(draw, Vec::new())
     }

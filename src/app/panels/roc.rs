@@ -3,7 +3,7 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, MethodSlot};
-use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{Axis, Chart, Inks, Tick, percent};
 use crate::evaluate::{Metrics, RocPoint, eta_text};
 use crate::maps::cfar::Cfar;
@@ -29,7 +29,6 @@ pub struct Input<'a> {
     pub cfar: Option<Cfar>,
     /// Figures of the output at the threshold in use; the characteristic may only have thresholds near it.
     pub metrics: Option<Metrics>,
-    /// The method's refusal, the reason for a missing output.
     pub refusal: Option<&'a str>,
 }
 
@@ -67,14 +66,14 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
     let now = input.metrics.and_then(at_eta).or_else(at_threshold);
     let (line, mark) = (Inks::of(ui.visuals()).selected, Inks::of(ui.visuals()).ends[0]);
     egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 8, top: 4, bottom: 0 }).show(ui, |ui| {
-        let mut entries = vec![Entry { sign: Sign::Line, colour: line, name: input.method.to_owned() }];
+        let mut entries = vec![(Sign::Line, line, input.method.to_owned())];
         if let Some(now) = &now {
             let rates = format!("P_D {}, P_FA {}", percent(now.detection), percent(now.false_alarm));
             let name = match input.cfar {
                 None => format!("η = {}: {rates}", eta_text(input.eta)),
                 Some(cfar) => format!("{}: {rates}", cfar.statistic.name()),
             };
-            entries.push(Entry { sign: Sign::Circle { filled: true }, colour: mark, name });
+            entries.push((Sign::Circle { filled: true }, mark, name));
         }
         legend::row(ui, &entries);
     });

@@ -75,9 +75,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
             let thorough = egui::Checkbox::new(&mut memory.thorough, "thorough");
             ui.add_enabled(input.progress.is_none(), thorough)
                 .on_hover_text("Every algorithm, up to 300 reflectors, drags too: about a minute instead of seconds");
-            if let Some(part) = input.progress {
-                bar(ui, part, 180.0);
-            }
+            bar(ui, input.progress, 180.0);
         });
         let Radar { elements, samples, window, .. } = input.radar;
         ui.weak(format!("{elements} elements, {samples} samples, window {}", window.name()));
@@ -91,7 +89,6 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
     })
 }
 
-/// Draws the choice of the rows.
 fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut RunTimeMemory) {
     let counts: BTreeSet<usize> = rows.iter().map(|r| r.reflectors).collect();
     ui.horizontal_wrapped(|ui| {
@@ -123,7 +120,6 @@ fn colour(entrant: Entrant, dark: bool) -> Color32 {
     }
 }
 
-/// The measurements of one algorithm in one precision.
 struct Series {
     entry: Entry,
     /// Decimal logarithms of error and milliseconds.
@@ -145,7 +141,7 @@ fn series(rows: &[FrontRow], memory: &RunTimeMemory, dark: bool) -> Vec<Series> 
             Precision::F64 => Sign::Square { filled: !is_planned },
         };
         let own = shown.iter().filter(|r| r.algorithm == entrant && r.precision == precision);
-        let entry = Entry { sign, colour: colour(entrant, dark), name: format!("{entrant}, {precision}") };
+        let entry = (sign, colour(entrant, dark), format!("{entrant}, {precision}"));
         Series { entry, places: own.map(|r| place(&r)).collect(), is_planned }
     };
     each.map(of).filter(|series| !series.places.is_empty()).collect()
@@ -173,10 +169,10 @@ fn plot(ui: &mut Ui, input: &Input<'_>, memory: &RunTimeMemory) {
         let line = HLine::new("", bare.log10()).color(Color32::GRAY).width(1.0);
         chart.add(line.style(LineStyle::dashed_loose()));
     }
-    for Series { entry, places, is_planned } in drawn {
-        let shape = if matches!(entry.sign, Sign::Circle { .. }) { MarkerShape::Circle } else { MarkerShape::Square };
-        let points = Points::new(entry.name, places).shape(shape).filled(!is_planned);
-        chart.add(points.radius(if is_planned { 6.5 } else { 3.5 }).color(entry.colour));
+    for Series { entry: (sign, colour, name), places, is_planned } in drawn {
+        let shape = if matches!(sign, Sign::Circle { .. }) { MarkerShape::Circle } else { MarkerShape::Square };
+        let points = Points::new(name, places).shape(shape).filled(!is_planned);
+        chart.add(points.radius(if is_planned { 6.5 } else { 3.5 }).color(colour));
     }
     let drawn = chart.show(ui, ui.available_rect_before_wrap(), Sense::click_and_drag());
     drawn.tell(|[error, time]| Some(format!("error {:.1e}\n{:.3} ms", 10f64.powf(error), 10f64.powf(time))));

@@ -6,12 +6,6 @@ use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, Stat
 use crate::app::widgets::{NumberField, Texture, choice, choice_told, labelled, member_box, method_lines, padded};
 use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 
-/// Textures of the maps.
-#[derive(Default)]
-pub struct SeveralMemory {
-    textures: Vec<Texture>,
-}
-
 /// Height of a map's name.
 const NAME: f32 = 18.0;
 
@@ -19,7 +13,8 @@ pub struct SeveralPanel;
 
 impl Content for SeveralPanel {
     type Asks = Nothing;
-    type Remembers = SeveralMemory;
+    /// Textures of the maps.
+    type Remembers = Vec<Texture>;
     const TELLS_ANSWERS: bool = true;
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
@@ -28,17 +23,17 @@ impl Content for SeveralPanel {
 }
 
 /// Draws the panel with these maps. A click on a map gives the scene its value.
-pub fn show(ui: &mut Ui, state: &State, maps: &[Small], memory: &mut SeveralMemory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Texture>) -> Vec<Command> {
     padded(ui, |ui, asked| {
         choices(ui, state, asked);
         if maps.is_empty() {
             ui.weak("No radar can have these values.");
             return;
         }
-        memory.textures.resize_with(maps.len(), Texture::default);
+        textures.resize_with(maps.len(), Texture::default);
         let area = ui.available_rect_before_wrap();
         let (columns, size) = grid(maps.len(), area.size());
-        for (index, (small, texture)) in maps.iter().zip(&mut memory.textures).enumerate() {
+        for (index, (small, texture)) in maps.iter().zip(textures).enumerate() {
             let corner = vec2((index % columns) as f32 * size.x, (index / columns) as f32 * size.y);
             let place = Rect::from_min_size(area.min + corner, size).shrink(3.0);
             tile(ui, place, small, texture, state.settings.several.parameter, asked);
@@ -112,22 +107,15 @@ fn tile(
     let picture = Rect::from_min_max(pos2(place.left(), place.top() + NAME), place.max);
     let painter = ui.painter().with_clip_rect(place);
     painter.rect_filled(picture, 0.0, ui.visuals().extreme_bg_color);
-    let ink = if response.hovered() || response.has_focus() {
-        ui.visuals().strong_text_color()
-    } else {
-        ui.visuals().text_color()
-    };
+    let is_met = response.hovered() || response.has_focus();
+    let ink = if is_met { ui.visuals().strong_text_color() } else { ui.visuals().text_color() };
     painter.text(place.left_top(), Align2::LEFT_TOP, label, FontId::proportional(12.5), ink);
     match &small.made {
         Some(Ok(image)) => {
             let texture = texture.of(ui.ctx(), &name, image, TextureOptions::LINEAR);
             let uv = Rect::from_min_max(pos2(0.0, 1.0), pos2(1.0, 0.0));
-            painter.image(
-                texture,
-                picture,
-                uv,
-                if small.is_current { Color32::WHITE } else { Color32::from_gray(190) },
-            );
+            let tint = if small.is_current { Color32::WHITE } else { Color32::from_gray(190) };
+            painter.image(texture, picture, uv, tint);
         }
         Some(Err(reason)) => {
             let galley = painter.layout(reason.clone(), FontId::proportional(11.0), ink, picture.width() - 8.0);
@@ -162,7 +150,7 @@ mod tests {
     use std::sync::Arc;
 
     fn harness(parameter: Parameter) -> Harness<'static, Vec<Command>> {
-        let (mut state, mut memory) = (State::new(Vec::new()), SeveralMemory::default());
+        let (mut state, mut textures) = (State::new(Vec::new()), Vec::new());
         state.settings.several = Several::default().with(parameter, &Radar::default());
         let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
             let variants = state.settings.several.variants(&Radar::default(), Floor::Thesis, None, &[]);
@@ -174,7 +162,7 @@ mod tests {
                     is_current: true,
                 })
                 .collect();
-            asked.extend(show(ui, &state, &maps, &mut memory));
+            asked.extend(show(ui, &state, &maps, &mut textures));
         };
         Harness::builder().with_size([900.0, 500.0]).build_ui_state(draw, Vec::new())
     }

@@ -2,20 +2,18 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::Command;
-use crate::app::widgets::scrolled;
+use crate::app::widgets::{headings, scrolled};
 use crate::engine::{EngineReport, StageOutcome};
 use eframe::egui::{Grid, Label, RichText, Ui};
 use std::time::Duration;
 
 /// An update of the maps.
 pub struct Update<'a> {
-    /// Durations of the stages.
     pub report: &'a EngineReport,
     /// Duration of the update with its pictures.
     pub took: Duration,
     /// Pictures painted since the start.
     pub painted: u64,
-    /// The method whose output is shown, and its run time.
     pub output: Option<(&'static str, Duration)>,
     /// Whether that output is of an earlier scene or of another method.
     pub outdated: bool,
@@ -46,46 +44,36 @@ pub fn show(ui: &mut Ui, update: Option<Update<'_>>) -> Vec<Command> {
         return Vec::new();
     };
     scrolled(ui, |ui, _| {
-        // The text of a stage may take several lines.
         Grid::new("stages").num_columns(3).striped(true).show(ui, |ui| table(ui, &update));
     })
 }
 
-fn milliseconds(took: Duration) -> String {
-    format!("{:.2}", took.as_secs_f64() * 1e3)
+/// Draws a row: a name, a duration if there is one, and a text, which may take several lines.
+fn row(ui: &mut Ui, name: &str, took: Option<Duration>, text: RichText) {
+    ui.label(name);
+    match took {
+        Some(took) => ui.monospace(format!("{:.2}", took.as_secs_f64() * 1e3)),
+        None => ui.weak("–"),
+    };
+    ui.add(Label::new(text).wrap());
+    ui.end_row();
 }
 
 fn table(ui: &mut Ui, update: &Update<'_>) {
-    for heading in ["stage", "ms", "what"] {
-        ui.strong(heading);
-    }
-    ui.end_row();
+    headings(ui, ["stage", "ms", "what"].map(|heading| (heading, "")));
     for stage in &update.report.stages {
-        ui.label(stage.stage.to_string());
+        let name = stage.stage.to_string();
         match &stage.outcome {
-            StageOutcome::Computed(what) => {
-                ui.monospace(milliseconds(stage.took));
-                ui.add(Label::new(what).wrap());
-            }
-            StageOutcome::Skipped(why) => {
-                ui.weak("–");
-                ui.add(Label::new(RichText::new(format!("skipped: {why}")).weak()).wrap());
-            }
+            StageOutcome::Computed(what) => row(ui, &name, Some(stage.took), RichText::new(what)),
+            StageOutcome::Skipped(why) => row(ui, &name, None, RichText::new(format!("skipped: {why}")).weak()),
         }
-        ui.end_row();
     }
-    ui.label("engine");
-    ui.monospace(milliseconds(update.report.total));
-    ui.end_row();
-    ui.label("with pictures");
-    ui.monospace(milliseconds(update.took));
-    ui.add(Label::new(format!("{} pictures painted since the start", update.painted)).wrap());
-    ui.end_row();
+    row(ui, "engine", Some(update.report.total), RichText::new(""));
+    let painted = format!("{} pictures painted since the start", update.painted);
+    row(ui, "with pictures", Some(update.took), RichText::new(painted));
     if let Some((method, took)) = update.output {
-        ui.label(method);
-        ui.monospace(milliseconds(took));
-        ui.add(Label::new(if update.outdated { "out of date" } else { "on a thread of its own" }).wrap());
-        ui.end_row();
+        let text = if update.outdated { "out of date" } else { "on a thread of its own" };
+        row(ui, method, Some(took), RichText::new(text));
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, LOG_INTERVAL, Log, LogQuery, Watched};
 use crate::app::state::{Command, Purpose, State};
-use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{Axis, Chart, button, padded, theme, warning};
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
@@ -66,8 +66,7 @@ fn curves(ui: &mut Ui, log: &Log) {
         points.iter().filter(|p| p[1] > 0.0).map(|p| [p[0], p[1].log10()]).collect()
     };
     let lines = [("loss", Color32::GRAY), ("smoothed", theme::Inks::of(ui.visuals()).selected)];
-    let entry = |(name, colour): (&str, Color32)| Entry { sign: Sign::Line, colour, name: name.to_owned() };
-    legend::row(ui, &lines.map(entry));
+    legend::row(ui, &lines.map(|(name, colour)| (Sign::Line, colour, name.to_owned())));
     let loss = log10(&log.loss);
     let ends = |axis: usize, room: f64| {
         let (low, high) =

@@ -4,8 +4,8 @@ use super::map::{Cells, cells, is_updating};
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Wants;
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
-use crate::app::widgets::{CONVENTION, direction, padded};
-use eframe::egui::{Align, Grid, Layout, RichText, ScrollArea, Ui};
+use crate::app::widgets::{CONVENTION, direction, headings, padded, right_aligned};
+use eframe::egui::{Grid, RichText, ScrollArea, Ui};
 
 /// The maps that are listed, from the inputs to the differences.
 pub const LISTED: [MapKind; 9] = [
@@ -18,6 +18,17 @@ pub const LISTED: [MapKind; 9] = [
     MapKind::Doubt,
     MapKind::SecondDifference,
     MapKind::Unexplained,
+];
+
+/// Headings of the table, with their tooltips.
+const COLUMNS: [(&str, &str); 3] = [
+    ("map", "Every map there is; those of the second method while the panel Compare is in sight"),
+    ("Λ", "Normalised magnitude, 0 to 1; of a difference with its sign"),
+    (
+        "dB",
+        "Decibels relative to the map's peak; of a difference the decibels between both. ≤: at the floor of the scale, or \
+         lower than any receiver hears",
+    ),
 ];
 
 /// A map whose values are listed.
@@ -63,18 +74,7 @@ pub fn show(ui: &mut Ui, state: &State, rows: &[Row<'_>]) -> Vec<Command> {
         ui.weak(format!("range bin {bin}, column {column}"));
         ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("values").num_columns(3).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
-                for (heading, tooltip) in [
-                    ("map", "Every map there is; those of the second method while the panel Compare is in sight"),
-                    ("Λ", "Normalised magnitude, 0 to 1; of a difference with its sign"),
-                    (
-                        "dB",
-                        "Decibels relative to the map's peak; of a difference the decibels between both. ≤: at the floor of the scale, or \
-                         lower than any receiver hears",
-                    ),
-                ] {
-                    ui.strong(heading).on_hover_text(tooltip);
-                }
-                ui.end_row();
+                headings(ui, COLUMNS);
                 rows.iter().for_each(|row| line(ui, row, bin, column));
             });
         });
@@ -82,21 +82,17 @@ pub fn show(ui: &mut Ui, state: &State, rows: &[Row<'_>]) -> Vec<Command> {
 }
 
 fn line(ui: &mut Ui, row: &Row<'_>, bin: usize, column: usize) {
-    let is_difference = row.kind.is_difference();
-    let value = row.cells.value(bin, column);
+    let (lambda, decibels) = row.cells.texts(bin, column).unzip();
     let method = row.method.map_or_else(String::new, |method| format!(" ({method})"));
     let updating = if row.updating { ", updating" } else { "" };
     ui.label(format!("{}{method}{updating}", row.kind.title())).on_hover_text(row.kind.describe());
-    let unknown = || "–".to_owned();
-    let lambda = value.map_or_else(unknown, |v| v.lambda_text(is_difference));
-    let decibels = value.and_then(|v| v.decibels_text(is_difference)).unwrap_or_else(unknown);
-    let text = |text: String| {
-        let text = RichText::new(text).monospace();
+    let text = |text: Option<String>| {
+        let text = RichText::new(text.as_deref().unwrap_or("–")).monospace();
         if row.updating { text.weak() } else { text }
     };
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text(lambda)));
+    right_aligned(ui, |ui| ui.label(text(lambda)));
     // The last column takes all the room that is left: nothing is aligned to its end.
-    ui.label(text(decibels));
+    ui.label(text(decibels.flatten()));
     ui.end_row();
 }
 

@@ -44,9 +44,7 @@ pub fn tick_text(value: f64, step: f64) -> String {
 /// A mark of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
-    /// Value of the mark.
     pub value: f64,
-    /// Label of the mark.
     pub text: String,
 }
 
@@ -64,7 +62,6 @@ pub struct Axis<'a> {
     pub low: f64,
     /// Value at the right or upper end.
     pub high: f64,
-    /// Quantity and unit.
     pub title: &'a str,
     /// Marks; those at round numbers where `None`.
     pub ticks: Option<&'a [Tick]>,
@@ -114,17 +111,12 @@ impl<'a> Axis<'a> {
     }
 }
 
-/// Marks of a horizontal and of a vertical axis around `rect`.
-pub fn marks_of(painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) -> (Vec<Tick>, Vec<Tick>) {
-    (x.across(painter, rect.width()), y.upwards(rect.height()))
-}
-
 /// Draws a frame around `rect` with ticks and titles left of it and below it, inside the painter's clip rectangle.
 pub fn draw(ui: &Ui, painter: &Painter, rect: Rect, x: Axis<'_>, y: Axis<'_>) {
     let ink = ui.visuals().weak_text_color();
     let stroke = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
     painter.rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Outside);
-    let (mut x_marks, y_marks) = marks_of(painter, rect, x, y);
+    let (mut x_marks, y_marks) = (x.across(painter, rect.width()), y.upwards(rect.height()));
     x_marks.sort_by(|a, b| x.part(a.value).total_cmp(&x.part(b.value)));
     let mut free = f32::NEG_INFINITY;
     for tick in &x_marks {

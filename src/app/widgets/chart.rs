@@ -155,7 +155,6 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// Sets title, font and labels of an axis.
 fn hints<'a>(ui: &Ui, hints: AxisHints<'a>, axis: Axis<'a>) -> AxisHints<'a> {
     let ink = ui.visuals().weak_text_color();
     let text = move |mark: GridMark, _: &_| match axis.ticks {
@@ -185,15 +184,10 @@ impl Drawn {
         self.transform.value_from_position(at).x
     }
 
-    /// The y value at a place on screen.
-    pub fn y_at(&self, at: Pos2) -> f64 {
-        self.transform.value_from_position(at).y
-    }
-
     /// Shows a text at the pointer, made of the values there.
     pub fn tell(self, what: impl FnOnce([f64; 2]) -> Option<String>) {
-        let told = self.response.hover_pos().and_then(|pos| what([self.x_at(pos), self.y_at(pos)]));
-        if let Some(told) = told {
+        let at = self.response.hover_pos().map(|pos| self.transform.value_from_position(pos));
+        if let Some(told) = at.and_then(|at| what([at.x, at.y])) {
             self.response.on_hover_text_at_pointer(told);
         }
     }
@@ -207,9 +201,7 @@ impl Drawn {
 /// The visible part of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Lower end.
     pub low: f64,
-    /// Upper end.
     pub high: f64,
 }
 

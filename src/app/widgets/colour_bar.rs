@@ -3,7 +3,6 @@
 use super::axes::{self, Axis, Tick};
 use eframe::egui::{Align2, Color32, Mesh, Painter, Rect, Shape, Stroke, Ui, pos2};
 
-/// Width of the colours, points.
 const COLOURS: f32 = 9.0;
 
 /// Gaps between map and colours, and between colours and labels, points.
@@ -17,11 +16,8 @@ const AXIS_TITLE: f32 = 60.0;
 
 /// A scale of colours.
 pub struct Bar {
-    /// Colours from the lowest to the highest value.
     pub table: [Color32; 256],
-    /// Value of the first colour.
     pub low: f64,
-    /// Value of the last colour.
     pub high: f64,
     /// Quantity, and after a comma its scale.
     pub title: &'static str,

@@ -1,13 +1,12 @@
 //! Small drawn buttons.
 
+use super::marks::cross;
 use super::theme::{MARK, MARK_EDGE};
 use eframe::egui::{self, Painter, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 /// The picture on a drawn button.
 pub enum Icon {
-    /// A rectangle.
     Maximise,
-    /// A cross.
     Close,
     /// Half a disc with a ring and a spoke, for Cartesian maps.
     Fan,
@@ -41,10 +40,7 @@ pub fn over_picture(ui: &mut Ui, rect: Rect, icon: Icon, name: &str) -> Response
 fn draw(painter: &Painter, r: Rect, icon: Icon, stroke: Stroke) {
     match icon {
         Icon::Maximise => _ = painter.rect_stroke(r, 1.0, stroke, egui::StrokeKind::Middle),
-        Icon::Close => {
-            painter.line_segment([r.left_top(), r.right_bottom()], stroke);
-            painter.line_segment([r.right_top(), r.left_bottom()], stroke);
-        }
+        Icon::Close => cross(painter, r.center(), r.size() / 2.0, stroke),
         Icon::Fan => {
             let (middle, radius) = (pos2(r.center().x, r.bottom()), r.width() / 2.0);
             let on = |i: usize| (std::f32::consts::PI * i as f32 / 12.0).sin_cos();

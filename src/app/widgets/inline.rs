@@ -1,7 +1,15 @@
 //! Text with names of methods and commands between backticks, and of panels between asterisks.
 
 use eframe::egui::text::LayoutJob;
-use eframe::egui::{FontId, TextFormat, TextStyle, Ui};
+use eframe::egui::{FontId, RichText, TextFormat, TextStyle, Ui};
+
+/// Size of enlarged text, to be read first, relative to the rest.
+pub const LARGE_TEXT_RATIO: f32 = 1.15;
+
+/// Enlarged text.
+pub fn large(ui: &Ui, text: impl Into<String>) -> RichText {
+    RichText::new(text).size(LARGE_TEXT_RATIO * TextStyle::Body.resolve(ui.style()).size)
+}
 
 /// The text at `times` the normal size, without line breaks inside paragraphs. Words between backticks are in the font of code, words between asterisks in the
 /// colour of strong text. Backticks and asterisks are left out.

@@ -10,7 +10,6 @@ const SENTENCE_WIDTH: f32 = 420.0;
 /// Least width of a button with a ticking menu, points.
 const TITLE_WIDTH: f32 = 160.0;
 
-/// Name of a kind in menus.
 fn name(kind: &Kind) -> String {
     if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() }
 }
@@ -37,11 +36,12 @@ pub fn member_box<T: Ord>(ui: &mut Ui, name: impl Into<String>, value: T, chosen
 }
 
 /// A box for each of `kinds` with its description; `chosen` has the ticked ones.
-pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &mut BTreeSet<Kind>) {
+pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &mut Vec<Kind>) {
     let room = SENTENCE_WIDTH.min((ui.ctx().content_rect().width() - 220.0).max(120.0));
+    let mut ticked: BTreeSet<Kind> = chosen.iter().copied().collect();
     Grid::new("kinds").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
         for kind in kinds {
-            member_box(ui, name(&kind), kind, chosen);
+            member_box(ui, name(&kind), kind, &mut ticked);
             ui.scope(|ui| {
                 ui.set_width(room);
                 ui.add(Label::new(RichText::new(kind.description()).weak().small()).wrap().selectable(false));
@@ -49,10 +49,11 @@ pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &m
             ui.end_row();
         }
     });
+    *chosen = ticked.into_iter().collect();
 }
 
 /// The names of `chosen` kinds and of the set `beside` them, or their number where there are more than four.
-pub fn kind_names(chosen: &BTreeSet<Kind>, beside: Option<&str>) -> String {
+pub fn kind_names(chosen: &[Kind], beside: Option<&str>) -> String {
     // A number alone could be read as a count.
     let of = |kind: &Kind| if chosen.len() == 1 { name(kind) } else { kind.to_string() };
     let names: Vec<String> = chosen.iter().map(of).chain(beside.map(str::to_owned)).collect();
@@ -68,10 +69,10 @@ mod tests {
 
     #[test]
     fn a_menu_with_ticks_stays_open_and_each_kind_has_its_sentence() {
-        let draw = |ui: &mut Ui, chosen: &mut BTreeSet<Kind>| {
+        let draw = |ui: &mut Ui, chosen: &mut Vec<Kind>| {
             ticking_menu(ui, "Scenes", |ui| kind_boxes(ui, Kind::all(), chosen));
         };
-        let mut menu = Harness::builder().with_size([800.0, 900.0]).build_ui_state(draw, BTreeSet::new());
+        let mut menu = Harness::builder().with_size([800.0, 900.0]).build_ui_state(draw, Vec::new());
         menu.clicks(&["Scenes"]);
         for kind in ["walls", "clusters"] {
             menu.clicks(&[kind]);

@@ -48,15 +48,12 @@ pub fn choice_told<T: PartialEq>(
 #[derive(Clone, Copy)]
 pub struct Quantity {
     pub name: &'static str,
-    /// Meaning of the number.
     pub tooltip: &'static str,
     /// Unit, with the space before it.
     pub unit: &'static str,
-    /// Smallest and largest allowed value.
     pub range: [f64; 2],
     /// Change for each point of a drag, in the unit.
     pub speed: f64,
-    /// Decimals shown.
     pub decimals: usize,
 }
 

@@ -9,53 +9,42 @@ const GAP: f32 = 4.0;
 /// The sign of an entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
-    /// A line.
     Line,
-    /// A circle.
+    /// A circle, filled or hollow.
     Circle {
-        /// Whether it is filled.
         filled: bool,
     },
-    /// A square.
+    /// A square, filled or hollow.
     Square {
-        /// Whether it is filled.
         filled: bool,
     },
 }
 
-/// One entry of a legend.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Entry {
-    /// Sign of the entry.
-    pub sign: Sign,
-    /// Colour of the sign.
-    pub colour: Color32,
-    /// Name of the entry.
-    pub name: String,
-}
+/// One entry of a legend: its sign, the sign's colour, and its name.
+pub type Entry = (Sign, Color32, String);
 
 /// Draws the entries, in several rows where one is too short.
 pub fn row(ui: &mut Ui, entries: &[Entry]) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 12.0;
-        for entry in entries {
+        for (drawn, colour, name) in entries {
             // Sign and name are one piece, so that no row ends between them.
             let (font, ink) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
-            let name = ui.painter().layout_no_wrap(entry.name.clone(), font, ink);
-            let size = vec2(SIGN + GAP + name.size().x, name.size().y);
+            let galley = ui.painter().layout_no_wrap(name.clone(), font, ink);
+            let size = galley.size() + vec2(SIGN + GAP, 0.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &entry.name));
-            sign(ui, rect.with_max_x(rect.left() + SIGN), entry);
-            ui.painter().galley(rect.min + vec2(SIGN + GAP, 0.0), name, ink);
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
+            sign(ui, rect.with_max_x(rect.left() + SIGN), *drawn, *colour);
+            ui.painter().galley(rect.min + vec2(SIGN + GAP, 0.0), galley, ink);
         }
     });
 }
 
-fn sign(ui: &Ui, rect: Rect, entry: &Entry) {
-    let (painter, stroke) = (ui.painter(), Stroke::new(1.5, entry.colour));
-    let fill = |filled: bool| if filled { entry.colour } else { Color32::TRANSPARENT };
-    match entry.sign {
-        Sign::Line => _ = painter.hline(rect.x_range(), rect.center().y, Stroke::new(2.0, entry.colour)),
+fn sign(ui: &Ui, rect: Rect, sign: Sign, colour: Color32) {
+    let (painter, stroke) = (ui.painter(), Stroke::new(1.5, colour));
+    let fill = |filled: bool| if filled { colour } else { Color32::TRANSPARENT };
+    match sign {
+        Sign::Line => _ = painter.hline(rect.x_range(), rect.center().y, Stroke::new(2.0, colour)),
         Sign::Circle { filled } => _ = painter.circle(rect.center(), 4.5, fill(filled), stroke),
         Sign::Square { filled } => {
             let square = Rect::from_center_size(rect.center(), vec2(8.0, 8.0));

@@ -32,14 +32,16 @@ fn refusals(state: &State) -> BTreeMap<&'static str, String> {
 }
 
 /// Draws a menu of methods with a box for each; its title names those of `chosen`.
-pub fn method_menu(ui: &mut Ui, state: &State, chosen: &mut BTreeSet<&'static str>, tip: &str) {
+pub fn method_menu(ui: &mut Ui, state: &State, chosen: &mut Vec<&'static str>, tip: &str) {
     let title = match chosen.len() {
         count if count > MOST_NAMED => format!("{count} methods"),
-        _ => chosen.iter().copied().collect::<Vec<_>>().join(", "),
+        _ => chosen.join(", "),
     };
+    let mut ticked: BTreeSet<&str> = chosen.iter().copied().collect();
     let menu = ticking_menu(ui, &format!("Methods: {title}"), |ui| {
-        _ = method_lines(ui, state, |ui, method| member_box(ui, method.name(), method.name(), chosen));
+        _ = method_lines(ui, state, |ui, method| member_box(ui, method.name(), method.name(), &mut ticked));
     });
+    *chosen = ticked.into_iter().collect();
     menu.on_hover_text(tip);
 }
 

@@ -4,7 +4,6 @@
 pub mod axes;
 mod chart;
 mod colour_bar;
-mod direction;
 mod entry;
 pub mod focus_ring;
 pub mod icons;
@@ -12,8 +11,7 @@ mod inline;
 mod kind_boxes;
 mod labelled;
 pub mod legend;
-pub mod levels;
-mod list_rows;
+mod marks;
 mod method_menu;
 #[cfg(feature = "live")]
 mod networks;
@@ -25,26 +23,29 @@ mod progress;
 #[cfg(test)]
 pub mod seen;
 mod setting_row;
+mod text_entry;
 mod textures;
 pub mod theme;
 
 pub use axes::{Axis, Tick};
 pub use chart::{Chart, Drawn, Span};
 pub use colour_bar::Bar;
-pub use direction::{CONVENTION, angle_degrees, angle_of_place_degrees, direction};
 pub use entry::{button, choices, entry, entry_called, item, press, tick, ticked, tooltip};
 pub use icons::{Icon, icon};
-pub use inline::inline;
+pub use inline::{LARGE_TEXT_RATIO, inline, large};
 pub use kind_boxes::{kind_boxes, kind_names, member_box, ticking_menu};
 pub use labelled::{Quantity, choice, choice_told, labelled};
-pub use levels::{difference, level, lowest_db, with_unit};
-pub use list_rows::{Window, bring_in_sight, colour_behind, focus_after_click};
+pub use marks::{cross, edged};
 pub use method_menu::{LIST_HEIGHT, method_lines, method_list, method_menu};
-pub use nudge::{focused_steps, nudge, pan_keys, zoom_keys};
+pub use nudge::{focus_after_click, focused_steps, keep_arrows, nudge, pan_keys, zoom_keys};
 pub use number_field::{NumberField, Wanted};
-pub use numbers::{percent, plain, signed, significant};
-pub use padded::{computed, padded, scrolled, scrolled_both, warning};
+pub use numbers::{
+    CONVENTION, angle_degrees, angle_of_place_degrees, difference, direction, level, lowest_db, percent, plain, signed,
+    significant, with_unit,
+};
+pub use padded::{computed, empty_text, headings, padded, right_aligned, scrolled, scrolled_both, warning};
 pub use progress::{bar, progress, start_or_cancel};
 pub use setting_row::{group, rarely, row, row_of};
+pub use text_entry::{entry_problem, text_entry};
 pub use textures::{Texture, colour_table, picture};
 pub use theme::{CAPTION, CAPTION_INK, Inks, MARK, MARK_EDGE, MARK_SELECTED};

@@ -21,8 +21,8 @@ fn steps(ctx: &Context) -> Option<(f64, f64)> {
 
 /// The command of arrow keys that move the selection by one range bin, with Shift by ten, with Alt by a tenth.
 pub fn nudge(ctx: &Context, bin_metres: f64) -> Option<Command> {
-    steps(ctx)
-        .map(|(dx, dy)| Command::Edit(EditCommand::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres }))
+    let (dx, dy) = steps(ctx)?;
+    Some(EditCommand::Nudge { dx_metres: dx * bin_metres, dy_metres: dy * bin_metres }.into())
 }
 
 /// Steps to the right and upwards by arrow keys for a widget with the focus.
@@ -30,7 +30,7 @@ pub fn focused_steps(response: &Response) -> Option<(f64, f64)> {
     if !response.has_focus() {
         return None;
     }
-    keep_arrows(response);
+    keep_arrows(response, [true; 2]);
     steps(&response.ctx)
 }
 
@@ -39,7 +39,7 @@ pub fn pan_keys(response: &Response, free: bool) -> Option<Vec2> {
     if !response.has_focus() {
         return None;
     }
-    keep_arrows(response);
+    keep_arrows(response, [true; 2]);
     let by = response.ctx.input_mut(|input| {
         let mut by = Vec2::ZERO;
         for modifiers in [Modifiers::COMMAND, Modifiers::NONE].into_iter().take(if free { 2 } else { 1 }) {
@@ -57,7 +57,7 @@ pub fn zoom_keys(response: &Response) -> Option<f32> {
     if !response.has_focus() {
         return None;
     }
-    keep_arrows(response);
+    keep_arrows(response, [true; 2]);
     let steps = response.ctx.input_mut(|input| {
         let mut pressed = |key| input.count_and_consume_key(Modifiers::NONE, key) as i32;
         pressed(Key::Plus) + pressed(Key::Equals) - pressed(Key::Minus)
@@ -65,8 +65,21 @@ pub fn zoom_keys(response: &Response) -> Option<f32> {
     (steps != 0).then(|| 1.25f32.powi(steps))
 }
 
-/// Keeps arrow keys from moving the focus away from a widget that uses them.
-fn keep_arrows(response: &Response) {
-    let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
+/// Keeps horizontal and vertical arrow keys from moving the focus away from a widget that uses them.
+pub fn keep_arrows(response: &Response, [horizontal_arrows, vertical_arrows]: [bool; 2]) {
+    let filter = EventFilter { vertical_arrows, horizontal_arrows, ..EventFilter::default() };
     response.ctx.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+}
+
+/// Gives `list` the keyboard's focus after a click on one of its rows, if one `was_clicked`. It waits for the frame after the click: egui takes the focus away
+/// from a widget that the click did not hit, and the click may have moved the rows.
+pub fn focus_after_click(list: &Response, was_clicked: &mut bool) {
+    if *was_clicked {
+        if list.ctx.input(|i| i.pointer.any_click()) {
+            list.ctx.request_repaint();
+        } else {
+            list.request_focus();
+            *was_clicked = false;
+        }
+    }
 }

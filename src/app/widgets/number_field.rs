@@ -14,7 +14,6 @@ const LARGEST_TOLD: f64 = 1e15;
 /// The numbers that a field accepts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
-    /// Smallest and largest number.
     pub range: RangeInclusive<f64>,
     /// Whether only whole numbers are accepted.
     pub is_whole: bool,
@@ -59,7 +58,6 @@ impl Wanted {
         }
     }
 
-    /// The expected number, as a sentence.
     fn told(&self) -> String {
         let number = if self.is_whole { "a whole number" } else { "a number" };
         let bound =
@@ -183,11 +181,6 @@ impl<'a> NumberField<'a> {
         self
     }
 
-    /// Sets the number of decimals shown.
-    pub fn fixed_decimals(self, decimals: usize) -> Self {
-        self.min_decimals(decimals).max_decimals(decimals)
-    }
-
     /// Sets the unit, with the space before it.
     pub fn suffix(mut self, unit: impl Into<String>) -> Self {
         self.wanted.unit = unit.into();
@@ -250,7 +243,6 @@ impl Widget for NumberField<'_> {
     }
 }
 
-/// Key under which egui keeps a field's refused entry.
 fn key(id: Id) -> Id {
     id.with("wrong entry")
 }

@@ -26,8 +26,9 @@ pub fn start_or_cancel(
     is_pressed && !runs
 }
 
-/// Draws a progress bar; `part` is 0 to 1, and 0 stands for an unknown part.
-pub fn bar(ui: &mut Ui, part: f32, width: f32) {
+/// Draws a progress bar while work runs; `part` is 0 to 1, and 0 stands for an unknown part.
+pub fn bar(ui: &mut Ui, part: Option<f32>, width: f32) {
+    let Some(part) = part else { return };
     let bar = if part > 0.0 {
         ProgressBar::new(part.min(MAX_PART)).show_percentage()
     } else {
@@ -36,11 +37,10 @@ pub fn bar(ui: &mut Ui, part: f32, width: f32) {
     ui.add(bar.desired_width(width));
 }
 
-/// Draws a progress bar and a button beside it; returns whether the button was pressed. `part` is 0 to 1, and 0 stands for an unknown part. The bar never
-/// reads 100 %, since the work goes on.
+/// Draws a progress bar and a button beside it; returns whether the button was pressed.
 pub fn progress(ui: &mut Ui, part: f32, width: f32, cancel_tooltip: &str) -> bool {
     ui.horizontal(|ui| {
-        bar(ui, part, width);
+        bar(ui, Some(part), width);
         ui.small_button("Cancel").on_hover_text(cancel_tooltip).clicked()
     })
     .inner

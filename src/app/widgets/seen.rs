@@ -8,11 +8,8 @@ use egui_kittest::kittest::Queryable;
 /// A text on screen.
 #[derive(Debug, Clone)]
 pub struct Seen {
-    /// The text.
     pub text: String,
-    /// Rectangle of the text.
     pub rect: Rect,
-    /// Clip rectangle of the text.
     pub clip: Rect,
     /// Whether the text is cut short for lack of room.
     pub is_shortened: bool,

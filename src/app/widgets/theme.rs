@@ -11,17 +11,12 @@ pub struct Inks {
     pub ground: Color32,
     /// Ground beyond the radar's view.
     pub beyond: Color32,
-    /// Range rings and angle spokes.
     pub grid: Color32,
-    /// Labels of the grid.
     pub grid_text: Color32,
-    /// Reflectors.
     pub reflector: Color32,
-    /// Selected objects.
     pub selected: Color32,
     /// The array's first and last end.
     pub ends: [Color32; 2],
-    /// The rest of the array.
     pub array: Color32,
     /// Reflectors that a method found.
     pub found: Color32,

@@ -84,7 +84,8 @@ pub fn compose(
     let Style { floor, normalisation, .. } = *style;
     let elements = &scene.disturbances.elements;
     let maps = LogMaps::heard_by(radar, elements, signal);
-    let (heard, inputs) = InputMap::of(radar, elements, Some(signal), [&maps.first, &maps.last], (style.layout.as_ref(), normalisation))?;
+    let (heard, inputs) =
+        InputMap::of(radar, elements, Some(signal), [&maps.first, &maps.last], (style.layout.as_ref(), normalisation))?;
     let request = Request { noise: floor.into(), normalisation, heard, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
     let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();

@@ -1,8 +1,8 @@
 //! A range-Doppler map as a picture.
 
+use super::PictureFormat;
 use super::canvas::{Drawing, PAPER, PanelArea, PictureError};
 use super::map_panel::{MapAxes, MapCells, MapPanel};
-use super::PictureFormat;
 use crate::maps::doppler::RangeDopplerMap;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;

@@ -133,8 +133,10 @@ fn curves(
     let heard = style.layout.as_ref().map(of_layout).transpose()?;
     let request = request(recording, &in_decibels, heard);
     let (output, found) = reconstruct_and_find(method, radar, &ends, &request)?;
-    let of_samples = |name, samples: ArrayView2<'_, Complex64>, colour| {
-        Curve { name, points: beam_pattern(radar, samples.index_axis_move(Axis(1), 0)), colour }
+    let of_samples = |name, samples: ArrayView2<'_, Complex64>, colour| Curve {
+        name,
+        points: beam_pattern(radar, samples.index_axis_move(Axis(1), 0)),
+        colour,
     };
     let all = |signal: &BeatSignal| {
         of_samples(format!("all {} elements", radar.elements), signal.samples.view(), ALL_ELEMENTS)

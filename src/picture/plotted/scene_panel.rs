@@ -118,8 +118,7 @@ fn draw_array<B: DrawingBackend>(chart: &mut Chart<B>, radar: &Radar) -> Result<
     let whole = LineSeries::new([element(0), element(radar.elements - 1)], ARRAY.stroke_width(5));
     chart.draw_series(whole)?;
     for end in End::BOTH {
-        chart
-            .draw_series([Circle::new((radar.end_centre_metres(end), 0.0), 4, END.filled())])?;
+        chart.draw_series([Circle::new((radar.end_centre_metres(end), 0.0), 4, END.filled())])?;
     }
     Ok(())
 }
@@ -139,11 +138,10 @@ fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64
             chart.draw_series([PathElement::new(line, colour.stroke_width(2))])?;
         }
         // A line array sees y and -y alike: reflectors behind it are drawn ahead, hollow.
-        chart
-            .draw_series(object.reflectors().iter().filter(|r| r.x_metres.hypot(r.y_metres) <= max).map(|r| {
-                let style = if r.y_metres < 0.0 { ShapeStyle::from(colour) } else { colour.filled() };
-                Circle::new((r.x_metres, r.y_metres.abs()), radius, style)
-            }))?;
+        chart.draw_series(object.reflectors().iter().filter(|r| r.x_metres.hypot(r.y_metres) <= max).map(|r| {
+            let style = if r.y_metres < 0.0 { ShapeStyle::from(colour) } else { colour.filled() };
+            Circle::new((r.x_metres, r.y_metres.abs()), radius, style)
+        }))?;
     }
     Ok(())
 }

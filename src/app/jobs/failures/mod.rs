@@ -11,7 +11,8 @@ pub use store::{is_table_of_rows, write as write_rows_to};
 pub use table::RowTable;
 #[cfg(test)]
 pub use table::tests::some_row;
-pub use thumbnails::{Album, HEIGHT as THUMBNAIL_HEIGHT, Thumbnail, WIDTH as THUMBNAIL_WIDTH};
+use thumbnails::Album;
+pub use thumbnails::{HEIGHT as THUMBNAIL_HEIGHT, Thumbnail, WIDTH as THUMBNAIL_WIDTH};
 
 use super::background::Background;
 use super::derived::Failure;

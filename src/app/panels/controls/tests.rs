@@ -30,7 +30,7 @@ fn panel_of(
     state.settings.method = Baseline.name().to_owned();
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
         let input = Input { state: &state, eta: Baseline.eta(), range_db: None, run: Run::default(), uses: Uses::ALL };
-        asked.extend(show(ui, change(input), &mut FalseAlarmsMemory::default()));
+        asked.extend(show(ui, change(input), &mut ThresholdSearch::default()));
     };
     Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
 }

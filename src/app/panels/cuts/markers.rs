@@ -3,7 +3,9 @@
 use super::measure::{Width, value_at, width_at};
 use super::trace::{Cut, Trace};
 use crate::app::state::Units;
-use crate::app::widgets::{Chart, Drawn, Span, angle_degrees, axes, direction, levels, signed, significant};
+use crate::app::widgets::{
+    self, Chart, Drawn, Span, angle_degrees, axes, difference, direction, signed, significant, with_unit,
+};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Color32, CursorIcon, Stroke, Ui, pos2, vec2};
 use egui_plot::LineStyle;
@@ -19,7 +21,6 @@ pub const NAMES: [&str; 2] = ["A", "B"];
 pub struct Markers {
     /// Places of A and B; `None` for one that is not placed.
     pub places: [Option<f64>; 2],
-    /// Index of the marker that is being dragged.
     held: Option<usize>,
 }
 
@@ -90,7 +91,7 @@ pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, units: Units, markers: &
     let one = |(place, name): (Option<f64>, &str)| {
         let lambda = format!("Λ {:.3}", value_at(&trace.lambda, place?)?);
         let level = level(place?).zip(trace.range_db());
-        let level = level.map(|(db, range_db)| levels::with_unit(&levels::level(db, range_db)));
+        let level = level.map(|(db, range_db)| with_unit(&widgets::level(db, range_db)));
         let value = match (level, units) {
             (None, _) => lambda,
             (Some(level), Units::Lambda) => format!("{lambda}, {level}"),
@@ -101,8 +102,7 @@ pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, units: Units, markers: &
     };
     said.extend(markers.places.into_iter().zip(NAMES).filter_map(one));
     if let [Some(a), Some(b)] = markers.places {
-        let levels =
-            level(a).zip(level(b)).map_or_else(String::new, |(a, b)| format!(", {} dB", levels::difference(b - a)));
+        let levels = level(a).zip(level(b)).map_or_else(String::new, |(a, b)| format!(", {} dB", difference(b - a)));
         said.push(format!("B − A: {}{levels}", between(cut, radar, a, b)));
     }
     let width = |(place, name): (Option<f64>, &str)| {
@@ -113,7 +113,6 @@ pub fn readings(cut: Cut, radar: &Radar, trace: &Trace, units: Units, markers: &
     said
 }
 
-/// Text of the distance from `a` to `b`, in every unit of the axis.
 fn between(cut: Cut, radar: &Radar, a: f64, b: f64) -> String {
     match cut {
         Cut::Angle => {

@@ -16,12 +16,6 @@ use markers::{Markers, NAMES};
 use std::collections::{BTreeMap, BTreeSet};
 use trace::{Cut, Trace};
 
-/// The maps that can be cut, and the place of the cuts in the state.
-pub struct Input<'a> {
-    pub state: &'a State,
-    pub maps: &'a [CutMap],
-}
-
 /// Hidden maps, the measured line, and zoom and markers of each cut.
 #[derive(Default)]
 pub struct CutsMemory {
@@ -47,7 +41,6 @@ impl Line {
     }
 }
 
-/// Visible part and markers of one cut.
 #[derive(Default, Clone, Copy)]
 struct View {
     span: Option<Span>,
@@ -64,47 +57,43 @@ impl Content for CutsPanel {
 
     fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
         let maps = cx.jobs.pipeline.cut_maps();
-        show(ui, Input { state: cx.state, maps: &maps }, cx.memory)
+        show(ui, cx.state, &maps, cx.memory)
     }
 }
 
-/// Draws the panel: angle cut above (or left), range profile below (or right).
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut CutsMemory) -> Vec<Command> {
+/// Draws the panel of maps that can be cut: angle cut above (or left), range profile below (or right).
+pub fn show(ui: &mut Ui, state: &State, maps: &[CutMap], memory: &mut CutsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     let frame = egui::Frame::NONE.inner_margin(egui::Margin { left: 8, right: 8, top: 4, bottom: 0 });
     frame.show(ui, |ui| {
-        head(ui, &input, memory, &mut asked);
-        let lines = lines(&input, &memory.hidden);
-        let read = memory.read.filter(|line| lines.contains(line)).or_else(|| {
-            let best = lines.iter().find(|line| line.kind == MapKind::Target);
-            best.or(lines.first()).copied()
-        });
-        memory.read = read;
+        head(ui, state, maps, memory, &mut asked);
+        let lines = lines(state, maps, &memory.hidden);
+        let best = lines.iter().find(|line| line.kind == MapKind::Target).or(lines.first());
+        memory.read = memory.read.filter(|line| lines.contains(line)).or(best.copied());
     });
     let area = ui.available_rect_before_wrap();
-    let wide = area.width() > 1.6 * area.height();
-    let (first, second) = match wide {
+    let (first, second) = match area.width() > 1.6 * area.height() {
         true => area.split_left_right_at_fraction(0.5),
         false => area.split_top_bottom_at_fraction(0.5),
     };
     for (cut, area) in Cut::ALL.into_iter().zip([first, second]) {
-        draw(ui, area, &input, memory, cut);
+        draw(ui, area, state, maps, memory, cut);
     }
     asked
 }
 
 /// The drawn lines: first those of the cut at the cursor, then those of the pinned cuts.
-fn lines(input: &Input<'_>, hidden: &BTreeSet<MapKind>) -> Vec<Line> {
-    let live = input.maps.iter().map(|map| Line { kind: map.kind, pin: None });
-    let pins = input.state.pins.iter().enumerate();
+fn lines(state: &State, maps: &[CutMap], hidden: &BTreeSet<MapKind>) -> Vec<Line> {
+    let live = maps.iter().map(|map| Line { kind: map.kind, pin: None });
+    let pins = state.pins.iter().enumerate();
     let pinned = pins.flat_map(|(i, p)| p.maps.iter().map(move |m| Line { kind: m.kind, pin: Some(i) }));
     live.chain(pinned).filter(|line| !hidden.contains(&line.kind)).collect()
 }
 
 /// Draws the row above the cuts: a box for each map in its colour, the units, and the pinned cuts.
-fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory, asked: &mut Vec<Command>) {
+fn head(ui: &mut Ui, state: &State, maps: &[CutMap], memory: &mut CutsMemory, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        for map in input.maps {
+        for map in maps {
             let kind = map.kind;
             let mut shown = !memory.hidden.contains(&kind);
             let name = RichText::new(kind.title()).color(colour(ui, kind)).strong();
@@ -118,32 +107,32 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory, asked: &mut Vec
         ui.add_space(6.0);
         let tip = "Λ, or decibels relative to each map's peak (D)";
         let of = [(Units::Lambda, "Λ", tip), (Units::Decibels, "dB", tip)];
-        choices(ui, input.state.settings.units, of, ViewCommand::SetUnits, asked);
+        choices(ui, state.settings.units, of, ViewCommand::SetUnits, asked);
         ui.add_space(6.0);
-        button(ui, "Pin", ViewCommand::PinCuts, !input.maps.is_empty(), asked);
-        for (index, pin) in input.state.pins.iter().enumerate() {
+        button(ui, "Pin", ViewCommand::PinCuts, !maps.is_empty(), asked);
+        for (index, pin) in state.pins.iter().enumerate() {
             let way = direction(pin.cursor.cos_theta, 1);
             let place = format!("{}: {:.2} m · {way}", index + 1, pin.cursor.range_metres);
             let tip = "A cut that stays, drawn thin; click to let it go";
             press(ui, format!("Unpin {place}"), tip, ViewCommand::Unpin(index), asked);
         }
         ui.add_space(6.0);
-        marks(ui, input, memory);
+        marks(ui, state, maps, memory);
     });
 }
 
 /// Draws the buttons that place and remove markers, and the choice of the line that they measure.
-fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory) {
+fn marks(ui: &mut Ui, state: &State, maps: &[CutMap], memory: &mut CutsMemory) {
     if memory.views.values().all(|view| view.markers.is_empty()) {
         let tip = "Two places to measure between; a click in a cut places one, too, and they can be dragged";
         if ui.button("Markers").on_hover_text(tip).clicked() {
             for cut in Cut::ALL {
-                let at = cut.position(input.state.radar(), &input.state.cut_cursor());
+                let at = cut.position(state.radar(), &state.cut_cursor());
                 memory.views.entry(cut).or_default().markers.place(at);
             }
         }
     } else {
-        let lines = lines(input, &memory.hidden).into_iter().map(Some);
+        let lines = lines(state, maps, &memory.hidden).into_iter().map(Some);
         let name = |line: &Option<Line>| line.map_or_else(String::new, Line::name);
         choice(ui, "Read", "The line that the markers measure", &mut memory.read, lines, name);
         if ui.button("No markers").on_hover_text("Take the markers away").clicked() {
@@ -157,7 +146,6 @@ fn marks(ui: &mut Ui, input: &Input<'_>, memory: &mut CutsMemory) {
     }
 }
 
-/// Colour of a map's line.
 fn colour(ui: &Ui, kind: MapKind) -> Color32 {
     let rgb = Color32::from_rgb;
     match (kind, ui.visuals().dark_mode) {
@@ -182,39 +170,35 @@ fn style(kind: MapKind) -> LineStyle {
 }
 
 /// Draws one cut: its chart, with the markers' readings beneath.
-fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut: Cut) {
-    let traces = traces(input, &memory.hidden, cut);
-    let whole = cut.whole(input.state.radar());
+fn draw(ui: &mut Ui, area: Rect, state: &State, maps: &[CutMap], memory: &mut CutsMemory, cut: Cut) {
+    let (radar, cursor, units) = (state.radar(), state.cut_cursor(), state.settings.units);
+    let traces = traces(state, maps, &memory.hidden, cut);
+    let whole = cut.whole(radar);
     let mut view = memory.views.get(&cut).copied().unwrap_or_default();
     let read = memory.read.and_then(|line| traces.iter().find(|t| (t.kind, t.pin) == (line.kind, line.pin)));
-    let said = read.map_or_else(Vec::new, |trace| {
-        markers::readings(cut, input.state.radar(), trace, input.state.settings.units, &view.markers)
-    });
+    let said = read.map_or_else(Vec::new, |trace| markers::readings(cut, radar, trace, units, &view.markers));
     let area = if view.markers.is_empty() { area } else { readings(ui, area, cut, whole, &mut view.markers, &said) };
     let span = view.span.unwrap_or(whole);
     let range_db = traces.iter().filter_map(Trace::range_db).fold(1.0, f64::max);
-    let y = match input.state.settings.units {
+    let y = match units {
         Units::Lambda => Axis::new(0.0, 1.05, "brightness Λ"),
         // Lower levels are no echo.
         Units::Decibels => Axis::new(lowest_db(range_db), -0.05 * lowest_db(range_db), "relative to the peak, dB"),
     };
-    let title = cut.title(input.state.radar(), &input.state.cut_cursor());
+    let title = cut.title(radar, &cursor);
     let title = axes::fitting(ui.painter(), area.width() - 20.0, &[&title, cut.unit()]);
     let mut chart = Chart::new(cut.name(), Axis::new(span.low, span.high, title), y);
     for trace in &traces {
-        let Some(points) = trace.points(input.state.settings.units) else { continue };
+        let Some(points) = trace.points(units) else { continue };
         let (width, fade) = if trace.pin.is_some() { (1.0, 0.6) } else { (1.6, 1.0) };
         let stroke = Stroke::new(width, colour(ui, trace.kind).gamma_multiply(fade));
         chart.line(in_sight(&points, span), stroke, style(trace.kind));
     }
-    chart.upright(
-        cut.position(input.state.radar(), &input.state.cut_cursor()),
-        Stroke::new(1.0, ui.visuals().weak_text_color()),
-    );
+    chart.upright(cut.position(radar, &cursor), Stroke::new(1.0, ui.visuals().weak_text_color()));
     let ink = Inks::of(ui.visuals()).selected;
     if let Some(trace) = read {
         let range = trace.range_db().unwrap_or(1.0);
-        let y_of = |db: f64| if input.state.settings.units == Units::Decibels { db } else { 1.0 + db / range };
+        let y_of = |db: f64| if units == Units::Decibels { db } else { 1.0 + db / range };
         markers::draw_widths(&mut chart, trace, &view.markers, ink, y_of);
     }
     let drawn = chart.show(ui, area, Sense::click_and_drag());
@@ -226,17 +210,14 @@ fn draw(ui: &mut Ui, area: Rect, input: &Input<'_>, memory: &mut CutsMemory, cut
 }
 
 /// The lines of one cut, those of pinned cuts first, so that they lie beneath the others.
-fn traces(input: &Input<'_>, hidden: &BTreeSet<MapKind>, cut: Cut) -> Vec<Trace> {
+fn traces(state: &State, maps: &[CutMap], hidden: &BTreeSet<MapKind>, cut: Cut) -> Vec<Trace> {
     let shown = |map: &&CutMap| !hidden.contains(&map.kind);
-    let pinned = input.state.pins.iter().enumerate().flat_map(|(i, pin)| {
+    let pinned = state.pins.iter().enumerate().flat_map(|(i, pin)| {
         let maps = pin.maps.iter().filter(shown);
         maps.filter_map(move |map| Trace::of(&pin.radar, &pin.cursor, map, cut, Some(i)))
     });
-    let live = input
-        .maps
-        .iter()
-        .filter(shown)
-        .filter_map(|map| Trace::of(input.state.radar(), &input.state.cut_cursor(), map, cut, None));
+    let (radar, cursor) = (state.radar(), state.cut_cursor());
+    let live = maps.iter().filter(shown).filter_map(|map| Trace::of(radar, &cursor, map, cut, None));
     pinned.chain(live).collect()
 }
 
@@ -262,7 +243,11 @@ fn readings(ui: &mut Ui, area: Rect, cut: Cut, whole: Span, markers: &mut Marker
                 for (place, name) in markers.places.iter_mut().zip(NAMES) {
                     let Some(place) = place else { continue };
                     let step = (whole.high - whole.low) / 1000.0;
-                    let drag = NumberField::new(place).range(whole.low..=whole.high).speed(step).fixed_decimals(digits);
+                    let drag = NumberField::new(place)
+                        .range(whole.low..=whole.high)
+                        .speed(step)
+                        .min_decimals(digits)
+                        .max_decimals(digits);
                     labelled(ui, format!("{name}, {}", cut.unit()), "", drag);
                 }
             });

@@ -42,7 +42,7 @@ fn maps(radar: &Radar) -> [CutMap; 3] {
 fn panel(size: [f32; 2]) -> Harness<'static, Held> {
     let maps = maps(&Radar::default());
     let draw = move |ui: &mut Ui, Held { memory, asked, state }: &mut Held| {
-        let commands = show(ui, Input { state, maps: &maps }, memory);
+        let commands = show(ui, state, &maps, memory);
         if commands.contains(&Command::View(ViewCommand::PinCuts)) {
             let (radar, cursor) = (state.radar().clone(), state.cut_cursor());
             state.pins.push(PinnedCut { radar, cursor, maps: maps.to_vec() });
@@ -70,9 +70,8 @@ fn click(panel: &mut Harness<'_, Held>, at: Pos2) {
 #[test]
 fn maps_of_another_radar_are_left_out() {
     let (state, maps) = (State::new(Vec::new()), maps(&Radar::default()));
-    let input = Input { state: &state, maps: &maps };
     for cut in Cut::ALL {
-        let drawn: Vec<MapKind> = traces(&input, &BTreeSet::new(), cut).iter().map(|t| t.kind).collect();
+        let drawn: Vec<MapKind> = traces(&state, &maps, &BTreeSet::new(), cut).iter().map(|t| t.kind).collect();
         assert_eq!(drawn, [MapKind::Input0, MapKind::Target]);
     }
 }
@@ -136,8 +135,7 @@ fn a_pinned_cut_stays_while_the_cursor_moves_on() {
     cuts.state_mut().state.settings.units = Units::Decibels;
     cuts.run_steps(2);
     let held = cuts.state();
-    let input = Input { state: &held.state, maps: &held.state.pins[0].maps };
-    let drawn = traces(&input, &BTreeSet::from([MapKind::Input0]), Cut::Angle);
+    let drawn = traces(&held.state, &held.state.pins[0].maps, &BTreeSet::from([MapKind::Input0]), Cut::Angle);
     let highest = |t: &Trace| t.lambda.iter().map(|p| p[1]).fold(0.0, f64::max);
     assert_eq!(
         drawn.iter().map(|t| (t.kind, t.pin)).collect::<Vec<_>>(),

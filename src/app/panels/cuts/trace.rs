@@ -68,7 +68,6 @@ impl Cut {
 /// A line of a cut.
 #[derive(Debug, Clone)]
 pub struct Trace {
-    /// The map that is cut.
     pub kind: MapKind,
     /// Index of the pinned cut; `None` for the cut at the cursor.
     pub pin: Option<usize>,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::app::panels::recording::some_recording;
+use crate::app::panels::recording::tests::some_recording;
 use crate::app::widgets::seen::{self, User};
 use crate::maps::LogMap;
 use crate::scene::{Object, Point, Scene};
@@ -22,9 +22,9 @@ fn result(radar: &Radar) -> DopplerResult {
 /// The panel of this state with this map.
 fn drawn(size: [f32; 2], mut state: State, result: Option<DopplerResult>) -> Harness<'static, Vec<Command>> {
     state.settings.normalisation = Normalisation::DynamicRange(crate::radar::Decibels(60.0));
-    let mut memory = DopplerMemory::default();
+    let mut texture = Texture::default();
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        asked.extend(show(ui, Input { state: &state, result: result.as_ref().map(Ok) }, &mut memory));
+        asked.extend(show(ui, &state, result.as_ref().map(Ok), &mut texture));
     };
     Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
 }

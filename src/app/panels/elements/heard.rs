@@ -1,44 +1,28 @@
 //! Choice of the layout of elements that methods use: from a list, or by its typed name or numbers.
 
 use crate::app::state::{Command, State, ViewCommand};
-use crate::app::widgets::choice_told;
+use crate::app::widgets::{choice_told, entry_problem, text_entry};
 use crate::radar::{LayoutKind, Radar};
-use eframe::egui::{TextEdit, Ui};
-
-/// The typed text, until it names a layout.
-#[derive(Default)]
-pub struct HeardMemory {
-    typed: Option<Typed>,
-}
-
-/// A text that was typed in place of a layout.
-struct Typed {
-    over: Option<LayoutKind>,
-    text: String,
-    problem: Option<String>,
-}
-
-/// Maximum length of the typed text, characters.
-const MAX_LETTERS: usize = 4000;
+use eframe::egui::Ui;
 
 const TIP: &str = "The elements that methods hear. The target stays the map of the whole array. Not every method hears other elements than those of the two ends";
 
-pub(super) fn show(ui: &mut Ui, state: &State, memory: &mut HeardMemory, asked: &mut Vec<Command>) {
+pub(super) fn show(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     // No other layout can be used on the samples of the two ends alone.
     if state.editor.document().recording().is_some_and(|recording| recording.signal().is_none()) {
         return;
     }
+    let (radar, layout, id) = (state.radar(), state.settings.layout.as_ref(), ui.scope_id().with("heard as text"));
     ui.horizontal_wrapped(|ui| {
-        let mut chosen = state.settings.layout.clone();
-        let offered = std::iter::once(None).chain(suggested(state.radar()).map(Some));
+        let mut chosen = layout.cloned();
+        let offered = std::iter::once(None).chain(suggested(radar).map(Some));
         choice_told(ui, "heard", TIP, &mut chosen, offered, |layout| (name(layout.as_ref()), tip(layout.as_ref())));
-        let typed = field(ui, state, memory);
-        let new = typed.or_else(|| (chosen.as_ref() != state.settings.layout.as_ref()).then_some(chosen));
+        let shown = (layout.unwrap_or(&LayoutKind::TwoEnds).to_string(), 180.0);
+        let typed = text_entry(ui, id, ("as text", LayoutKind::NAMES), shown, true, |text| layout_of(text, radar));
+        let new = typed.or_else(|| (chosen.as_ref() != layout).then_some(chosen));
         asked.extend(new.map(|layout| Command::View(ViewCommand::Hear(layout))));
     });
-    if let Some(problem) = memory.typed.as_ref().and_then(|typed| typed.problem.as_ref()) {
-        ui.colored_label(ui.visuals().error_fg_color, problem);
-    }
+    entry_problem(ui, id);
 }
 
 fn name(layout: Option<&LayoutKind>) -> String {
@@ -71,32 +55,6 @@ fn suggested(radar: &Radar) -> impl Iterator<Item = LayoutKind> {
     ]
     .into_iter()
     .filter(|layout| layout.numbers(radar).is_ok())
-}
-
-/// Draws the field of the layout's name. Returns another layout once one was typed; the inner `None` is the two ends.
-fn field(ui: &mut Ui, state: &State, memory: &mut HeardMemory) -> Option<Option<LayoutKind>> {
-    let shown =
-        || state.settings.layout.as_ref().map_or_else(|| LayoutKind::TwoEnds.to_string(), LayoutKind::to_string);
-    let typed = memory.typed.take().filter(|typed| typed.over.as_ref() == state.settings.layout.as_ref());
-    let (mut text, mut problem) = typed.map_or_else(|| (shown(), None), |typed| (typed.text, typed.problem));
-    let label = ui.label("as text").on_hover_text(LayoutKind::NAMES);
-    let edit = TextEdit::singleline(&mut text).char_limit(MAX_LETTERS).desired_width(180.0);
-    let response = ui.add(edit).labelled_by(label.id);
-    if response.changed() {
-        problem = None;
-    }
-    let is_new = text != shown();
-    let mut taken = None;
-    if response.lost_focus() && is_new {
-        match layout_of(&text, state.radar()) {
-            Ok(layout) => taken = Some(layout),
-            Err(why) => problem = Some(why),
-        }
-    }
-    if is_new && taken.is_none() {
-        memory.typed = Some(Typed { over: state.settings.layout.clone(), text, problem });
-    }
-    taken
 }
 
 /// The layout that a text names; `None` for the two ends.

@@ -1,11 +1,10 @@
 //! The strip of elements side by side, for clicks and drags.
 
 use crate::app::state::State;
-use crate::app::widgets::Inks;
+use crate::app::widgets::{Inks, cross, keep_arrows};
 use crate::radar::{BuiltArray, ElementError, End, Radar};
 use eframe::egui::{
-    self, Color32, EventFilter, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2,
-    pos2, vec2,
+    self, Color32, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2, vec2,
 };
 
 /// Least phase that is drawn as a dot; rounding leaves less after a calibration.
@@ -20,7 +19,6 @@ const MOST_UP: f32 = 16.0;
 /// Largest distance from an element's place, millimetres.
 pub(super) const MOST_MILLIMETRES: f64 = 1000.0;
 
-/// The drawn array and its rectangle on screen.
 struct Strip<'a> {
     radar: &'a Radar,
     elements: &'a BuiltArray,
@@ -39,8 +37,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, chosen: &mut usize) -> Option<(us
     strip.draw(ui, *chosen);
     let changed = strip.switched(&response, chosen).or_else(|| strip.moved(&response, chosen));
     if response.has_focus() {
-        let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
-        ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+        keep_arrows(&response, [true, false]);
         let steps = |key| ui.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key));
         let (right, left) = (steps(Key::ArrowRight), steps(Key::ArrowLeft));
         *chosen = (*chosen + right).saturating_sub(left).min(radar.elements - 1);
@@ -73,29 +70,24 @@ impl Strip<'_> {
             None => first.contains(n) || last.contains(n),
         };
         let mut all: Vec<usize> = (0..self.radar.elements).collect();
-        all.sort_by_key(lies_over);
+        all.sort_by_key(&lies_over);
         for n in all {
-            let ink = match n {
-                n if let Some(heard) = &self.heard => {
-                    if heard.contains(&n) {
-                        inks.ends[0]
-                    } else {
-                        inks.array
-                    }
-                }
-                n if first.contains(&n) => inks.ends[0],
-                n if last.contains(&n) => inks.ends[1],
-                _ => inks.array,
+            let ink = match lies_over(&n) {
+                false => inks.array,
+                true if self.heard.is_none() && !first.contains(&n) => inks.ends[1],
+                true => inks.ends[0],
             };
             match self.elements.element(n) {
-                error if error.dead => self.cross(&painter, n, Stroke::new(1.5, ui.visuals().error_fg_color)),
+                error if error.dead => {
+                    let stroke = Stroke::new(1.5, ui.visuals().error_fg_color);
+                    cross(&painter, self.place(n), vec2(3.0, 8.0), stroke);
+                }
                 error => self.bar(&painter, n, error, ink, inks.selected),
             }
         }
         painter.vline(self.at(chosen), self.rect.y_range(), Stroke::new(1.0, inks.selected));
     }
 
-    /// Width of a bar, points.
     fn width(&self) -> f32 {
         (self.rect.width() / self.radar.elements as f32 * 0.7).clamp(1.0, 10.0)
     }
@@ -106,12 +98,6 @@ impl Strip<'_> {
         let along = (error.position_millimetres * 1e-3 / self.radar.element_spacing_metres) as f32 * self.width();
         let up = (error.forward_millimetres / MILLIMETRES_A_POINT) as f32;
         pos2(self.at(n) + along, self.rect.center().y - up.clamp(-MOST_UP, MOST_UP))
-    }
-
-    fn cross(&self, painter: &Painter, n: usize, stroke: Stroke) {
-        let Pos2 { x, y } = self.place(n);
-        painter.line_segment([pos2(x - 3.0, y - 8.0), pos2(x + 3.0, y + 8.0)], stroke);
-        painter.line_segment([pos2(x - 3.0, y + 8.0), pos2(x + 3.0, y - 8.0)], stroke);
     }
 
     fn bar(&self, painter: &Painter, n: usize, error: ElementError, ink: Color32, dot: Color32) {
@@ -156,7 +142,6 @@ impl Strip<'_> {
         Some((*chosen, ElementError { position_millimetres, forward_millimetres, ..error }))
     }
 
-    /// Tooltip of the element under the pointer.
     fn tip(&self, x: f32) -> String {
         let n = self.under(x);
         let e = self.elements.element(n);

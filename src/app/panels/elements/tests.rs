@@ -4,7 +4,7 @@ use super::*;
 use crate::app::jobs::Calibrated;
 use crate::app::state::ViewCommand;
 use crate::app::widgets::seen::User;
-use crate::radar::{BuiltArray, LayoutKind, Radar};
+use crate::radar::LayoutKind;
 use crate::scene::Reflector;
 use crate::signal::{Floor, calibrate, simulate_built};
 use eframe::egui::{self, Key, pos2, vec2};

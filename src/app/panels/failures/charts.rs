@@ -1,16 +1,16 @@
 //! Histogram and scatter plot of the rows; a box selects rows, a click opens one.
 
+use super::input::Input;
 use super::order::{Boxed, Order};
-use super::points::{Dot, Grouping, Points, Subject};
+use super::points::{Dot, GROUPINGS, Points, Subject};
 use crate::app::jobs::{Memo, RowTable};
 use crate::app::shared::Shared;
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::{Axis, Chart, Drawn, Inks, choice};
+use crate::app::widgets::{Axis, Chart, Drawn, Inks, choice, empty_text};
 use crate::evaluate::rows::Column;
-use eframe::egui::{self, Color32, Mesh, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{Color32, Mesh, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2};
 use egui_plot::{Bar, BarChart, LineStyle, Span};
 use std::collections::HashSet;
-use std::sync::Arc;
 
 /// The chart to draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,11 +18,8 @@ pub enum View {
     /// No chart: the table has all the room.
     #[default]
     None,
-    /// A histogram.
     Histogram,
-    /// Scatter plot of two columns.
     Columns,
-    /// Scatter plot of two methods.
     Methods,
     /// Rules that separate the bad rows from the others, in place of a chart.
     Shared,
@@ -42,52 +39,27 @@ impl View {
     ];
 }
 
-/// The rows to chart.
-pub struct Input<'a> {
-    /// Every row.
-    pub table: &'a RowTable,
-    /// Filter and order of the rows.
-    pub order: &'a Order,
-    /// The row that was opened last.
-    pub opened: Option<usize>,
-}
-
 /// The chosen chart, and the points computed for it.
 pub struct ChartsMemory {
-    /// The chosen chart.
     pub view: View,
     x: Column,
     y: Column,
     methods: [String; 2],
-    grouping: Grouping,
+    grouping: Column,
     made: Memo<PointsKey, Points>,
-    mesh: Memo<MeshKey, Arc<Mesh>>,
     start: Option<Pos2>,
 }
 
 impl Default for ChartsMemory {
     fn default() -> Self {
-        let (x, y) = (Column::NearestPairColumns, Column::SquaredError);
-        let view = View::default();
-        let (methods, grouping, made, mesh) = Default::default();
-        ChartsMemory { view, x, y, methods, grouping, made, mesh, start: None }
+        let (x, y, grouping) = (Column::NearestPairColumns, Column::SquaredError, Column::Method);
+        let (view, methods, made) = Default::default();
+        ChartsMemory { view, x, y, methods, grouping, made, start: None }
     }
 }
 
 /// The values on which the charted points depend: stamp of the order, chart, grouping.
-type PointsKey = (u64, Subject, Grouping);
-
-/// The values on which the mesh of dots depends: points, chart area, box, colour.
-type MeshKey = (PointsKey, Rect, Option<Boxed>, Color32);
-
-/// The row or rows that the user picked in a chart.
-#[derive(Default)]
-pub struct Answer {
-    /// The row to open.
-    pub open: Option<usize>,
-    /// The rows in a box that the user drew.
-    pub boxed: Option<Boxed>,
-}
+type PointsKey = (u64, Subject, Column);
 
 /// Number of dots below which they are drawn larger.
 const FEW_DOTS: usize = 500;
@@ -104,7 +76,7 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
         choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| column.name().to_owned());
     };
     if matches!(memory.view, View::Histogram | View::Columns) {
-        choice(ui, "Colour", "", &mut memory.grouping, Grouping::ALL, |grouping| grouping.name().to_owned());
+        choice(ui, "Colour", "", &mut memory.grouping, GROUPINGS, |column| column.name().to_owned());
     }
     match memory.view {
         View::None | View::Shared => {}
@@ -127,29 +99,32 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
     }
 }
 
-/// Draws the legend of the groups' colours.
 fn groups(ui: &mut Ui, points: &Points) {
     if points.groups.len() < 2 {
         return;
     }
-    let entry = |(group, name): (usize, &String)| Entry {
-        sign: Sign::Square { filled: true },
-        colour: colour_of(ui, group, points.groups.len()),
-        name: name.clone(),
-    };
-    let entries: Vec<Entry> = points.groups.iter().enumerate().map(entry).collect();
+    let colour = |group| colour_of(ui, group, points.groups.len());
+    let groups = points.groups.iter().enumerate();
+    let entries: Vec<Entry> =
+        groups.map(|(group, name)| (Sign::Square { filled: true }, colour(group), name.clone())).collect();
     legend::row(ui, &entries);
 }
 
-/// Draws the chart that was chosen.
-pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut ChartsMemory) -> Answer {
-    let Some((subject, titles)) = subject(memory) else { return Answer::default() };
+/// Draws the chart that was chosen. Returns the row to open, and the rows in a box that the user drew.
+pub fn show(
+    ui: &mut Ui,
+    input: &Input<'_>,
+    order: &Order,
+    boxed: Option<&Boxed>,
+    memory: &mut ChartsMemory,
+) -> (Option<usize>, Option<Boxed>) {
+    let Some((subject, titles)) = subject(memory) else { return (None, None) };
+    let (table, opened) = (&input.job.table, input.opened());
     // The dot of a scene tried by two methods has the colour of the scene's set.
-    let grouping = if memory.view == View::Methods { Grouping::Set } else { memory.grouping };
-    let key = (input.order.stamp(), subject, grouping);
-    let points = &*memory
-        .made
-        .of(key.clone(), |(_, subject, grouping)| Points::of(input.table, input.order.filtered(), subject, *grouping));
+    let grouping = if memory.view == View::Methods { Column::Set } else { memory.grouping };
+    let points = &*memory.made.of((order.stamp(), subject, grouping), |(_, subject, grouping)| {
+        Points::of(table, order.filtered(), subject, *grouping)
+    });
     if let Some(told) = &points.told {
         ui.label(told);
     }
@@ -157,10 +132,8 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, Sense::hover());
     if points.dots.is_empty() {
-        let ink = ui.visuals().weak_text_color();
-        let text = "No row has these figures.";
-        ui.painter().text(area.center(), egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(13.0), ink);
-        return Answer::default();
+        empty_text(ui, area, "No row has these figures.");
+        return (None, None);
     }
     let [[left, right], [bottom, top]] = points.spans;
     let (x, y) = (Axis::new(left, right, &titles[0]), Axis::new(bottom, top, &titles[1]));
@@ -172,25 +145,22 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, boxed: Option<&Boxed>, memory: &mut 
         let ends = [[low, low], [high, high]].into_iter().filter(|_| low < high);
         chart.line(ends, equal, LineStyle::dashed_dense());
     }
-    let opened = points.dots.iter().find(|dot| input.opened.is_some_and(|row| dot.rows.contains(&row)));
+    let opened = points.dots.iter().find(|dot| opened.is_some_and(|row| dot.rows.contains(&row)));
     let around = Stroke::new(2.0, ui.visuals().strong_text_color());
     if let Some(dot) = opened.filter(|_| points.bars.is_some()) {
         chart.upright(dot.at[0], around);
     }
     let drawn = chart.show(ui, area, Sense::click_and_drag());
     if points.bars.is_none() {
-        dots(ui, &drawn, points, key, boxed, &mut memory.mesh);
+        dots(ui, &drawn, points, boxed);
         if let Some(dot) = opened {
             drawn.painter().circle_stroke(drawn.at(dot.at), 5.0, around);
         }
     }
-    let answer = Answer {
-        open: clicked(&drawn, points),
-        boxed: rubber_box(ui, &drawn, points, &mut memory.start)
-            .map(|rows| Boxed { generation: input.table.generation(), rows: Shared::new(rows) }),
-    };
-    told(&drawn, points, input.table);
-    answer
+    let boxed = rubber_box(ui, &drawn, points, &mut memory.start)
+        .map(|rows| Boxed { generation: table.generation(), rows: Shared::new(rows) });
+    told(&drawn, points, table);
+    (clicked(&drawn, points), boxed)
 }
 
 fn subject(memory: &ChartsMemory) -> Option<(Subject, [String; 2])> {
@@ -245,28 +215,18 @@ fn bars(ui: &Ui, chart: &mut Chart<'_>, points: &Points, boxed: Option<&Boxed>) 
     }
 }
 
-/// Draws all dots as one mesh, which is kept as long as its key is the same.
-fn dots(
-    ui: &Ui,
-    drawn: &Drawn,
-    points: &Points,
-    of: PointsKey,
-    boxed: Option<&Boxed>,
-    kept: &mut Memo<MeshKey, Arc<Mesh>>,
-) {
-    let inks = Inks::of(ui.visuals());
-    let mesh = kept.of((of, drawn.rect, boxed.cloned(), inks.ends[0]), |_| {
-        let mut mesh = Mesh::default();
-        let size = Vec2::splat(if points.dots.len() < FEW_DOTS { 5.0 } else { 3.0 });
-        for dot in &points.dots {
-            let chosen = boxed.is_some_and(|b| dot.rows.iter().any(|row| b.rows.contains(row)));
-            let colour = colour_of(ui, dot.group, points.groups.len()).gamma_multiply(0.8);
-            let colour = if chosen { inks.selected } else { colour };
-            mesh.add_colored_rect(Rect::from_center_size(drawn.at(dot.at), size), colour);
-        }
-        Arc::new(mesh)
-    });
-    drawn.painter().add(Shape::mesh(mesh.clone()));
+fn dots(ui: &Ui, drawn: &Drawn, points: &Points, boxed: Option<&Boxed>) {
+    let mut mesh = Mesh::default();
+    let size = Vec2::splat(if points.dots.len() < FEW_DOTS { 5.0 } else { 3.0 });
+    for dot in &points.dots {
+        let is_chosen = boxed.is_some_and(|b| dot.rows.iter().any(|row| b.rows.contains(row)));
+        let colour = match is_chosen {
+            true => Inks::of(ui.visuals()).selected,
+            false => colour_of(ui, dot.group, points.groups.len()).gamma_multiply(0.8),
+        };
+        mesh.add_colored_rect(Rect::from_center_size(drawn.at(dot.at), size), colour);
+    }
+    drawn.painter().add(mesh);
 }
 
 fn nearest(drawn: &Drawn, points: &Points, at: Pos2) -> Option<Dot> {

@@ -9,43 +9,33 @@ use crate::evaluate::campaign::Unfit;
 use crate::radar::counted;
 use crate::scene::generate::Kind;
 use eframe::egui::{self, Ui};
-use std::collections::BTreeSet;
 
 /// The chosen methods and scenes.
-pub struct ChoicesMemory {
-    methods: BTreeSet<&'static str>,
-    kinds: BTreeSet<Kind>,
-    own: bool,
-    count: u32,
-    seed: u64,
-}
+pub struct ChoicesMemory(FailureChoice);
 
 impl Default for ChoicesMemory {
     fn default() -> Self {
-        ChoicesMemory { methods: BTreeSet::new(), kinds: BTreeSet::from([Kind::Set2]), own: false, count: 20, seed: 0 }
+        ChoicesMemory(FailureChoice { methods: Vec::new(), kinds: vec![Kind::Set2], own: false, count: 20, seed: 0 })
     }
 }
 
 /// Draws the choices, and the buttons of run and files.
-pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mut Vec<Command>) {
-    memory.methods.retain(|name| input.state.methods.all.iter().any(|m| m.name() == *name));
-    if memory.methods.is_empty() {
-        memory.methods.extend(input.state.method().map(|method| method.name()));
+pub fn show(ui: &mut Ui, input: &Input<'_>, ChoicesMemory(choice): &mut ChoicesMemory, asked: &mut Vec<Command>) {
+    choice.methods.retain(|name| input.state.methods.all.iter().any(|m| m.name() == *name));
+    if choice.methods.is_empty() {
+        choice.methods.extend(input.state.method().map(|method| method.name()));
     }
     ui.horizontal_wrapped(|ui| {
-        ui.add_enabled_ui(input.job.run.progress().is_none(), |ui| choose(ui, input, memory, asked));
-        start(ui, input, memory, asked);
+        ui.add_enabled_ui(input.job.run.progress().is_none(), |ui| choose(ui, input, choice, asked));
+        start(ui, input, choice, asked);
         ui.separator();
         files(ui, input, asked);
-        if let Some(part) = input.job.run.progress() {
-            bar(ui, part, 140.0);
-        }
+        bar(ui, input.job.run.progress(), 140.0);
     });
     warning(ui, input.job.run.note());
     unfit(ui, input.job.run.end().map_or(&[], Vec::as_slice));
 }
 
-/// Draws a line for each method that the last run left out, with the reason.
 fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
     for Unfit { method, set, scenes, reason } in unfit {
         let reason = reason.strip_prefix(&format!("{method}: ")).unwrap_or(reason);
@@ -54,43 +44,32 @@ fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
     }
 }
 
-fn choose(ui: &mut Ui, input: &Input<'_>, memory: &mut ChoicesMemory, asked: &mut Vec<Command>) {
-    method_menu(ui, input.state, &mut memory.methods, "Methods to try");
-    let menu = ticking_menu(ui, &format!("Kinds: {}", sets(memory)), |ui| {
-        kind_boxes(ui, Kind::all(), &mut memory.kinds);
+fn choose(ui: &mut Ui, input: &Input<'_>, choice: &mut FailureChoice, asked: &mut Vec<Command>) {
+    method_menu(ui, input.state, &mut choice.methods, "Methods to try");
+    let menu = ticking_menu(ui, &format!("Kinds: {}", kind_names(&choice.kinds, choice.own.then_some("own"))), |ui| {
+        kind_boxes(ui, Kind::all(), &mut choice.kinds);
         ui.separator();
         let folder = input.own.map_or_else(|| "none is chosen".to_owned(), |path| path.display().to_string());
-        ui.checkbox(&mut memory.own, "own scenes").on_hover_text(format!("The folder of your own scenes: {folder}"));
+        ui.checkbox(&mut choice.own, "own scenes").on_hover_text(format!("The folder of your own scenes: {folder}"));
         if ui.button("Another folder…").on_hover_text("Pick any scene of the folder").clicked() {
             asked.push(Purpose::OwnScenes.into());
             ui.close();
         }
     });
     menu.on_hover_text("Kinds of scenes to try them on");
-    labelled(ui, "of each", "", NumberField::new(&mut memory.count).range(1..=100_000));
-    labelled(ui, "seed", "", NumberField::new(&mut memory.seed).speed(0.05));
+    labelled(ui, "of each", "", NumberField::new(&mut choice.count).range(1..=100_000));
+    labelled(ui, "seed", "", NumberField::new(&mut choice.seed).speed(0.05));
 }
 
 /// Draws the button Try, or Cancel during a run.
-fn start(ui: &mut Ui, input: &Input<'_>, memory: &ChoicesMemory, asked: &mut Vec<Command>) {
-    let ready = !memory.methods.is_empty() && (memory.own || !memory.kinds.is_empty());
+fn start(ui: &mut Ui, input: &Input<'_>, choice: &FailureChoice, asked: &mut Vec<Command>) {
+    let ready = !choice.methods.is_empty() && (choice.own || !choice.kinds.is_empty());
     let tip = "Try the methods on the scenes, in the background, with the floor, normalisation and radar in use. Rows made with \
                the same stay; those made with others make room";
     let tips = [if ready { tip } else { "Choose a method and scenes first" }, "Stop after this map; the rows stay"];
     if start_or_cancel(ui, ("Try", RowsCommand::CancelTrying), input.job.run.progress().is_some(), ready, tips, asked) {
-        let choice = FailureChoice {
-            methods: memory.methods.iter().copied().collect(),
-            kinds: memory.kinds.iter().copied().collect(),
-            own: memory.own,
-            count: memory.count,
-            seed: memory.seed,
-        };
-        asked.push(RowsCommand::Try(choice).into());
+        asked.push(RowsCommand::Try(choice.clone()).into());
     }
-}
-
-fn sets(memory: &ChoicesMemory) -> String {
-    kind_names(&memory.kinds, memory.own.then_some("own"))
 }
 
 fn files(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {

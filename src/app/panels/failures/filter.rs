@@ -11,24 +11,14 @@ use std::collections::BTreeSet;
 /// The typed expression, and the filter that it means.
 #[derive(Default)]
 pub struct FilterMemory {
-    /// The expression.
     pub text: String,
     read: Option<(String, usize)>,
-    filter: Option<Filter>,
+    /// The last valid filter; `None` for all rows.
+    pub filter: Option<Filter>,
     error: Option<FilterError>,
 }
 
 impl FilterMemory {
-    /// The last valid filter; `None` for all rows.
-    pub fn filter(&self) -> Option<&Filter> {
-        self.filter.as_ref()
-    }
-
-    /// Replaces the expression in the field.
-    pub fn set(&mut self, text: String) {
-        self.text = text;
-    }
-
     /// Parses the expression, unless it was parsed before.
     fn read(&mut self, methods: &BTreeSet<&str>) {
         let now = (self.text.clone(), methods.len());
@@ -135,7 +125,7 @@ mod tests {
         write(&mut field, "nomp.squ");
         field.presses(&[egui::Key::Enter]);
         assert_eq!(field.state().text, "nomp.squared_error");
-        assert!(field.state().filter().is_none() && field.state().error.is_some(), "it is no expression yet");
+        assert!(field.state().filter.is_none() && field.state().error.is_some(), "it is no expression yet");
     }
 
     #[test]
@@ -144,9 +134,9 @@ mod tests {
         write(&mut field, "nomp.objects > 3");
         assert!(field.state().error.is_none());
         let filter = Filter::parse("nomp.objects > 3", &["live", "nomp"]).unwrap();
-        assert_eq!(field.state().filter(), Some(&filter));
+        assert_eq!(field.state().filter.as_ref(), Some(&filter));
         write(&mut field, " & objcts = 2");
-        assert_eq!(field.state().filter(), Some(&filter), "the last filter stays");
+        assert_eq!(field.state().filter.as_ref(), Some(&filter), "the last filter stays");
         let _told = field.get_by_label_contains("column 20:");
     }
 }

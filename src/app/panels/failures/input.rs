@@ -32,9 +32,7 @@ impl Input<'_> {
 
 /// Figures of a method's output for the scene on screen.
 pub struct Now {
-    /// Name of the method.
     pub method: &'static str,
-    /// Figures of the output against the target.
     pub metrics: Metrics,
     /// Text with the numbers of objects found, missed and so on, once they are known.
     pub fates: Option<String>,

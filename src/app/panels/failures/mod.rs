@@ -20,7 +20,7 @@ use crate::app::state::{Command, MethodSlot, RowsCommand, State};
 use crate::radar::counted;
 use charts::View;
 use eframe::egui::{self, Frame, Margin, Ui, Vec2};
-use order::{Boxed, Order, Sort, Wanted};
+use order::{Boxed, Order, Sort};
 use std::collections::BTreeSet;
 
 /// State of the panel's parts, kept between frames.
@@ -35,14 +35,6 @@ pub struct FailuresMemory {
     shared: shared::SharedRulesMemory,
     table: table::TableMemory,
     opened: opened::OpenedMemory,
-    in_sight: Vec<usize>,
-}
-
-impl FailuresMemory {
-    /// Indices of the rows in sight, from top to bottom.
-    pub fn in_sight(&self) -> &[usize] {
-        &self.in_sight
-    }
 }
 
 pub struct FailuresPanel;
@@ -56,7 +48,7 @@ impl Content for FailuresPanel {
         let own = jobs.own_scenes(state);
         let input = Input { state, job: &jobs.failures, own: own.as_deref(), now: now(state, jobs) };
         let asked = show(ui, &input, cx.memory);
-        cx.state.failures.in_sight = cx.memory.in_sight().to_vec();
+        cx.state.failures.in_sight = cx.memory.table.in_sight.clone();
         asked
     }
 }
@@ -82,14 +74,14 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
             |ui| opened::show(ui, input, &mut memory.opened, &mut asked),
         );
         if input.job.table.rows().is_empty() {
-            memory.in_sight.clear();
+            memory.table.in_sight.clear();
             let text = "Try methods on scenes, or open rows that apertura evaluate --rows wrote: every scene is a row to \
                         sort, filter and open.";
             ui.weak(text);
             return;
         }
-        let known: BTreeSet<&str> =
-            input.job.table.methods().iter().map(String::as_str).chain(input.state.methods.all.iter().map(|m| m.name())).collect();
+        let tried = input.job.table.methods().iter().map(String::as_str);
+        let known: BTreeSet<&str> = tried.chain(input.state.methods.all.iter().map(|m| m.name())).collect();
         filter::show(ui, &known, &mut memory.filter);
         update(ui, input, memory);
         head(ui, input, memory);
@@ -97,7 +89,8 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
             let panel = beside_or_below(ui.available_size()).frame(Frame::NONE);
             panel.show(ui, |ui| chart(ui, input, memory, &mut asked));
         }
-        rows(ui, input, memory, &mut asked);
+        let open = table::show(ui, input, memory.order.shown(), &mut memory.sort, &mut memory.table);
+        asked.extend(open.map(|v| Command::Rows(RowsCommand::Show(v))));
     });
     asked
 }
@@ -116,14 +109,10 @@ fn beside_or_below(room: Vec2) -> egui::Panel {
 
 /// Filters and sorts the rows, if something changed.
 fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
-    memory.boxed.take_if(|boxed| boxed.generation != input.job.table.generation());
-    let wanted = Wanted {
-        table: &input.job.table,
-        filter: memory.filter.filter(),
-        sort: memory.sort,
-        boxed: memory.boxed.as_ref(),
-    };
-    if let Some(later) = memory.order.update(&wanted) {
+    let table = &input.job.table;
+    memory.boxed.take_if(|boxed| boxed.generation != table.generation());
+    let later = memory.order.update(table, memory.filter.filter.as_ref(), memory.sort, memory.boxed.as_ref());
+    if let Some(later) = later {
         ui.ctx().request_repaint_after(later);
     }
 }
@@ -150,37 +139,18 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
 fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mut Vec<Command>) {
     if memory.charts.view == View::Shared {
         if let Some(rule) = shared::show(ui, &input.job.table, &mut memory.shared) {
-            memory.filter.set(rule);
+            memory.filter.text = rule;
             ui.request_repaint();
         }
         return;
     }
-    let of = charts::Input { table: &input.job.table, order: &memory.order, opened: input.opened() };
-    let answer = charts::show(ui, &of, memory.boxed.as_ref(), &mut memory.charts);
-    asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));
-    if let Some(boxed) = answer.boxed {
+    let (open, boxed) = charts::show(ui, input, &memory.order, memory.boxed.as_ref(), &mut memory.charts);
+    asked.extend(open.map(|v| Command::Rows(RowsCommand::Show(v))));
+    if let Some(boxed) = boxed {
         // An empty box selects all rows.
         memory.boxed = Some(boxed).filter(|boxed| !boxed.rows.is_empty());
         ui.request_repaint();
     }
-}
-
-fn rows(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mut Vec<Command>) {
-    let of = table::Input {
-        table: &input.job.table,
-        album: &input.job.thumbnails.album,
-        shown: memory.order.shown(),
-        sort: memory.sort,
-        opened: input.opened(),
-        colours: input.state.settings.colours,
-    };
-    let answer = table::show(ui, &of, &mut memory.table);
-    asked.extend(answer.open.map(|v| Command::Rows(RowsCommand::Show(v))));
-    if let Some(column) = answer.sort {
-        memory.sort = Sort::clicked(memory.sort, column);
-        ui.request_repaint();
-    }
-    memory.in_sight = answer.in_sight;
 }
 
 #[cfg(test)]

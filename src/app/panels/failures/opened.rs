@@ -9,18 +9,10 @@ use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};
 use eframe::egui::{Button, Grid, TextEdit, Ui};
 
 /// Settings of the search, and the note for a kept scene.
+#[derive(Default)]
 pub struct OpenedMemory {
-    measure: WorseningMeasure,
-    within_metres: f64,
-    tries: u32,
+    search: WorseningSearch,
     note: String,
-}
-
-impl Default for OpenedMemory {
-    fn default() -> Self {
-        let WorseningSearch { measure, within_metres, tries, .. } = WorseningSearch::default();
-        OpenedMemory { measure, within_metres, tries, note: String::new() }
-    }
 }
 
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
@@ -65,9 +57,10 @@ fn figures(ui: &mut Ui, row: &Row, now: Option<&Now>) {
 
 fn rates(ui: &mut Ui, metrics: &Metrics) {
     let detection = metrics.detection.map_or_else(|| "–".to_owned(), percent);
-    ui.label(format!("SE {:.1}", metrics.squared_error));
-    ui.label(format!("P_D {detection}"));
-    ui.label(format!("P_FA {}", percent(metrics.false_alarm)));
+    let error = format!("SE {:.1}", metrics.squared_error);
+    for text in [error, format!("P_D {detection}"), format!("P_FA {}", percent(metrics.false_alarm))] {
+        ui.label(text);
+    }
 }
 
 /// Text with the numbers of a row's found, missed, merged and shifted objects, and of its ghosts.
@@ -92,15 +85,16 @@ fn search(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut
             asked.push(RowsCommand::CancelSearch.into());
         }
     } else {
-        let of = |measure: &WorseningMeasure| name(*measure).to_owned();
-        choice(ui, "Look by", "", &mut memory.measure, WorseningMeasure::ALL, of);
-        let within = NumberField::new(&mut memory.within_metres).range(0.01..=100.0).speed(0.02).suffix(" m");
+        choice(ui, "Look by", "", &mut memory.search.measure, WorseningMeasure::ALL, |measure| {
+            name(*measure).to_owned()
+        });
+        let within = NumberField::new(&mut memory.search.within_metres).range(0.01..=100.0).speed(0.02).suffix(" m");
         labelled(ui, "within", "", within);
-        labelled(ui, "in", "", NumberField::new(&mut memory.tries).range(1..=100_000).suffix(" tries"));
+        labelled(ui, "in", "", NumberField::new(&mut memory.search.tries).range(1..=100_000).suffix(" tries"));
         let worse = "Look near the scene on screen for one that the method in use does worse on; the way there is drawn on the scene";
         let repair = "Look for the smallest move of its objects after which the method in use is right";
         for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
-            let OpenedMemory { measure, within_metres, tries, .. } = *memory;
+            let WorseningSearch { measure, within_metres, tries, .. } = memory.search;
             press(ui, title, tip, RowsCommand::Search(SearchChoice { aim, measure, within_metres, tries }), asked);
         }
     }

@@ -29,24 +29,11 @@ impl Sort {
     }
 }
 
-/// The table, and the filter, sorting and box that apply to it.
-pub struct Wanted<'a> {
-    /// The rows.
-    pub table: &'a RowTable,
-    /// Filter of the rows; `None` for all.
-    pub filter: Option<&'a Filter>,
-    /// Sorting of the rows; `None` for the order in which they came.
-    pub sort: Option<Sort>,
-    /// The box drawn in a chart, if there is one; rows outside it are not shown.
-    pub boxed: Option<&'a Boxed>,
-}
-
 /// Rows in a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boxed {
     /// Generation of the table that they belong to.
     pub generation: u64,
-    /// Their indices.
     pub rows: Shared<HashSet<usize>>,
 }
 
@@ -85,17 +72,17 @@ impl Order {
         self.stamp
     }
 
-    /// Filters and sorts again if something changed. Returns the time until the next call, if new rows wait for it.
-    pub fn update(&mut self, wanted: &Wanted<'_>) -> Option<Duration> {
-        let Wanted { table, filter, sort, boxed } = *wanted;
-        let boxed = boxed.filter(|boxed| boxed.generation == table.generation());
-        let key = Key {
-            version: table.version(),
-            generation: table.generation(),
-            filter: filter.cloned(),
-            sort,
-            boxed: boxed.cloned(),
-        };
+    /// Filters and sorts again if something changed. Without a sorting rows stay in the order in which they came; rows outside a box are not shown. Returns the
+    /// time until the next call, if new rows wait for it.
+    pub fn update(
+        &mut self,
+        table: &RowTable,
+        filter: Option<&Filter>,
+        sort: Option<Sort>,
+        boxed: Option<&Boxed>,
+    ) -> Option<Duration> {
+        let (version, generation) = (table.version(), table.generation());
+        let key = Key { version, generation, filter: filter.cloned(), sort, boxed: boxed.cloned() };
         if self.of.as_ref() == Some(&key) {
             return None;
         }
@@ -141,13 +128,13 @@ mod tests {
     struct Asked {
         table: RowTable,
         filter: Filter,
-        boxed: Boxed,
+        boxed: Option<Boxed>,
     }
 
     impl Asked {
-        fn wanted(&self) -> Wanted<'_> {
+        fn update(&self, order: &mut Order) -> Option<Duration> {
             let sort = Some(Sort { column: Column::Index, descending: true });
-            Wanted { table: &self.table, filter: Some(&self.filter), sort, boxed: Some(&self.boxed) }
+            order.update(&self.table, Some(&self.filter), sort, self.boxed.as_ref())
         }
     }
 
@@ -155,9 +142,9 @@ mod tests {
     fn asked() -> (Asked, Order) {
         let table = table(6);
         let filter = Filter::parse("index >= 2", &["live"]).unwrap();
-        let boxed = Boxed { generation: table.generation(), rows: Shared::new(HashSet::from([1, 3, 5])) };
+        let boxed = Some(Boxed { generation: table.generation(), rows: Shared::new(HashSet::from([1, 3, 5])) });
         let (asked, mut order) = (Asked { table, filter, boxed }, Order::default());
-        order.update(&asked.wanted());
+        asked.update(&mut order);
         (asked, order)
     }
 
@@ -166,10 +153,10 @@ mod tests {
         let (mut asked, mut order) = asked();
         assert_eq!((order.filtered(), order.shown()), (&[2, 3, 4, 5][..], &[5, 3][..]));
         let stamp = order.stamp();
-        order.update(&asked.wanted());
+        asked.update(&mut order);
         assert_eq!(order.stamp(), stamp);
         asked.table.replace(Vec::new(), Conditions::default());
-        order.update(&asked.wanted());
+        asked.update(&mut order);
         assert!(order.shown().is_empty(), "rows of another table do not stay");
     }
 
@@ -177,8 +164,9 @@ mod tests {
     fn rows_that_come_are_taken_in_now_or_a_moment_later() {
         let (mut asked, mut order) = asked();
         asked.table.add(some_row(6, "live"));
-        assert!(order.update(&asked.wanted()).is_some(), "a moment later");
-        order.update(&Wanted { boxed: None, ..asked.wanted() });
+        assert!(asked.update(&mut order).is_some(), "a moment later");
+        asked.boxed = None;
+        asked.update(&mut order);
         assert_eq!(order.shown(), [6, 5, 4, 3, 2], "at once when something else changed");
     }
 

@@ -5,7 +5,6 @@ use crate::evaluate::rows::{Column, Histogram, Row};
 use crate::evaluate::statistics::Paired;
 use std::collections::{BTreeSet, HashMap};
 
-/// Bars of a histogram.
 const BARS: usize = 40;
 
 /// Columns and methods that a chart shows.
@@ -19,40 +18,12 @@ pub enum Subject {
     Methods(Column, String, String),
 }
 
-/// Property of a row that decides its colour in a chart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Grouping {
-    /// The row's method.
-    #[default]
-    Method,
-    /// The row's set.
-    Set,
-}
-
-impl Grouping {
-    /// All groupings.
-    pub const ALL: [Grouping; 2] = [Grouping::Method, Grouping::Set];
-
-    /// Name of the grouping.
-    pub fn name(self) -> &'static str {
-        match self {
-            Grouping::Method => "method",
-            Grouping::Set => "set",
-        }
-    }
-
-    fn of(self, row: &Row) -> String {
-        match self {
-            Grouping::Method => row.method.to_string(),
-            Grouping::Set => row.set.to_string(),
-        }
-    }
-}
+/// Columns whose text may decide a row's colour.
+pub const GROUPINGS: [Column; 2] = [Column::Method, Column::Set];
 
 /// A dot of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
-    /// Place in the chart, (x, y).
     pub at: [f64; 2],
     /// Index of the dot's group in [`Points::groups`].
     pub group: usize,
@@ -65,9 +36,7 @@ pub struct Dot {
 pub struct Points {
     /// The dots of a scatter plot; for a histogram, one dot on the axis for each row.
     pub dots: Vec<Dot>,
-    /// The bars of a histogram.
     pub bars: Option<Histogram>,
-    /// Names of the groups, in order.
     pub groups: Vec<String>,
     /// Limits of both axes, [low, high] each.
     pub spans: [[f64; 2]; 2],
@@ -81,29 +50,26 @@ fn number(row: &Row, column: Column) -> Option<f64> {
 
 impl Points {
     /// Content of the chart of the rows whose indices are in `filtered`.
-    pub fn of(table: &RowTable, filtered: &[usize], subject: &Subject, grouping: Grouping) -> Points {
+    pub fn of(table: &RowTable, filtered: &[usize], subject: &Subject, grouping: Column) -> Points {
         let rows = table.rows();
         let of_row = |index: &usize| rows.get(*index).map(|row| (*index, row));
         let listed = || filtered.iter().filter_map(of_row);
-        let names: BTreeSet<String> = listed().map(|(_, row)| grouping.of(row)).collect();
+        let names: BTreeSet<String> = listed().map(|(_, row)| grouping.of(row).to_string()).collect();
         let groups: Vec<String> = names.into_iter().collect();
-        let group = |row: &Row| groups.iter().position(|name| *name == grouping.of(row)).unwrap_or(0);
+        let group = |row: &Row| groups.iter().position(|name| *name == grouping.of(row).to_string()).unwrap_or(0);
+        let dot = |(index, row): (usize, &Row), at| Some(Dot { at, group: group(row), rows: [index; 2] });
         match subject {
             Subject::Histogram(column) => {
-                let on_axis = |(index, row): (usize, &Row)| {
-                    Some(Dot { at: [number(row, *column)?, 0.0], group: group(row), rows: [index; 2] })
-                };
-                let dots = listed().filter_map(on_axis).collect();
+                let at = |row: &Row| Some([number(row, *column)?, 0.0]);
+                let dots = listed().filter_map(|listed| dot(listed, at(listed.1)?)).collect();
                 let bars = Histogram::of(listed().map(|(_, row)| row), *column, BARS);
                 let most = bars.as_ref().and_then(|b| b.counts.iter().max()).map_or(1, |most| *most);
                 let x = bars.as_ref().map_or([0.0, 1.0], |b| padded(b.low, b.high, 0.0));
                 Points { dots, bars, groups, spans: [x, [0.0, 1.05 * most as f64]], told: None }
             }
             Subject::Columns(x, y) => {
-                let dot = |(index, row): (usize, &Row)| {
-                    Some(Dot { at: [number(row, *x)?, number(row, *y)?], group: group(row), rows: [index; 2] })
-                };
-                let dots = listed().filter_map(dot).collect();
+                let at = |row: &Row| Some([number(row, *x)?, number(row, *y)?]);
+                let dots = listed().filter_map(|listed| dot(listed, at(listed.1)?)).collect();
                 Points { groups, ..Points::scattered(dots) }
             }
             Subject::Methods(column, a, b) => {
@@ -158,11 +124,11 @@ mod tests {
         let table = table();
         let all: Vec<usize> = (0..table.rows().len()).collect();
         let by_columns = Subject::Columns(Column::Index, Column::SquaredError);
-        let points = Points::of(&table, &all, &by_columns, Grouping::Method);
+        let points = Points::of(&table, &all, &by_columns, Column::Method);
         assert_eq!(points.groups, ["live", "nomp"]);
         assert_eq!([0, 1].map(|group| points.dots.iter().filter(|dot| dot.group == group).count()), [6, 5]);
         let subject = Subject::Methods(Column::SquaredError, "live".into(), "nomp".into());
-        let points = Points::of(&table, &all, &subject, Grouping::Method);
+        let points = Points::of(&table, &all, &subject, Column::Method);
         assert_eq!(points.dots.len(), 5, "the first scene was tried by one only");
         assert!(points.dots.iter().all(|dot| dot.at[0] == dot.at[1] && dot.rows[1] == dot.rows[0] + 5));
         let [low, high] = points.spans[0];
@@ -172,17 +138,17 @@ mod tests {
     #[test]
     fn rows_without_a_figure_have_no_dot() {
         let table = table();
-        let points = Points::of(&table, &[0, 2, 3], &Subject::Columns(Column::Index, Column::Found), Grouping::Method);
+        let points = Points::of(&table, &[0, 2, 3], &Subject::Columns(Column::Index, Column::Found), Column::Method);
         assert_eq!(points.dots.iter().map(|dot| dot.rows[0]).collect::<Vec<_>>(), [0, 3]);
         assert!(points.spans[1][0] < 4.0 && points.spans[1][1] > 4.0, "a span is never empty");
-        let none = Points::of(&table, &[0, 2], &Subject::Histogram(Column::Method), Grouping::Method);
+        let none = Points::of(&table, &[0, 2], &Subject::Histogram(Column::Method), Column::Method);
         assert!(none.bars.is_none() && none.dots.is_empty());
     }
 
     #[test]
     fn the_bars_of_a_histogram_count_the_filtered_rows() {
         let table = table();
-        let points = Points::of(&table, &[0, 1, 5], &Subject::Histogram(Column::Index), Grouping::Method);
+        let points = Points::of(&table, &[0, 1, 5], &Subject::Histogram(Column::Index), Column::Method);
         assert_eq!(points.bars.map(|b| b.counts.iter().sum::<usize>()), Some(3));
         assert_eq!(points.spans[0], [0.0, 5.0]);
     }

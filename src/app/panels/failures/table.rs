@@ -1,48 +1,22 @@
 //! The table of rows, of any number: only rows in sight are drawn.
 
 use super::cells;
+use super::input::Input;
 use super::order::Sort;
-use crate::app::jobs::{Album, RowTable, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail};
-use crate::app::widgets::{Texture, colour_table, focus_after_click};
+use crate::app::jobs::{THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail};
+use crate::app::widgets::{Texture, colour_table, focus_after_click, keep_arrows};
 use crate::evaluate::rows::{Column, Row};
 use crate::picture::ColourMap;
 use eframe::egui::{
-    self, Align, Color32, ColorImage, EventFilter, FontId, Id, Key, Label, Layout, Modifiers, Rect, Response, RichText,
-    ScrollArea, Sense, Stroke, TextureOptions, Ui, Vec2, pos2, vec2,
+    self, Align, Color32, ColorImage, FontId, Id, Key, Label, Layout, Modifiers, Rect, Response, RichText, ScrollArea,
+    Sense, Stroke, TextureOptions, Ui, Vec2, pos2, vec2,
 };
 use egui_extras::{Column as TableColumn, TableBuilder, TableRow};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The rows to list.
-pub struct Input<'a> {
-    /// Every row.
-    pub table: &'a RowTable,
-    /// Small maps of the rows.
-    pub album: &'a Album,
-    /// Indices of the listed rows, from top to bottom.
-    pub shown: &'a [usize],
-    /// Sorting of the rows.
-    pub sort: Option<Sort>,
-    /// The row that was opened last.
-    pub opened: Option<usize>,
-    /// Colours of Lambda.
-    pub colours: ColourMap,
-}
-
-/// The row or column that the user clicked, and the rows in sight.
-#[derive(Default)]
-pub struct Answer {
-    /// The row to open.
-    pub open: Option<usize>,
-    /// The column whose title was clicked.
-    pub sort: Option<Column>,
-    /// Rows in sight, from top to bottom.
-    pub in_sight: Vec<usize>,
-}
-
 /// A picture of a row's maps, the target below the output.
-struct Picture {
+pub struct Picture {
     of: Arc<Thumbnail>,
     colours: ColourMap,
     image: Arc<ColorImage>,
@@ -53,23 +27,15 @@ struct Picture {
 #[derive(Default)]
 pub struct TableMemory {
     /// Pictures of the rows in sight.
-    pictures: HashMap<(u64, usize), Picture>,
+    pub pictures: HashMap<(u64, usize), Picture>,
+    /// Indices of the rows in sight, from top to bottom.
+    pub in_sight: Vec<usize>,
     /// The row that was opened last, at the last drawing.
     latest: Option<usize>,
-    /// Whether the opened row was in sight at the last drawing.
-    is_opened_in_sight: bool,
     /// Whether a row was clicked, so that the table takes the keyboard focus.
     was_clicked: bool,
     /// Heights of the table and of the area of its rows, points.
     room: [f32; 2],
-}
-
-impl TableMemory {
-    /// Number of pictures on the graphics card.
-    #[cfg(test)]
-    pub fn pictures(&self) -> usize {
-        self.pictures.len()
-    }
 }
 
 const ROW: f32 = 40.0;
@@ -77,22 +43,31 @@ const TITLE: f32 = 34.0;
 /// Size of a small map on screen.
 const MAP: Vec2 = vec2(72.0, 36.0);
 
-pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut TableMemory) -> Answer {
-    let mut answer = Answer::default();
+/// Draws the rows whose indices are in `shown`. A click on a title sorts them. Returns the row to open.
+pub fn show(
+    ui: &mut Ui,
+    input: &Input<'_>,
+    shown: &[usize],
+    sort: &mut Option<Sort>,
+    memory: &mut TableMemory,
+) -> Option<usize> {
+    let (mut open, opened) = (None, input.opened());
     // An id that doesn't depend on the place: the figures of an opened row come before it, and the focus must stay.
     let id = Id::unique("rows of failures");
     let list = ui.interact(ui.available_rect_before_wrap(), id, Sense::focusable_noninteractive());
     list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Rows"));
     focus_after_click(&list, &mut memory.was_clicked);
     if list.has_focus() {
-        answer.open = keys(ui, &list, input, memory.room[1]);
+        open = keys(ui, &list, opened, shown, memory.room[1]);
     }
     let height = ui.available_height();
     // An opened row is scrolled into sight, and stays there when its figures take some of the room.
-    let is_crowded_out = height < memory.room[0] && memory.is_opened_in_sight;
-    let wanted = input.opened.filter(|_| input.opened != memory.latest || is_crowded_out);
-    let scroll_to = wanted.and_then(|row| input.shown.iter().position(|shown| *shown == row));
-    memory.latest = input.opened;
+    let was_in_sight = memory.latest.is_some_and(|row| memory.in_sight.contains(&row));
+    let is_crowded_out = height < memory.room[0] && was_in_sight;
+    let wanted = opened.filter(|_| opened != memory.latest || is_crowded_out);
+    let scroll_to = wanted.and_then(|row| shown.iter().position(|shown| *shown == row));
+    memory.latest = opened;
+    memory.in_sight.clear();
     let output = ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         let of_maps = [MAP.x + 4.0; 2].into_iter();
@@ -103,29 +78,28 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut TableMemory) -> Answer 
         if let Some(row) = scroll_to {
             table = table.scroll_to_row(row, None);
         }
-        let table = table.header(TITLE, |mut row| answer.sort = titles(&mut row, input.sort));
+        let table = table.header(TITLE, |mut row| titles(&mut row, sort));
         table.body(|body| {
-            body.rows(ROW, input.shown.len(), |mut drawn| {
-                let index = input.shown[drawn.index()];
-                answer.in_sight.push(index);
+            body.rows(ROW, shown.len(), |mut drawn| {
+                let index = shown[drawn.index()];
+                memory.in_sight.push(index);
                 if row(&mut drawn, input, index, memory) {
                     memory.was_clicked = true;
-                    answer.open = Some(index);
+                    open = Some(index);
                 }
             });
         })
     });
     memory.room = [height, output.inner.inner_rect.height()];
-    memory.is_opened_in_sight = input.opened.is_some_and(|row| answer.in_sight.contains(&row));
-    let generation = input.table.generation();
-    memory.pictures.retain(|(table, row), _| *table == generation && answer.in_sight.contains(row));
-    answer
+    let TableMemory { pictures, in_sight, .. } = memory;
+    let generation = input.job.table.generation();
+    pictures.retain(|(table, row), _| *table == generation && in_sight.contains(row));
+    open
 }
 
 /// Handles arrow keys, Page Up and Down, Home and End. Returns the index of the row to open.
-fn keys(ui: &Ui, list: &Response, input: &Input<'_>, room: f32) -> Option<usize> {
-    let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
-    ui.memory_mut(|m| m.set_focus_lock_filter(list.id, filter));
+fn keys(ui: &Ui, list: &Response, opened: Option<usize>, shown: &[usize], room: f32) -> Option<usize> {
+    keep_arrows(list, [false, true]);
     let page = ((room / ROW) as isize).max(1);
     let (by, end) = ui.input_mut(|i| {
         let mut times = |key| i.count_and_consume_key(Modifiers::NONE, key) as isize;
@@ -133,8 +107,8 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>, room: f32) -> Option<usize>
         let pages = times(Key::PageDown) - times(Key::PageUp);
         (lines + page * pages, times(Key::End) - times(Key::Home))
     });
-    let last = input.shown.len().checked_sub(1)?;
-    let now = input.opened.and_then(|row| input.shown.iter().position(|shown| *shown == row));
+    let last = shown.len().checked_sub(1)?;
+    let now = opened.and_then(|row| shown.iter().position(|shown| *shown == row));
     let to = match (end.signum(), now) {
         (1, _) => last,
         (-1, _) => 0,
@@ -143,13 +117,13 @@ fn keys(ui: &Ui, list: &Response, input: &Input<'_>, room: f32) -> Option<usize>
         (_, None) if by > 0 => 0,
         (_, None) => last,
     };
-    (Some(to) != now).then(|| input.shown[to])
+    (Some(to) != now).then(|| shown[to])
 }
 
 /// Draws a row. Returns whether it was clicked.
 fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, memory: &mut TableMemory) -> bool {
-    let Some(row) = input.table.rows().get(index) else { return false };
-    let is_selected = input.opened == Some(index);
+    let Some(row) = input.job.table.rows().get(index) else { return false };
+    let is_selected = input.opened() == Some(index);
     drawn.set_selected(is_selected);
     let made = texture(drawn, input, index, row, memory);
     for &column in Column::FIGURES {
@@ -184,16 +158,16 @@ fn texture(
     row: &Row,
     memory: &mut TableMemory,
 ) -> Result<(), String> {
-    let generation = input.table.generation();
-    let made = input.album.get(generation, row);
+    let (generation, colours) = (input.job.table.generation(), input.state.settings.colours);
+    let made = input.job.thumbnails.album.get(generation, row);
     let key = (generation, index);
     if let Some(Ok(thumbnail)) = &made {
-        let same = |p: &Picture| Arc::ptr_eq(&p.of, thumbnail) && p.colours == input.colours;
+        let same = |p: &Picture| Arc::ptr_eq(&p.of, thumbnail) && p.colours == colours;
         if !memory.pictures.get(&key).is_some_and(same) {
-            let image = Arc::new(picture(thumbnail, input.colours));
+            let image = Arc::new(picture(thumbnail, colours));
             let texture = memory.pictures.remove(&key).map(|p| p.texture).unwrap_or_default();
             let of = thumbnail.clone();
-            memory.pictures.insert(key, Picture { of, colours: input.colours, image, texture });
+            memory.pictures.insert(key, Picture { of, colours, image, texture });
         }
     }
     let mut picture = memory.pictures.get_mut(&key).filter(|_| matches!(made, Some(Ok(_))));
@@ -224,28 +198,26 @@ fn picture(thumbnail: &Thumbnail, colours: ColourMap) -> ColorImage {
     ColorImage::new([THUMBNAIL_WIDTH, 2 * THUMBNAIL_HEIGHT], pixels)
 }
 
-/// Draws the titles over the rows. Returns the column that was clicked.
-fn titles(drawn: &mut TableRow<'_, '_>, sort: Option<Sort>) -> Option<Column> {
+/// Draws the titles over the rows. A click on one changes how they are sorted.
+fn titles(drawn: &mut TableRow<'_, '_>, sort: &mut Option<Sort>) {
     for name in ["target", "output"] {
         drawn.col(|ui| {
             ui.add_space(4.0);
             ui.add(Label::new(RichText::new(name).size(11.5).weak()).selectable(false));
         });
     }
-    let mut clicked = None;
     for &column in Column::FIGURES {
         let sorted = sort.filter(|sort| sort.column == column);
         let (_, response) = drawn.col(|ui| title(ui, column, sorted));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColumnHeader, true, cells::heading(column)));
         if response.clicked() {
-            clicked = Some(column);
+            *sort = Sort::clicked(*sort, column);
+            response.ctx.request_repaint();
         }
         response.on_hover_text(format!("Click to sort. Filters and files call it {}", column.name()));
     }
-    clicked
 }
 
-/// Draws a column's title with a triangle that shows the direction of sorting.
 fn title(ui: &mut Ui, column: Column, sorted: Option<Sort>) {
     let (visuals, cell) = (ui.visuals(), ui.max_rect());
     let ink = if sorted.is_some() { visuals.strong_text_color() } else { visuals.weak_text_color() };

@@ -69,7 +69,7 @@ fn keys_walk_through_the_rows_in_their_order() {
     panel.clicks(&["Squared error"]);
     let rows = panel.state().job.table.rows().clone();
     let worst = (0..50).max_by(|a, b| rows[*a].squared_error.total_cmp(&rows[*b].squared_error)).unwrap();
-    assert_eq!(panel.state().memory.in_sight()[0], worst, "the title sorts the rows");
+    assert_eq!(panel.state().memory.table.in_sight[0], worst, "the title sorts the rows");
     panel.clicks(&[&format!("set 1, scene {worst}, capon")]);
     panel.presses(&[Key::ArrowDown, Key::ArrowDown, Key::End]);
     let shown = |c: &Command| if let Command::Rows(RowsCommand::Show(row)) = c { *row } else { panic!("{c:?}") };
@@ -79,7 +79,7 @@ fn keys_walk_through_the_rows_in_their_order() {
     assert!(figures.is_sorted_by(|a, b| a >= b), "{figures:?}");
     let smallest = rows.iter().map(|row| row.squared_error).reduce(f64::min);
     assert_eq!(figures.last().copied(), smallest);
-    assert!(panel.state().memory.in_sight().contains(&opened[3]), "the row that was walked to is in sight");
+    assert!(panel.state().memory.table.in_sight.contains(&opened[3]), "the row that was walked to is in sight");
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn ten_thousand_rows_are_put_in_order_once() {
 #[test]
 fn only_rows_in_sight_are_drawn_and_their_pictures_held() {
     let mut panel = with_pictures(1000);
-    let in_sight = panel.state().memory.in_sight().len();
+    let in_sight = panel.state().memory.table.in_sight.len();
     assert!((5..30).contains(&in_sight), "{in_sight} rows in sight");
     assert!(seen::texts(panel.output()).len() < 700);
     panel.get_by_label("Rows").focus();
@@ -135,10 +135,10 @@ fn only_rows_in_sight_are_drawn_and_their_pictures_held() {
     panel.presses(&[Key::End]);
     let last = *panel.state().memory.order.shown().last().unwrap();
     assert_eq!(panel.state().state.failures.opened.as_ref().map(|opened| opened.index), Some(last));
-    assert!(panel.state().memory.in_sight().contains(&last));
+    assert!(panel.state().memory.table.in_sight.contains(&last));
     panel.presses(&[Key::PageUp]);
-    let held = panel.state().memory.table.pictures();
-    assert!(held <= panel.state().memory.in_sight().len(), "{held} pictures are held");
+    let held = panel.state().memory.table.pictures.len();
+    assert!(held <= panel.state().memory.table.in_sight.len(), "{held} pictures are held");
 }
 
 #[test]
@@ -193,14 +193,14 @@ fn rows_are_sorted_and_filtered_and_drawn_by_doubt() {
     let rows = panel.state().job.table.rows().clone();
     let all: Vec<usize> = (0..rows.len()).collect();
     let axes = points::Subject::Columns(Column::Doubt, Column::SquaredError);
-    let dots = points::Points::of(&panel.state().job.table, &all, &axes, points::Grouping::Method).dots;
+    let dots = points::Points::of(&panel.state().job.table, &all, &axes, Column::Method).dots;
     assert_eq!(dots.iter().map(|dot| dot.at[0]).collect::<Vec<_>>(), [90.0, 91.0, 92.0, 93.0, 94.0, 95.0]);
     panel.clicks(&["Doubt as SE"]);
-    let in_sight = panel.state().memory.in_sight().to_vec();
+    let in_sight = panel.state().memory.table.in_sight.clone();
     assert!(in_sight[..6].iter().all(|row| rows[*row].method == "live"), "those that say none come last");
     assert_eq!(in_sight[0], 11, "the largest comes first");
     assert!(panel.reads("95.0"), "and is shown");
-    panel.state_mut().memory.filter.set("squared_error > doubt".to_owned());
+    panel.state_mut().memory.filter.text = "squared_error > doubt".to_owned();
     panel.run_steps(3);
     let shown = panel.state().memory.order.shown();
     assert!(!shown.is_empty() && shown.iter().all(|row| rows[*row].method == "live"));

@@ -1,12 +1,11 @@
-//! A question's field or buttons, the given answer, and its judgement.
+//! A question's field or buttons, the given answer and its judgement; a challenge, and how far the scene meets its criteria.
 
-use super::large::{LARGE_TEXT_RATIO, large};
 use super::memory::LessonMemory;
 use crate::app::state::{Command, LessonCommand, LessonRun};
-use crate::app::widgets::{NumberField, Wanted, inline, press, theme};
+use crate::app::widgets::{LARGE_TEXT_RATIO, NumberField, Wanted, cross, inline, large, press, theme};
 use crate::lesson::question::{Answer, number_text};
-use crate::lesson::{Guess, Judgement, Question, Truth};
-use eframe::egui::{self, Color32, Id, Sense, Slider, Stroke, TextEdit, Ui, Vec2, pos2, vec2};
+use crate::lesson::{Challenge, Guess, Judgement, Measured, Question, Truth};
+use eframe::egui::{self, Color32, Id, Sense, Slider, Stroke, TextEdit, TextureId, Ui, Vec2, pos2, vec2};
 
 /// Draws the field or the buttons of an open question, or the request for a click.
 pub fn answer(ui: &mut Ui, question: &Question, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
@@ -159,29 +158,67 @@ fn verdict(ui: &mut Ui, is_right: bool, distance: &str) {
 
 /// Symbol before a verdict or a criterion.
 #[derive(Clone, Copy)]
-pub enum Symbol {
-    /// Right, or met.
+enum Symbol {
     Tick,
-    /// Wrong.
     Cross,
-    /// Not met yet.
     Ring,
 }
 
 impl Symbol {
     /// Draws the symbol, `r` points to either side.
-    pub fn draw(self, painter: &egui::Painter, at: egui::Pos2, r: f32, stroke: Stroke) {
+    fn draw(self, painter: &egui::Painter, at: egui::Pos2, r: f32, stroke: Stroke) {
         match self {
             Symbol::Ring => _ = painter.circle_stroke(at, 0.8 * r, stroke),
             Symbol::Tick => {
                 let points = [vec2(-r, 0.0), vec2(-0.3 * r, 0.7 * r), vec2(r, -0.7 * r)].map(|by| at + by);
                 painter.line(points.to_vec(), stroke);
             }
-            Symbol::Cross => {
-                for by in [vec2(0.75 * r, 0.75 * r), vec2(0.75 * r, -0.75 * r)] {
-                    painter.line_segment([at - by, at + by], stroke);
-                }
-            }
+            Symbol::Cross => cross(painter, at, Vec2::splat(0.75 * r), stroke),
         }
     }
+}
+
+/// Draws the challenge, its criteria and its buttons.
+pub fn requirements(
+    ui: &mut Ui,
+    run: &LessonRun,
+    challenge: &Challenge,
+    hidden: Option<TextureId>,
+    asked: &mut Vec<Command>,
+) {
+    ui.label(large(ui, &challenge.ask).strong());
+    if let Some(texture) = hidden {
+        ui.label("The map to reproduce:");
+        let width = ui.available_width().min(420.0);
+        ui.image((texture, vec2(width, width / 2.0)));
+    }
+    match &run.measured {
+        None => _ = ui.weak("measuring…"),
+        Some(Err(reason)) => _ = ui.label(reason),
+        Some(Ok(measured)) => {
+            measured.iter().for_each(|measured| criterion(ui, measured));
+        }
+    }
+    if run.gave_up {
+        ui.label("The solution was shown: the challenge counts as unsolved.");
+        let tip = "Puts the step's scene and radar back";
+        press(ui, "Start this step again", tip, LessonCommand::Step(run.step), asked);
+    } else if run.is_met() {
+        ui.label(large(ui, "Solved. Keep experimenting or continue.").strong());
+    } else {
+        let tip = "Puts a scene and a radar on screen that meet it; the challenge then counts as unsolved";
+        press(ui, "Show a solution", tip, LessonCommand::ShowSolution, asked);
+    }
+}
+
+/// Draws a criterion as a sentence with the measured value. A tick or a ring says whether it is met.
+fn criterion(ui: &mut Ui, measured: &Measured) {
+    let (symbol, verdict) = if measured.holds { (Symbol::Tick, "met") } else { (Symbol::Ring, "not met yet") };
+    let ink = if measured.holds { theme::verdict(ui.visuals(), true) } else { ui.visuals().weak_text_color() };
+    ui.horizontal(|ui| {
+        let (place, _) = ui.allocate_exact_size(Vec2::splat(14.0), Sense::hover());
+        symbol.draw(ui.painter(), place.center(), 5.0, Stroke::new(2.0, ink));
+        let text = format!("{} (now {}: {verdict})", measured.wanted, measured.found);
+        ui.add(egui::Label::new(text).wrap());
+    });
 }

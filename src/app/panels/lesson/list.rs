@@ -42,7 +42,6 @@ pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: 
     press(ui, "Open a lesson file…", tip, Purpose::OpenLesson, asked);
 }
 
-/// Draws the menu that deletes the learner's answers after a confirmation.
 fn start_over(ui: &mut Ui, progress: &Progress, asked: &mut Vec<Command>) {
     let whose = match progress.learner() {
         "" => "Forget every answer that was given here?".to_owned(),
@@ -86,7 +85,6 @@ fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
     clicked.inner
 }
 
-/// Number of completed steps of a lesson.
 fn done(progress: &Progress, id: &str, lesson: &Lesson) -> usize {
     let steps = lesson.steps.iter().enumerate();
     let done = steps.filter(|(i, step)| {

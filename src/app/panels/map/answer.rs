@@ -1,26 +1,32 @@
 //! The guess and the truth of a lesson's question about a place, drawn together on the map.
 
 use super::frame::Frame;
-use crate::app::widgets::{MARK, MARK_EDGE, axes};
+use crate::app::state::{MapKind, State};
+use crate::app::widgets::{MARK, axes, edged};
 use crate::lesson::Cell;
 use crate::theory;
-use eframe::egui::{Align2, Color32, Painter, Pos2, Stroke, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, vec2};
 
 /// A guessed place, the true one, and their distance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
-    /// The clicked cell.
     pub guess: Cell,
-    /// The true cell.
     pub truth: Cell,
-    /// Distance in metres and columns, as text.
     pub distance: String,
 }
 
-/// Colour of the guess.
+impl Places {
+    /// The place that was guessed in a lesson's step, and the true one, where both are of this map.
+    pub fn of(state: &State, kind: MapKind) -> Option<Places> {
+        let run = state.lesson.as_ref()?;
+        let (guess, truth) = run.places(kind, state.radar(), state.editor.scene())?;
+        let judged = run.judgement.as_ref()?.as_ref().ok()?;
+        Some(Places { guess, truth, distance: judged.distance.clone() })
+    }
+}
+
 const GUESS: Color32 = Color32::from_rgb(255, 170, 60);
 
-/// Colour of the truth.
 const TRUTH: Color32 = Color32::from_rgb(120, 255, 150);
 
 /// Distances from a place to the nearest and the farthest stroke of its mark, points: the place itself stays free.
@@ -29,24 +35,20 @@ const REACH: f32 = 16.0;
 
 /// Draws the guess as a cross with an open middle, the truth as a ring, and a line between them, each with its name beside the map's blob.
 pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
-    let Places { guess, truth, distance } = places;
-    let (guess, truth) = (*guess, *truth);
-    let [guess, truth] = [guess, truth].map(|cell| frame.cell(theory::MapPlace { bin: cell.bin, column: cell.column }));
+    let [guess, truth] =
+        [places.guess, places.truth].map(|Cell { bin, column }| frame.cell(theory::MapPlace { bin, column }));
     let apart = guess.distance(truth);
     if apart > 2.0 * REACH {
         let along = REACH * (truth - guess) / apart;
-        for (width, colour) in [(4.0, MARK_EDGE), (1.4, MARK)] {
-            painter.line_segment([guess + along, truth - along], Stroke::new(width, colour));
-        }
+        edged([4.0, 1.4], MARK, |stroke| painter.line_segment([guess + along, truth - along], stroke));
     }
-    for (width, edge) in [(4.0, true), (2.0, false)] {
-        let colour = |own: Color32| if edge { MARK_EDGE } else { own };
+    edged([4.0, 2.0], GUESS, |stroke| {
         for towards in [vec2(1.0, 1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(-1.0, -1.0)] {
             let towards = towards.normalized();
-            painter.line_segment([guess + FREE * towards, guess + REACH * towards], Stroke::new(width, colour(GUESS)));
+            painter.line_segment([guess + FREE * towards, guess + REACH * towards], stroke);
         }
-        painter.circle_stroke(truth, 0.5 * (FREE + REACH), Stroke::new(width, colour(TRUTH)));
-    }
+    });
+    edged([4.0, 2.0], TRUTH, |stroke| painter.circle_stroke(truth, 0.5 * (FREE + REACH), stroke));
     // One name above, one below: both stay readable where the two places are close.
     let guess_is_above = guess.y < truth.y;
     label(painter, guess, guess_is_above, "your guess");
@@ -60,16 +62,13 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, places: &Places) {
             down if down > 0.0 => (vec2(FREE, -FREE), Align2::LEFT_BOTTOM),
             _ => (vec2(FREE, FREE), Align2::LEFT_TOP),
         };
-        axes::text_on_patch(painter, middle + off, align, distance);
+        axes::text_on_patch(painter, middle + off, align, &places.distance);
     }
 }
 
 fn label(painter: &Painter, at: Pos2, above: bool, text: &str) {
-    let (off, align) = match above {
-        true => (-REACH - 3.0, Align2::CENTER_BOTTOM),
-        false => (REACH + 3.0, Align2::CENTER_TOP),
-    };
-    axes::text_on_patch(painter, at + vec2(0.0, off), align, text);
+    let (off, align) = if above { (-1.0, Align2::CENTER_BOTTOM) } else { (1.0, Align2::CENTER_TOP) };
+    axes::text_on_patch(painter, at + vec2(0.0, off * (REACH + 3.0)), align, text);
 }
 
 #[cfg(test)]

@@ -5,16 +5,8 @@ use crate::app::widgets::{Inks, press};
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{self, Align, Painter, Rect, Ui, vec2};
 
-/// Cover of a map that is hidden until the learner has predicted its content.
-#[derive(Clone, Copy)]
-pub struct Veil {
-    /// Whether the prediction is a click in this map.
-    pub is_clicked: bool,
-}
-
 /// Reason for a missing picture.
 pub struct Problem<'a> {
-    /// The problem in words.
     pub reason: &'a str,
     /// Name of a method that works instead.
     pub instead: Option<&'static str>,

@@ -1,22 +1,23 @@
 //! A map on screen: the places of its cells, and their values.
 
 use crate::app::state::{Cursor, MapView, Projection};
-use crate::app::widgets::{levels, signed};
+use crate::app::widgets::{difference, level, signed};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{Polar, Radar};
 use crate::scene::Reflector;
 use crate::theory::MapPlace;
-use eframe::egui::{Pos2, Rect, pos2};
+use eframe::egui::{Align2, Pos2, Rect, pos2, vec2};
+
+/// Distance from the top within which the pointer would be under a text in the right corner, points.
+const NEAR_TOP_POINTS: f32 = 40.0;
 
 /// Rectangle, visible part and projection of a map on screen.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
-    /// Rectangle on screen.
     pub rect: Rect,
     /// The visible part of the map.
     pub view: MapView,
     pub radar: &'a Radar,
-    /// Projection of the map.
     pub projection: Projection,
     /// Middle of the map's elements, metres along the array.
     pub centre_x_metres: f64,
@@ -35,11 +36,6 @@ pub struct Morph {
     pub projection: Projection,
     /// Remaining part of the animation, 1 to 0.
     pub left: f32,
-}
-
-/// The place between `to` and `from`, with the part `left` of the way remaining.
-pub fn between(to: Pos2, from: Pos2, left: f32) -> Pos2 {
-    to + left * (from - to)
 }
 
 impl<'a> Frame<'a> {
@@ -77,18 +73,7 @@ impl<'a> Frame<'a> {
 
     /// The range and the direction of the map at a place on screen.
     pub fn polar(&self, pos: Pos2) -> Polar {
-        let (radar, fraction) = (self.radar, self.view.at(self.rect, pos));
-        let (fx, fy) = (f64::from(fraction.x), f64::from(fraction.y));
-        match self.projection {
-            Projection::RangeAngle => Polar {
-                range_metres: radar.range_of_bin_metres(fy * radar.samples as f64 - 0.5),
-                cos_theta: radar.cos_of_column(radar.column_across(fx)),
-            },
-            Projection::Cartesian => {
-                let extent = radar.max_range_metres();
-                radar.polar_of((2.0 * fx - 1.0) * extent, fy * extent)
-            }
-        }
+        polar_of(self.radar, self.projection, self.view.at(self.rect, pos))
     }
 
     /// Place on screen of a range and a direction of the map; ranges wrap around as in the map.
@@ -100,18 +85,15 @@ impl<'a> Frame<'a> {
     fn on_screen(&self, fraction: impl Fn(Projection) -> Pos2) -> Pos2 {
         let to = self.view.to_screen(self.rect, fraction(self.projection));
         match &self.morph {
-            Some(from) => between(to, from.view.to_screen(from.rect, fraction(from.projection)), from.left),
+            Some(from) => to.lerp(from.view.to_screen(from.rect, fraction(from.projection)), from.left),
             None => to,
         }
     }
 
     /// The range and the direction of a place of the range-angle map, given as a fraction of it.
     pub fn polar_of_cell(&self, fraction: Pos2) -> Polar {
-        let (radar, fx, fy) = (self.radar, f64::from(fraction.x), f64::from(fraction.y));
-        Polar {
-            range_metres: radar.range_of_bin_metres(fy * radar.samples as f64 - 0.5).max(0.0),
-            cos_theta: radar.cos_of_column(radar.column_across(fx)),
-        }
+        let polar = polar_of(self.radar, Projection::RangeAngle, fraction);
+        Polar { range_metres: polar.range_metres.max(0.0), ..polar }
     }
 
     /// The fraction of a map in `projection` at a place whose fraction of the range-angle map is known: a fraction computed again would wrap
@@ -128,11 +110,33 @@ impl<'a> Frame<'a> {
         self.on_screen(|projection| self.fraction_in(projection, polar, range_angle))
     }
 
+    /// The upper corner away from a place, `below` points beneath the map's top, and the alignment of a text there.
+    pub fn far_corner(&self, at: Pos2, below: f32) -> (Pos2, Align2) {
+        match at.y < self.rect.top() + NEAR_TOP_POINTS && at.x > self.rect.center().x {
+            true => (self.rect.left_top() + vec2(10.0, below), Align2::LEFT_TOP),
+            false => (self.rect.right_top() + vec2(-10.0, below), Align2::RIGHT_TOP),
+        }
+    }
+
     /// Rectangle on screen that the map takes, during the animation too.
     pub fn shown(&self) -> Rect {
         let Some(from) = &self.morph else { return self.rect };
-        let corner = |to: Pos2, of: Pos2| between(to, of, from.left);
-        Rect::from_min_max(corner(self.rect.min, from.rect.min), corner(self.rect.max, from.rect.max))
+        self.rect.lerp_towards(&from.rect, from.left)
+    }
+}
+
+/// The range and the direction at fractions of the width and height of a map in a projection.
+fn polar_of(radar: &Radar, projection: Projection, fraction: Pos2) -> Polar {
+    let (fx, fy) = (f64::from(fraction.x), f64::from(fraction.y));
+    match projection {
+        Projection::RangeAngle => Polar {
+            range_metres: radar.range_of_bin_metres(fy * radar.samples as f64 - 0.5),
+            cos_theta: radar.cos_of_column(radar.column_across(fx)),
+        },
+        Projection::Cartesian => {
+            let extent = radar.max_range_metres();
+            radar.polar_of((2.0 * fx - 1.0) * extent, fy * extent)
+        }
     }
 }
 
@@ -164,45 +168,18 @@ pub struct Cells<'a> {
     pub scale: Option<LambdaScale>,
 }
 
-/// Value of a cell of a map.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Value {
-    /// Lambda, or a difference of it.
-    pub lambda: f64,
-    /// Decibels relative to the peak, or a difference of them, where the scale is known.
-    pub decibels: Option<f64>,
-    /// Decibels that Lambda spans, where the scale is known.
-    pub range_db: Option<f64>,
-}
-
 impl Cells<'_> {
-    /// Value of a cell; `None` outside the map.
-    pub fn value(&self, bin: usize, column: usize) -> Option<Value> {
+    /// Texts of a cell: Lambda, and decibels relative to the peak without their unit where the scale is known, both with a sign for a difference. `None`
+    /// outside the map.
+    pub fn texts(&self, bin: usize, column: usize) -> Option<(String, Option<String>)> {
         let lambda = *self.map.lambda.get((bin, column))?;
         let range_db = self.scale.map(|s| s.decibels());
-        Some(match self.minus {
-            Some(minus) => {
-                let difference = f64::from(lambda - minus.lambda.get((bin, column))?);
-                Value { lambda: difference, decibels: range_db.map(|range| range * difference), range_db }
-            }
-            None => {
-                let lambda = f64::from(lambda);
-                Value { lambda, decibels: range_db.map(|range| range * (lambda - 1.0)), range_db }
-            }
-        })
-    }
-}
-
-impl Value {
-    /// Text of the decibels, without the unit.
-    pub fn decibels_text(&self, is_difference: bool) -> Option<String> {
-        let (db, range_db) = self.decibels.zip(self.range_db)?;
-        Some(if is_difference { levels::difference(db) } else { levels::level(db, range_db) })
-    }
-
-    /// Text of Lambda, with its sign where it is a difference.
-    pub fn lambda_text(&self, is_difference: bool) -> String {
-        if is_difference { signed(self.lambda, 3) } else { format!("{:.3}", self.lambda) }
+        let Some(minus) = self.minus else {
+            let lambda = f64::from(lambda);
+            return Some((format!("{lambda:.3}"), range_db.map(|range| level(range * (lambda - 1.0), range))));
+        };
+        let delta = f64::from(lambda - minus.lambda.get((bin, column))?);
+        Some((signed(delta, 3), range_db.map(|range| difference(range * delta))))
     }
 }
 
@@ -214,24 +191,15 @@ pub struct Marked {
     pub is_line: bool,
 }
 
-/// Reflectors drawn over a map.
-pub struct Marks<'a> {
-    /// True reflectors, object by object: as rings, or as the outline of a line.
-    pub objects: &'a [Marked],
-    /// Reflectors that the method found, as crosses.
-    pub found: &'a [Reflector],
-}
-
 /// The cursor at a place of the map, given as fractions of its width and height. `None` outside the radar's view.
 pub fn cursor_at(radar: &Radar, projection: Projection, fraction: Pos2) -> Option<Cursor> {
-    let (fx, fy) = (f64::from(fraction.x), f64::from(fraction.y));
     match projection {
         Projection::RangeAngle => {
-            Some(Cursor::at_cell(radar, fy * radar.samples as f64 - 0.5, radar.column_across(fx)))
+            let bin = f64::from(fraction.y) * radar.samples as f64 - 0.5;
+            Some(Cursor::at_cell(radar, bin, radar.column_across(f64::from(fraction.x))))
         }
         Projection::Cartesian => {
-            let extent = radar.max_range_metres();
-            let cursor = Cursor::at_blob(radar, radar.polar_of((2.0 * fx - 1.0) * extent, fy * extent));
+            let cursor = Cursor::at_blob(radar, polar_of(radar, projection, fraction));
             cursor.cell(radar).map(|_| cursor)
         }
     }
@@ -242,7 +210,6 @@ mod tests {
     use super::*;
     use crate::interact::Place;
     use crate::radar::End;
-    use eframe::egui::vec2;
 
     #[test]
     fn a_ring_is_drawn_where_the_map_has_the_blob() {

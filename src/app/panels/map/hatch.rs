@@ -21,9 +21,7 @@ const STEP: f32 = 7.0;
 pub struct ToldApart<'a> {
     /// Lambda of the output, or a detector's result for the output.
     pub output: &'a RangeAngleMap,
-    /// Lambda of the target.
     pub target: &'a RangeAngleMap,
-    /// Thresholds of output and target.
     pub etas: [f32; 2],
     /// Blobs of the output where the scene has nothing, once the output is judged.
     pub ghosts: &'a [Ghost],

@@ -1,12 +1,12 @@
 //! Input of a map.
 
-use super::answer::Places;
-use super::blank::{Problem, Veil};
-use super::frame::{Cells, Marks};
+use super::blank::Problem;
+use super::frame::{Cells, Marked};
 use super::hatch::ToldApart;
 use super::kinds::Kinds;
 use super::theory::Theory;
 use crate::app::state::{MapKind, Projection, State};
+use crate::scene::Reflector;
 use eframe::egui::TextureId;
 
 /// Picture, values, marks and texts of a map.
@@ -25,24 +25,28 @@ pub struct Input<'a> {
     pub stale: bool,
     /// Text over an outdated picture.
     pub old: String,
-    /// Values of the picture's cells.
     pub cells: Option<Cells<'a>>,
-    /// Reflectors drawn over the map.
-    pub marks: Marks<'a>,
+    /// True reflectors, object by object: as rings, or as the outline of a line.
+    pub objects: &'a [Marked],
+    /// Reflectors that the method found, as crosses.
+    pub found: &'a [Reflector],
     /// Verdicts on the objects, where they are marked.
     pub kinds: Option<Kinds<'a>>,
     /// Maps and thresholds that separate hits, misses and false alarms, where the cells show these.
     pub told_apart: Option<ToldApart<'a>>,
-    /// Prediction of the formulas for a reflector, where it is drawn.
     pub theory: Option<Theory<'a>>,
-    /// Note on noise that the map's method was not trained on.
-    pub note: Option<String>,
-    /// Caption at a first start, one line.
-    pub line: Option<String>,
-    /// Reason for a missing picture.
     pub error: Option<Problem<'a>>,
-    /// Cover of the picture, while a lesson asks for a prediction.
-    pub veil: Option<Veil>,
-    /// The guessed place of a lesson's question, and the true one.
-    pub places: Option<Places>,
+}
+
+impl Input<'_> {
+    /// Whether the picture is hidden, since a lesson asks for a prediction.
+    pub fn is_veiled(&self) -> bool {
+        self.state.is_predicting()
+    }
+
+    /// Whether that prediction is a click in this map.
+    pub fn awaits_click(&self) -> bool {
+        let run = self.state.lesson.as_ref().filter(|run| run.is_predicting());
+        run.is_some_and(|run| run.clicked_map() == Some(self.kind))
+    }
 }

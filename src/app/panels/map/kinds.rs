@@ -2,14 +2,14 @@
 
 use super::frame::Frame;
 use crate::app::jobs::{Fates, Verdict};
-use crate::app::widgets::{MARK_EDGE, axes};
+use crate::app::widgets::{axes, edged};
 use crate::evaluate::eta_text;
 use crate::evaluate::failure::Fate;
 use crate::maps::Aperture;
 use crate::radar::{Radar, counted};
 use crate::scene::Reflector;
 use crate::theory::{MapPlace, blob_cell};
-use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Vec2, vec2};
 
 /// Largest distance of the pointer from a mark to show its tooltip, points.
 const MARK_REACH_POINTS: f32 = 10.0;
@@ -20,7 +20,6 @@ const MARKS: usize = 400;
 /// Verdicts on all objects that the map should show.
 #[derive(Clone, Copy)]
 pub struct Kinds<'a> {
-    /// The verdicts.
     pub fates: &'a Fates,
     /// Whether the verdicts are of the output on screen, and not of an earlier one.
     pub current: bool,
@@ -29,7 +28,6 @@ pub struct Kinds<'a> {
 /// The shape of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Sign {
-    /// A tick.
     Found,
     /// A cross in a ring.
     Missed,
@@ -59,29 +57,22 @@ impl Sign {
         }
     }
 
-    /// Name of the kind, for `count` marks.
-    pub fn name(self, count: usize) -> &'static str {
+    /// Name and colour of the kind. The colours are those of Okabe and Ito, which differ for the colour-blind, too.
+    fn look(self) -> (&'static str, Color32) {
         match self {
-            Sign::Found => "found",
-            Sign::Missed => "missed",
-            Sign::Merged => "merged",
-            Sign::WrongTooth => "wrong tooth",
-            Sign::Ghost if count == 1 => "ghost",
-            Sign::Ghost => "ghosts",
-            Sign::Hidden => "hidden",
+            Sign::Found => ("found", Color32::from_rgb(86, 180, 233)),
+            Sign::Missed => ("missed", Color32::from_rgb(255, 122, 60)),
+            Sign::Merged => ("merged", Color32::from_rgb(240, 228, 66)),
+            Sign::WrongTooth => ("wrong tooth", Color32::from_rgb(232, 150, 200)),
+            Sign::Ghost => ("ghost", Color32::WHITE),
+            Sign::Hidden => ("hidden", Color32::from_gray(176)),
         }
     }
 
-    /// Colour on maps: those of Okabe and Ito, which differ for the colour-blind, too.
-    fn colour(self) -> Color32 {
-        match self {
-            Sign::Found => Color32::from_rgb(86, 180, 233),
-            Sign::Missed => Color32::from_rgb(255, 122, 60),
-            Sign::Merged => Color32::from_rgb(240, 228, 66),
-            Sign::WrongTooth => Color32::from_rgb(232, 150, 200),
-            Sign::Ghost => Color32::WHITE,
-            Sign::Hidden => Color32::from_gray(176),
-        }
+    /// The number of marks of the kind as text.
+    pub fn counted(self, count: usize) -> String {
+        let plural = if self == Sign::Ghost && count != 1 { "s" } else { "" };
+        format!("{count} {}{plural}", self.look().0)
     }
 
     /// Lines of the mark around a place, as large as a ring around a reflector; `way` is the direction of a triangle.
@@ -111,13 +102,10 @@ impl Sign {
 
     /// Draws the mark, with an edge that makes it readable over any picture.
     pub fn draw(self, painter: &Painter, at: Pos2, way: Vec2, current: bool) {
-        let colour = if current { self.colour() } else { Color32::from_gray(140) };
-        let lines = self.lines(at, way);
-        for (width, colour) in [(4.0, MARK_EDGE), (1.8, colour)] {
-            for line in &lines {
-                painter.add(Shape::line(line.clone(), Stroke::new(width, colour)));
-            }
-        }
+        let colour = if current { self.look().1 } else { Color32::from_gray(140) };
+        edged([4.0, 1.8], colour, |stroke| {
+            painter.extend(self.lines(at, way).into_iter().map(|line| Shape::line(line, stroke)));
+        });
     }
 }
 
@@ -155,9 +143,7 @@ impl Kinds<'_> {
             _ => None,
         };
         if let Some(to) = to {
-            for (width, colour) in [(3.0, MARK_EDGE), (1.2, sign.colour())] {
-                painter.line_segment([at, to], Stroke::new(width, colour));
-            }
+            edged([3.0, 1.2], sign.look().1, |stroke| painter.line_segment([at, to], stroke));
         }
         let way = to.map_or(Vec2::ZERO, |to| (to - at).normalized());
         sign.draw(painter, at, if way == Vec2::ZERO { vec2(1.0, 0.0) } else { way }, self.current);
@@ -242,7 +228,7 @@ pub mod tests {
         for a in Sign::ALL {
             assert!(of(a).iter().flatten().all(|p| p.to_vec2().length() < 11.0), "{a:?} is no larger than a ring");
             for b in Sign::ALL {
-                assert!(a == b || (of(a) != of(b) && a.colour() != b.colour()), "{a:?} and {b:?}");
+                assert!(a == b || (of(a) != of(b) && a.look().1 != b.look().1), "{a:?} and {b:?}");
             }
         }
     }

@@ -78,7 +78,7 @@ impl Legend {
         let (mut left, mut row) = (0.0, 0);
         let mut entries = Vec::new();
         for (sign, count) in kinds.map(Kinds::counts).unwrap_or_default() {
-            let name = format!("{count} {}", sign.name(count));
+            let name = sign.counted(count);
             let needed = SWATCH + GAPS[0] + axes::width(painter, &name);
             if left > 0.0 && left + needed > width {
                 (left, row) = (0.0, row + 1);
@@ -120,7 +120,6 @@ impl Legend {
         self.label(ui, map);
     }
 
-    /// Adds the legend's text for screen readers.
     fn label(&self, ui: &Ui, map: Rect) {
         let marks = self.entries.iter().map(|entry| entry.name.as_str());
         let names: Vec<&str> = self.fills.iter().map(|fill| fill.name).chain(marks).collect();

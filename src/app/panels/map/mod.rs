@@ -10,7 +10,6 @@ mod hatch;
 mod input;
 mod kinds;
 mod legend;
-mod menu;
 mod morph;
 mod outline;
 mod overlay;
@@ -20,9 +19,7 @@ mod theory;
 mod told;
 mod window;
 
-pub use answer::Places;
-pub use blank::{Problem, Veil};
-pub use caption::{Caption, caption};
+pub use blank::Problem;
 pub use frame::Cells;
 pub use hand::HandMemory;
 pub use hatch::ToldApart;
@@ -30,18 +27,23 @@ pub use input::Input;
 pub use kinds::Kinds;
 pub use theory::Theory;
 pub use told::{
-    MapMemory, MapPanel, caption_of, cells, echoes_found, is_updating, map_input, marks_of, scores, verdict,
+    MapMemory, MapPanel, caption_of, cells, echoes_found, is_updating, map_input, marks_of, old, scores, verdict,
 };
 
-use crate::app::state::{Command, LessonCommand, MapKind, MapView, Projection, ViewCommand};
-use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, nudge};
+use crate::app::panels::captions;
+use crate::app::state::{
+    Command, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection, State, ViewCommand, WindowCommand,
+};
+use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, entry, item, nudge};
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
 use crate::radar::{End, FEW_COLUMNS, Radar};
+use crate::reconstruct::untrained_noise;
+use crate::scattering::Echoing;
 use crate::scene::Object;
+use answer::Places;
 use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
 use legend::{Fill, Legend};
-use menu::menu;
 use plot::{draw_axes, is_wide, navigate, rect_of};
 
 /// Text over a map of an earlier scene.
@@ -50,28 +52,28 @@ pub const EARLIER_SCENE: &str = "Previous scene; updating…";
 /// Draws a map.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut HandMemory) -> Vec<Command> {
     let mut asked = Vec::new();
+    let (kind, state, radar) = (input.kind, input.state, input.state.radar());
+    let projection = state.settings.projection;
     let area = ui.available_rect_before_wrap();
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
-    let is_told = !input.kind.is_above() && input.veil.is_none() && is_wide(area);
-    let bar = is_told.then(|| scale::bar(&input));
+    let is_bare = !input.is_veiled();
+    let bar = (!kind.is_above() && is_bare && is_wide(area)).then(|| scale::bar(&input));
     let legend = legend_of(ui, &input, area);
     // Reserved in every map, also where nothing is marked: frames beside each other stay aligned.
-    let above = if input.state.settings.show_kinds { legend::reserved(area.height()) } else { 0.0 };
-    let rect = rect_of(area, input.state.settings.projection, above);
-    let response = ui.interact(rect, ui.scope_id().with(("map", input.kind)), Sense::click_and_drag());
-    let label = format!("{} map", input.kind.title());
+    let above = if state.settings.show_kinds { legend::reserved(area.height()) } else { 0.0 };
+    let rect = rect_of(area, projection, above);
+    let response = ui.interact(rect, ui.scope_id().with(("map", kind)), Sense::click_and_drag());
+    let label = format!("{} map", kind.title());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
     describe(ui, &input, response.id);
-    let centre_x_metres = centre_x_metres(input.kind, input.state.radar());
-    let frame = Frame::of(rect, *view, input.state.radar(), input.state.settings.projection, centre_x_metres);
-    let is_bare = input.veil.is_none();
-    let holds = is_bare && hand::work(ui, input.kind, input.state.scene(), frame, &response, memory, &mut asked);
-    navigate(ui, rect, &response, view, !holds, input.state.editor.selection().is_empty());
-    if response.has_focus() && !input.state.editor.selection().is_empty() {
-        asked.extend(nudge(ui.ctx(), input.state.radar().range_resolution_metres()));
+    let frame = Frame::of(rect, *view, radar, projection, centre_x_metres(kind, radar));
+    let holds = is_bare && hand::work(ui, kind, state.scene(), frame, &response, memory, &mut asked);
+    let is_free = state.editor.selection().is_empty();
+    navigate(ui, rect, &response, view, !holds, is_free);
+    if response.has_focus() && !is_free {
+        asked.extend(nudge(ui.ctx(), radar.range_resolution_metres()));
     }
-    let other = input.state.map_views.seen(input.state.settings.projection.other());
-    let morph = morph::morph(ui, area, input.state.settings.projection, other, above);
+    let morph = morph::morph(ui, area, projection, state.map_views.seen(projection.other()), above);
     // Clicks and drags refer to the places at the end of the animation.
     let frame = Frame { view: *view, ..frame };
     point(&input, frame, &response, &mut asked);
@@ -80,27 +82,47 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     let painter = ui.painter().with_clip_rect(area);
     let inner = ui.painter().with_clip_rect(frame.shown().intersect(area));
     let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
-    if input.state.shows_axes() {
+    if state.shows_axes() {
         let free = bar.as_ref().map_or(0.0, |bar| bar.overhang(&painter, rect.width()));
         let mut appearing = painter.clone();
         appearing.multiply_opacity(rest);
-        draw_axes(ui, &appearing, frame, input.state.settings.directions, (free, line_of(&input).is_some()));
+        draw_axes(ui, &appearing, frame, state.settings.directions, (free, line_of(&input).is_some()));
     }
     legend.draw(ui, &painter, frame.shown());
-    draw_over(&inner, frame, &input, &response, is_drawn);
+    draw_over(&inner, frame, &input, response.hover_pos(), is_drawn);
     if let Some(bar) = bar {
         bar.draw(ui, &painter, frame.shown());
     }
-    response.context_menu(|ui| menu(ui, &input, &mut asked));
+    response.context_menu(|ui| menu(ui, state, kind, &mut asked));
     if is_bare {
-        morph::button(ui, rect, input.kind, input.state.settings.projection, &mut asked);
+        morph::button(ui, rect, kind, projection, &mut asked);
     }
     asked
 }
 
+/// Draws the context menu: overlays, views, pictures.
+fn menu(ui: &mut Ui, state: &State, kind: MapKind, asked: &mut Vec<Command>) {
+    ui.menu_button("Overlays", |ui| {
+        ViewCommand::OVERLAYS.into_iter().for_each(|command| item(ui, state, command, asked));
+    });
+    let of_all = [ViewCommand::ToggleProjection, ViewCommand::ToggleUnits];
+    let of_difference = [ViewCommand::ToggleAbsoluteDifference, ViewCommand::ToggleWholeDifference];
+    let of_difference = of_difference.into_iter().filter(|_| kind.is_difference());
+    of_all.into_iter().chain(of_difference).for_each(|command| item(ui, state, command, asked));
+    ui.separator();
+    for command in [
+        Command::Window(WindowCommand::Maximise(Panel::Map(kind))),
+        Command::View(ViewCommand::ResetMaps),
+        Command::Export(ExportCommand::CopyMap(kind)),
+        Command::Window(WindowCommand::ClosePanel(Panel::Map(kind))),
+    ] {
+        entry(ui, command, true, asked);
+    }
+}
+
 /// Gives screen readers one sentence: the kind of the map, and its content.
 fn describe(ui: &Ui, input: &Input<'_>, id: egui::Id) {
-    let seen = input.sentence.filter(|_| input.veil.is_none()).unwrap_or_default();
+    let seen = input.sentence.filter(|_| !input.is_veiled()).unwrap_or_default();
     let old = if input.stale { " Of the previous scene." } else { "" };
     let description = format!("{}. {seen}{old}", input.kind.describe());
     ui.ctx().accesskit_node_builder(id, |node| node.set_description(description.trim()));
@@ -108,7 +130,7 @@ fn describe(ui: &Ui, input: &Input<'_>, id: egui::Id) {
 
 /// Legend of fills and marks, where there is room for one.
 fn legend_of(ui: &Ui, input: &Input<'_>, area: Rect) -> Legend {
-    let has_room = input.veil.is_none() && legend::reserved(area.height()) > 0.0;
+    let has_room = !input.is_veiled() && legend::reserved(area.height()) > 0.0;
     let dark = ui.visuals().dark_mode;
     let fills = match &input.told_apart {
         _ if !(input.kind.is_above() && has_room && is_wide(area)) => Vec::new(),
@@ -119,62 +141,68 @@ fn legend_of(ui: &Ui, input: &Input<'_>, area: Rect) -> Legend {
     Legend::new(ui.painter(), fills, input.kinds.as_ref().filter(|_| has_room), width)
 }
 
-/// Draws marks, the cursor and the text over an outdated picture.
-fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, response: &egui::Response, is_drawn: bool) {
-    let rect = frame.rect;
+fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, pointer: Option<Pos2>, is_drawn: bool) {
+    let (kind, state, is_bare) = (input.kind, input.state, !input.is_veiled());
     let is_old = input.stale && is_drawn;
-    if !is_drawn && input.veil.is_none() {
+    if !is_drawn && is_bare {
         // The text in the place of the map stays readable.
         return;
     }
-    let at_rest = input.veil.is_none() && frame.morph.is_none();
+    let at_rest = is_bare && frame.morph.is_none();
     if let Some(told_apart) = input.told_apart.as_ref().filter(|_| at_rest) {
         told_apart.draw(inner, frame, inner.ctx().theme() == egui::Theme::Dark);
     }
     // Beneath all texts.
-    if let Some(cursor) = &input.state.shown_cursor() {
-        let told = input.veil.is_none();
+    if let Some(cursor) = &state.shown_cursor() {
         let cells = input.cells.as_ref();
-        overlay::cursor(inner, frame, cursor, cells.filter(|_| told), input.state.settings.units);
-        if let Some(cfar) = input.state.settings.cfar.as_ref().filter(|_| told && at_rest && input.kind.is_above()) {
+        overlay::cursor(inner, frame, cursor, cells.filter(|_| is_bare), state.settings.units);
+        if let Some(cfar) = state.settings.cfar.as_ref().filter(|_| at_rest && kind.is_above()) {
             window::draw(inner, frame, cursor, cells, cfar);
         }
     }
     if let Some(aperture) = aperture(input).filter(|_| at_rest) {
-        overlay::beam(inner, frame, beam_columns(input.state.radar(), aperture));
+        overlay::beam(inner, frame, beam_columns(state.radar(), aperture));
     }
-    if input.veil.is_none() {
-        let pointer = response.hover_pos();
-        overlay::marks(inner, frame, input.marks.objects, pointer);
-        overlay::found(inner, frame, input.marks.found, input.stale);
-        overlay::selected(inner, frame, input.state.scene(), input.state.editor.selection());
+    let line = captions::of_map(state, kind).filter(|_| is_bare);
+    if is_bare {
+        overlay::marks(inner, frame, input.objects, pointer);
+        overlay::found(inner, frame, input.found, input.stale);
+        overlay::selected(inner, frame, state.scene(), state.editor.selection());
         if let Some(theory) = &input.theory {
             theory.draw(inner, frame);
             // Maps above a threshold leave the numbers out: the map under the threshold shows the same ones.
-            if !input.kind.is_above() {
-                theory.tell(inner, frame, pointer, &taken(input, frame));
+            if !kind.is_above() {
+                theory.tell(inner, frame, pointer, &taken(state, frame, line.is_some()));
             }
         }
-        if let Some(places) = &input.places {
-            answer::draw(inner, frame, places);
+        if let Some(places) = Places::of(state, kind) {
+            answer::draw(inner, frame, &places);
         }
         if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
             kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
         }
     }
-    let said = if is_old { Some(input.old.as_str()) } else { input.note.as_deref() };
-    if let Some(line) = input.line.as_deref().filter(|_| input.veil.is_none()) {
-        caption_over(inner, rect, line);
-    } else if let Some(said) = said.filter(|_| input.veil.is_none() || is_old) {
-        let corner = rect.left_bottom() + vec2(8.0, -8.0);
-        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, said);
+    let said = if is_old { Some(input.old.clone()) } else { note(state, kind).filter(|_| is_bare) };
+    if let Some(line) = line {
+        caption_over(inner, frame.rect, &line);
+    } else if let Some(said) = said {
+        let corner = frame.rect.left_bottom() + vec2(8.0, -8.0);
+        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, &said);
     }
 }
 
+/// Note on the noise that the map's method was trained on, where the scene has another noise. None for a recording, whose noise is unknown.
+fn note(state: &State, kind: MapKind) -> Option<String> {
+    let method = state.method_in(kind.slot()?).filter(|_| !state.is_recorded())?;
+    method.trained_noise()?;
+    let echoing = Echoing::of(state.radar(), state.scene());
+    untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor)
+}
+
 /// Places that text must not cover: blobs of the scene's reflectors, and the caption.
-fn taken(input: &Input<'_>, frame: Frame<'_>) -> Vec<Pos2> {
-    let reflectors = input.state.scene().objects.iter().flat_map(Object::marks).take(overlay::MARKS);
-    let caption = input.line.iter().map(|_| frame.rect.left_bottom() + vec2(12.0, -12.0));
+fn taken(state: &State, frame: Frame<'_>, has_caption: bool) -> Vec<Pos2> {
+    let reflectors = state.scene().objects.iter().flat_map(Object::marks).take(overlay::MARKS);
+    let caption = has_caption.then(|| frame.rect.left_bottom() + vec2(12.0, -12.0));
     reflectors.map(|reflector| frame.blob(&reflector)).chain(caption).collect()
 }
 
@@ -196,7 +224,7 @@ fn caption_over(painter: &Painter, rect: Rect, line: &str) {
 /// Draws the picture, or the reason why there is none. Returns whether there is one.
 fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, asked: &mut Vec<Command>) -> bool {
     let (rect, view) = (frame.rect, frame.view);
-    let texture = input.texture.filter(|_| input.veil.is_none());
+    let texture = input.texture.filter(|_| !input.is_veiled());
     match texture {
         Some(texture) => {
             let uv = Rect::from_min_max(pos2(view.low.x, view.high.y), pos2(view.high.x, view.low.y));
@@ -211,9 +239,7 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
                 false => morph::picture(inner, frame, texture, input.pictured, tint),
             }
         }
-        None if input.veil.is_some() => {
-            blank::veil(inner, rect, input.veil.is_some_and(|v| v.is_clicked), ui.visuals());
-        }
+        None if input.is_veiled() => blank::veil(inner, rect, input.awaits_click(), ui.visuals()),
         None => blank::empty(ui, inner, rect, input.error.as_ref(), asked),
     }
     texture.is_some()
@@ -222,11 +248,8 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
 /// Reports the pointer's place. A click answers a question that asks for a place.
 fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: &mut Vec<Command>) {
     let Some(pos) = response.hover_pos() else { return };
-    let Some(cursor) = cursor_at(input.state.radar(), input.state.settings.projection, frame.view.at(frame.rect, pos))
-    else {
-        return;
-    };
-    if input.veil.is_some_and(|v| v.is_clicked) && response.clicked() {
+    let Some(cursor) = cursor_at(frame.radar, frame.projection, frame.view.at(frame.rect, pos)) else { return };
+    if input.awaits_click() && response.clicked() {
         let cell = crate::lesson::Cell { bin: cursor.bin, column: cursor.column };
         asked.push(LessonCommand::Predict(crate::lesson::Guess::Place(cell)).into());
     }
@@ -235,8 +258,7 @@ fn point(input: &Input<'_>, frame: Frame<'_>, response: &egui::Response, asked: 
 
 /// The map of one range bin, where it is drawn as a line over directions.
 fn line_of<'a>(input: &'a Input<'_>) -> Option<&'a RangeAngleMap> {
-    let is_flat =
-        input.state.settings.projection == Projection::RangeAngle && input.pictured == input.state.settings.projection;
+    let is_flat = [input.state.settings.projection, input.pictured] == [Projection::RangeAngle; 2];
     let is_lambda = !input.kind.is_above() && input.kind != MapKind::Doubt;
     let cells = input.cells.as_ref().filter(|cells| cells.minus.is_none());
     cells.filter(|_| input.state.radar().samples == 1 && is_flat && is_lambda).map(|cells| cells.map)

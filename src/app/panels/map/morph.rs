@@ -59,7 +59,6 @@ pub fn button(ui: &mut Ui, rect: Rect, kind: MapKind, projection: Projection, as
 
 #[cfg(test)]
 mod tests {
-    use super::super::frame::between;
     use super::*;
     use crate::radar::{Polar, Radar};
     use crate::scene::Reflector;
@@ -76,7 +75,7 @@ mod tests {
         for left in [1.0, 0.5, 0.0] {
             let morph = Morph { rect, view: MapView::default(), projection: Projection::RangeAngle, left };
             let at = frame(Projection::Cartesian, Some(morph)).blob(&reflector);
-            assert!(at.distance(between(end, start, left)) < 1e-3, "{at:?} with {left} left");
+            assert!(at.distance(end.lerp(start, left)) < 1e-3, "{at:?} with {left} left");
         }
     }
 

@@ -3,7 +3,7 @@
 use super::frame::{Cells, Frame, Marked};
 use super::outline::{hull, outline};
 use crate::app::state::{Cursor, Projection, Units};
-use crate::app::widgets::{MARK, MARK_EDGE, MARK_SELECTED, axes, direction, with_unit};
+use crate::app::widgets::{MARK, MARK_EDGE, MARK_SELECTED, axes, cross, direction, edged, with_unit};
 use crate::interact::Selection;
 use crate::maps::RangeAngleMap;
 use crate::picture::finer;
@@ -28,7 +28,7 @@ pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool
     let strength = if old { 0.35 } else { 1.0 };
     for r in found.iter().take(MARKS) {
         for (width, colour) in [(2.6, MARK_EDGE), (1.3, Color32::from_rgb(120, 255, 150))] {
-            cross(painter, frame.blob(r), 4.0, Stroke::new(width, colour.gamma_multiply(strength)));
+            cross(painter, frame.blob(r), Vec2::splat(4.0), Stroke::new(width, colour.gamma_multiply(strength)));
         }
     }
 }
@@ -54,9 +54,7 @@ pub fn beam(painter: &Painter, frame: Frame<'_>, columns: f64) {
     let from = frame.rect.left_top() + vec2(10.0, 14.0);
     let to = from + vec2(length, 0.0);
     let ticks = [[from, to], [from, from], [to, to]].map(|[a, b]| if a == b { [a - TICK, b + TICK] } else { [a, b] });
-    for (width, colour) in [(3.0, MARK_EDGE), (1.4, MARK)] {
-        ticks.iter().for_each(|ends| _ = painter.line_segment(*ends, Stroke::new(width, colour)));
-    }
+    edged([3.0, 1.4], MARK, |stroke| ticks.map(|ends| painter.line_segment(ends, stroke)));
     axes::text_on_patch(painter, to + vec2(8.0, 0.0), Align2::LEFT_CENTER, "beam");
 }
 
@@ -69,9 +67,7 @@ pub fn marks(painter: &Painter, frame: Frame<'_>, objects: &[Marked], pointer: O
         left -= reflectors.len();
         let blobs: Vec<Pos2> = reflectors.iter().map(|r| frame.blob(r)).collect();
         for ring in rings(object, &blobs, frame.rect.height(), 0.0) {
-            for (width, colour) in [(2.5, MARK_EDGE), (1.2, MARK)] {
-                painter.add(ring.shape(Stroke::new(width, colour)));
-            }
+            edged([2.5, 1.2], MARK, |stroke| painter.add(ring.shape(stroke)));
         }
         for (reflector, at) in reflectors.iter().zip(blobs) {
             let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));
@@ -85,7 +81,6 @@ pub fn marks(painter: &Painter, frame: Frame<'_>, objects: &[Marked], pointer: O
     }
 }
 
-/// A shape around reflectors.
 enum Ring {
     Circle(Pos2, f32),
     Outline(Vec<Pos2>),
@@ -129,9 +124,7 @@ pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &
             _ => around(blobs, frame.rect.height()),
         };
         for ring in outlines {
-            for (width, colour) in [(3.0, MARK_EDGE), (1.6, MARK_SELECTED)] {
-                painter.add(ring.shape(Stroke::new(width, colour)));
-            }
+            edged([3.0, 1.6], MARK_SELECTED, |stroke| painter.add(ring.shape(stroke)));
         }
     }
 }
@@ -148,14 +141,14 @@ fn curve(painter: &Painter, frame: Frame<'_>, first: &Reflector, last: &Reflecto
         frame.blob(&Reflector { x_metres, y_metres, ..*first })
     };
     let path: Vec<Pos2> = (0..=CURVE).map(along).collect();
-    for (width, colour) in [(4.0, MARK_EDGE), (1.8, MARK_SELECTED)] {
+    edged([4.0, 1.8], MARK_SELECTED, |stroke| {
         for piece in path.chunk_by(|a, b| a.distance(*b) <= frame.rect.height() / 2.0) {
-            painter.add(Shape::line(piece.to_vec(), Stroke::new(width, colour)));
+            painter.add(Shape::line(piece.to_vec(), stroke));
         }
         for end in [path[0], path[CURVE]] {
-            painter.circle_filled(end, 1.6 + width / 2.0, colour);
+            painter.circle_filled(end, 1.6 + stroke.width / 2.0, stroke.color);
         }
-    }
+    });
 }
 
 /// One outline around a cluster's blobs; two where it wraps around the end of the ranges.
@@ -168,23 +161,14 @@ fn around(mut blobs: Vec<Pos2>, height: f32) -> Vec<Ring> {
 /// Draws a line from a ring to its place without the beam's squint, with both directions.
 fn true_direction(painter: &Painter, frame: Frame<'_>, reflector: &Reflector) {
     let (from, to) = (frame.blob(reflector), frame.true_direction(reflector));
-    for (width, colour) in [(3.0, MARK_EDGE), (1.4, MARK)] {
-        painter.line_segment([from, to], Stroke::new(width, colour));
-        painter.circle_filled(to, 1.0 + width, colour);
-    }
-    let text = direction_text(frame, reflector);
-    axes::text_on_patch(painter, frame.rect.left_top() + vec2(10.0, 8.0), Align2::LEFT_TOP, &text);
-}
-
-fn direction_text(frame: Frame<'_>, reflector: &Reflector) -> String {
+    edged([3.0, 1.4], MARK, |stroke| {
+        painter.line_segment([from, to], stroke);
+        painter.circle_filled(to, 1.0 + stroke.width, stroke.color);
+    });
     let seen = frame.radar.polar_of(reflector.x_metres - frame.centre_x_metres, reflector.y_metres);
     let blob = frame.radar.blob_of(frame.centre_x_metres, reflector.x_metres, reflector.y_metres);
-    format!("stands at {}\nseen at {}", direction(seen.cos_theta, 1), direction(blob.cos_theta, 1))
-}
-
-fn cross(painter: &Painter, at: Pos2, r: f32, stroke: Stroke) {
-    painter.line_segment([at + vec2(-r, -r), at + vec2(r, r)], stroke);
-    painter.line_segment([at + vec2(-r, r), at + vec2(r, -r)], stroke);
+    let text = format!("stands at {}\nseen at {}", direction(seen.cos_theta, 1), direction(blob.cos_theta, 1));
+    axes::text_on_patch(painter, frame.rect.left_top() + vec2(10.0, 8.0), Align2::LEFT_TOP, &text);
 }
 
 /// Draws the cell under the pointer, in any panel, and its value in this map.
@@ -201,22 +185,18 @@ pub fn cursor(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Optio
         painter.circle_stroke(at, gap, stroke);
     }
     if let Some(text) = cells.and_then(|cells| value_text(cells, units, bin, column)) {
-        // In the corner away from the pointer.
-        let (corner, align) = if at.y < rect.top() + 40.0 && at.x > rect.center().x {
-            (rect.left_top() + vec2(10.0, 8.0), Align2::LEFT_TOP)
-        } else {
-            (rect.right_top() + vec2(-10.0, 8.0), Align2::RIGHT_TOP)
-        };
+        let (corner, align) = frame.far_corner(at, 8.0);
         axes::text_on_patch(painter, corner, align, &text);
     }
 }
 
 /// Text of a cell's value in Lambda and in decibels relative to the peak, in the chosen units first.
 fn value_text(cells: &Cells<'_>, units: Units, bin: usize, column: usize) -> Option<String> {
-    let (value, is_difference) = (cells.value(bin, column)?, cells.minus.is_some());
-    let lambda = format!("{} {}", if is_difference { "ΔΛ" } else { "Λ" }, value.lambda_text(is_difference));
-    let Some(decibels) = value.decibels_text(is_difference) else { return Some(lambda) };
-    let decibels = format!("{}{}", if is_difference { "Δ " } else { "" }, with_unit(&decibels));
+    let (lambda, decibels) = cells.texts(bin, column)?;
+    let [of_lambda, of_decibels] = if cells.minus.is_some() { ["ΔΛ", "Δ "] } else { ["Λ", ""] };
+    let lambda = format!("{of_lambda} {lambda}");
+    let Some(decibels) = decibels else { return Some(lambda) };
+    let decibels = format!("{of_decibels}{}", with_unit(&decibels));
     Some(match units {
         Units::Lambda => format!("{lambda}  ({decibels})"),
         Units::Decibels => format!("{decibels}  ({lambda})"),

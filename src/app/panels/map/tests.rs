@@ -13,20 +13,16 @@ impl<'a> Input<'a> {
             stale: false,
             old: EARLIER_SCENE.to_owned(),
             cells: None,
-            marks: Marks { objects: &[], found: &[] },
+            objects: &[],
+            found: &[],
             kinds: None,
             told_apart: None,
             theory: None,
-            note: None,
-            line: None,
             error: None,
-            veil: None,
-            places: None,
         }
     }
 }
 
-use super::frame::Marks;
 use super::*;
 use crate::app::jobs::Fates;
 use crate::app::state::{Cursor, Projection, State, Units};

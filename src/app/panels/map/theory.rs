@@ -2,24 +2,22 @@
 
 use super::clear::clear_patch;
 use super::frame::Frame;
-use crate::app::widgets::{MARK_EDGE, angle_degrees, signed};
+use crate::app::widgets::{angle_degrees, edged, signed};
 use crate::radar::Decibels;
 use crate::scene::Reflector;
 use crate::theory::overlay::STREAK;
 use crate::theory::{Ellipse, MapPlace, Overlay, blob_cell};
-use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, vec2};
+use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Vec2, vec2};
 
 /// The predictions to draw, and the position bound.
 #[derive(Clone, Copy)]
 pub struct Theory<'a> {
-    /// Name of the reflector.
     pub name: &'a str,
     /// Blob, lobes, streak and comb of the reflector that the formulas predict for this map.
     pub overlay: &'a Overlay,
     pub reflector: Reflector,
     /// Ellipse of the position bound, where it is drawn.
     pub ellipse: Option<Ellipse>,
-    /// Name of the elements that the bound is for.
     pub listening: &'static str,
     /// Signal-to-noise ratio of a sample that the bound is for.
     pub snr: Decibels,
@@ -93,9 +91,8 @@ impl Theory<'_> {
         let cell = |x: f64, y: f64| frame.cell(blob_cell(frame.radar, x, y, aperture));
         let outline = |times: f64| -> Vec<Pos2> {
             let points = ellipse.outline(48).into_iter().map(|[x, y]| cell(x_metres + times * x, y_metres + times * y));
-            let mut points: Vec<Pos2> = points.collect();
-            points.extend(points.first().copied());
-            points
+            let points: Vec<Pos2> = points.collect();
+            points.iter().chain(points.first()).copied().collect()
         };
         let middle = cell(x_metres, y_metres);
         let reach = |times: f64| outline(times).iter().map(|p| p.distance(middle)).fold(0.0f32, f32::max);
@@ -110,18 +107,12 @@ impl Theory<'_> {
         let Overlay { place, blob, streak, .. } = self.overlay;
         let bin_metres = radar.range_resolution_metres();
         let columns = blob.columns[0] + blob.columns[1];
+        let along = length((blob.bins[0] + blob.bins[1]) * bin_metres);
         let column_cos = radar.fold_period_cos() / radar.elements as f64;
         let mut lines = vec![
             (Color32::WHITE, format!("Theory of {}, as a point", self.name)),
             (BIN, format!("range bin c/2B {}", length(bin_metres))),
-            (
-                BEAM,
-                format!(
-                    "half power {} × {columns:.1} columns (cos θ {:.4})",
-                    length((blob.bins[0] + blob.bins[1]) * bin_metres),
-                    columns * column_cos
-                ),
-            ),
+            (BEAM, format!("half power {along} × {columns:.1} columns (cos θ {:.4})", columns * column_cos)),
         ];
         if let Some(lobe) = blob.side_lobes.iter().flatten().max_by(|a, b| a.level.0.total_cmp(&b.level.0)) {
             lines.push((LOBE, format!("first side lobe {:.1} dB, {:.1} columns off", lobe.level.0, lobe.columns)));
@@ -141,7 +132,6 @@ impl Theory<'_> {
         lines
     }
 
-    /// Text of the ranges and directions that share the reflector's cell.
     fn aliases(&self, frame: Frame<'_>) -> String {
         let Overlay { place, fold_partners, wrap_partners_metres, .. } = self.overlay;
         let max = frame.radar.max_range_metres();
@@ -166,11 +156,8 @@ impl Theory<'_> {
             return;
         }
         let font = FontId::proportional(10.5);
-        let lines = self.lines(frame);
-        let galleys: Vec<_> = lines
-            .into_iter()
-            .map(|(colour, text)| painter.layout(text, font.clone(), colour, rect.width() - 28.0))
-            .collect();
+        let layout = |(colour, text)| painter.layout(text, font.clone(), colour, rect.width() - 28.0);
+        let galleys: Vec<_> = self.lines(frame).into_iter().map(layout).collect();
         let sizes: Vec<Vec2> = galleys.iter().map(|g| g.size()).collect();
         let places = [self.places(frame).as_slice(), taken].concat();
         let (mut patch, mut count) = clear_patch(rect, &places, &sizes);
@@ -195,7 +182,6 @@ fn lobe_columns(overlay: &Overlay) -> impl Iterator<Item = f64> {
     signed.filter_map(|(sign, lobe)| Some(sign * lobe?.columns))
 }
 
-/// Text of a length, in the unit that suits it.
 fn length(metres: f64) -> String {
     match metres {
         m if m >= 1.0 => format!("{m:.2} m"),
@@ -211,15 +197,11 @@ fn line(painter: &Painter, points: &[Pos2], rect: Rect, colour: Color32) {
         .windows(2)
         .filter(|p| (p[0].x - p[1].x).abs() < rect.width() / 2.0 && (p[0].y - p[1].y).abs() < rect.height() / 2.0);
     let segments: Vec<[Pos2; 2]> = whole.map(|p| [p[0], p[1]]).collect();
-    for (width, ink) in [(2.6, MARK_EDGE), (1.2, colour)] {
-        segments.iter().for_each(|segment| _ = painter.line_segment(*segment, Stroke::new(width, ink)));
-    }
+    edged([2.6, 1.2], colour, |stroke| segments.iter().for_each(|ends| _ = painter.line_segment(*ends, stroke)));
 }
 
 fn tick(painter: &Painter, at: Pos2, colour: Color32) {
-    for (width, ink) in [(2.6, MARK_EDGE), (1.2, colour)] {
-        painter.vline(at.x, at.y - TICK..=at.y + TICK, Stroke::new(width, ink));
-    }
+    edged([2.6, 1.2], colour, |stroke| painter.vline(at.x, at.y - TICK..=at.y + TICK, stroke));
 }
 
 #[cfg(test)]

@@ -1,18 +1,14 @@
 //! Input of a map, taken from the state of the app.
 
-use super::frame::{Cells, Marked, Marks};
-use super::{
-    Caption, EARLIER_SCENE, HandMemory, Input, Kinds, Places, Problem, Theory, ToldApart, Veil, caption, show,
-};
+use super::caption::{Caption, caption};
+use super::frame::{Cells, Marked};
+use super::{EARLIER_SCENE, HandMemory, Input, Kinds, Problem, Theory, ToldApart, show};
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, Scores, TheoryResult, fates_of};
-use crate::app::panels::captions;
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
 use crate::app::widgets::Texture;
 use crate::engine::ReadyMap;
 use crate::evaluate::{TARGET_ETA, median_offset_metres};
-use crate::reconstruct::untrained_noise;
-use crate::scattering::Echoing;
 use crate::scene::{Object, Scene};
 use eframe::egui::{Id, TextureFilter, TextureId, TextureOptions, Ui};
 use std::collections::BTreeMap;
@@ -113,15 +109,12 @@ pub fn map_input<'a>(
         stale: pipeline.is_stale(kind),
         old: old(state, jobs, kind),
         cells: cells(jobs, kind),
-        marks: Marks { objects, found },
+        objects,
+        found,
         kinds: kinds(state, jobs, kind),
         told_apart: kind.slot().filter(|_| kind.is_above()).and_then(|slot| told_apart(state, jobs, slot)),
         theory: of_formulas.and_then(|r| theory(r, kind)),
-        note: note(state, kind),
-        line: captions::of_map(state, kind),
         error: error(state, jobs, kind),
-        veil: veil(state, kind),
-        places: places(state, kind),
     }
 }
 
@@ -140,14 +133,6 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<Tol
     Some(ToldApart { output, target: target?, etas: [eta, TARGET_ETA], ghosts })
 }
 
-/// Note on the noise that the map's method was trained on, where the scene has another noise. None for a recording, whose noise is unknown.
-fn note(state: &State, kind: MapKind) -> Option<String> {
-    let method = state.method_in(kind.slot()?).filter(|_| !state.is_recorded())?;
-    method.trained_noise()?;
-    let echoing = Echoing::of(state.radar(), state.scene());
-    untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor)
-}
-
 /// Verdicts on the objects, where they are marked: on the maps of the whole array.
 fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Kinds<'a>> {
     let slot = match kind {
@@ -162,7 +147,7 @@ fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Kinds<'a>> 
 pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     let pipeline = &jobs.pipeline;
     if let (MapKind::Input0, Some(layout)) = (kind, &state.settings.layout) {
-        return Some(format!("{layout} {}", if is_updating(jobs, kind) { "(updating) " } else { "" }));
+        return Some(format!("{layout} {}", updating(state, jobs, kind)));
     }
     if state.is_predicting() && kind.is_above() {
         // A lesson may ask for the threshold.
@@ -171,16 +156,13 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
     let slot = kind.slot().unwrap_or(MethodSlot::First);
     caption(Caption {
         kind,
+        view: &state.settings.view,
         method: pipeline.method(slot).output().map(|o| o.method()),
-        updating: is_updating(jobs, kind),
-        running: kind.slot().and_then(|slot| running(state, jobs, slot)),
+        updating: &updating(state, jobs, kind),
         verdict: verdict(state, jobs, slot, !kind.is_above()),
         metrics: scores(state, jobs, slot).map(|s| s.metrics),
-        target_eta: state.settings.target_eta,
         output_eta: pipeline.eta(state, slot),
-        cfar: state.settings.cfar,
         explained: pipeline.unexplained().map(|u| u.explained),
-        units: state.settings.units,
         range_db: pipeline.range_db(),
     })
 }
@@ -291,22 +273,18 @@ fn theory(result: &TheoryResult, kind: MapKind) -> Option<Theory<'_>> {
     })
 }
 
-/// The place that was guessed in a lesson's step, and the true one.
-fn places(state: &State, kind: MapKind) -> Option<Places> {
-    let (run, scene) = (state.lesson.as_ref()?, state.editor.scene());
-    let (guess, truth) = run.places(kind, state.radar(), scene)?;
-    let judged = run.judgement.as_ref()?.as_ref().ok()?;
-    Some(Places { guess, truth, distance: judged.distance.clone() })
-}
-
-/// The running method, while another method's output of the same scene is shown.
-fn running(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<&'static str> {
-    jobs.pipeline.method(slot).of_another_method()?;
-    state.method_in(slot).map(|method| method.name())
+/// The running method in brackets while another method's output of the same scene is shown, or that a map is of an earlier scene.
+fn updating(state: &State, jobs: &Jobs, kind: MapKind) -> String {
+    let is_of_another = |slot: &MethodSlot| jobs.pipeline.method(*slot).of_another_method().is_some();
+    match kind.slot().filter(is_of_another).and_then(|slot| state.method_in(slot)) {
+        Some(method) => format!("({} is running) ", method.name()),
+        None if is_updating(jobs, kind) => "(updating) ".to_owned(),
+        None => String::new(),
+    }
 }
 
 /// Text over an outdated map: the method that made it where only the method has changed, else that the scene is an earlier one.
-fn old(state: &State, jobs: &Jobs, kind: MapKind) -> String {
+pub fn old(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let of_another_method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
     match (of_another_method, kind.slot().and_then(|slot| state.method_in(slot))) {
         (Some(shown), Some(wanted)) => format!("{shown}'s result; {} is running", wanted.name()),
@@ -314,48 +292,38 @@ fn old(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     }
 }
 
-/// Cover of a map, while a lesson asks for a prediction.
-fn veil(state: &State, kind: MapKind) -> Option<Veil> {
-    let run = state.lesson.as_ref().filter(|run| run.is_predicting())?;
-    Some(Veil { is_clicked: run.clicked_map() == Some(kind) })
-}
-
 /// Reason why a map has no picture, and a method that would have one.
 fn error<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>> {
-    if let Some(reason) = jobs.pipeline.maps.scene_error() {
-        return Some(Problem { reason, instead: None });
-    }
-    if kind == MapKind::Input1 && state.settings.layout.is_some() {
-        return Some(Problem { reason: "Input 0 shows what the elements of the layout hear.", instead: None });
-    }
-    let is_recorded = state.is_recorded();
-    if kind == MapKind::Unexplained {
-        let reason = match jobs.pipeline.maps.result().and_then(|maps| maps.unexplained.as_ref()) {
-            Some(Err(reason)) => reason,
-            _ if is_recorded => return None,
-            _ => "Open a recording: this map shows what reflectors laid over it leave unexplained.",
-        };
-        return Some(Problem { reason, instead: None });
-    }
-    if is_recorded && (matches!(kind, MapKind::Target | MapKind::TargetAbove) || kind.is_difference()) {
+    let (pipeline, is_recorded) = (&jobs.pipeline, state.is_recorded());
+    let reason = match kind {
+        _ if let Some(reason) = pipeline.maps.scene_error() => reason,
+        MapKind::Input1 if state.settings.layout.is_some() => "Input 0 shows what the elements of the layout hear.",
+        MapKind::Unexplained if let Some(Some(Err(reason))) = pipeline.maps.result().map(|m| &m.unexplained) => reason,
+        MapKind::Unexplained if is_recorded => return None,
+        MapKind::Unexplained => "Open a recording: this map shows what reflectors laid over it leave unexplained.",
         // Not read where there is a target, since the map then has a picture.
-        let reason = "The recording has the samples of the two ends alone: what all elements would hear is unknown.";
-        return Some(Problem { reason, instead: None });
-    }
-    if kind.is_above()
-        && let Some(reason) = jobs.pipeline.detector_error()
-    {
-        return Some(Problem { reason, instead: None });
-    }
+        _ if is_recorded && (matches!(kind, MapKind::Target | MapKind::TargetAbove) || kind.is_difference()) => {
+            "The recording has the samples of the two ends alone: what all elements would hear is unknown."
+        }
+        _ if let Some(reason) = pipeline.detector_error().filter(|_| kind.is_above()) => reason,
+        _ => return refusal(state, jobs, kind),
+    };
+    Some(Problem { reason, instead: None })
+}
+
+/// Reason why a method's map has no picture, and a method that would have one.
+fn refusal<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Problem<'a>> {
     let slot = kind.slot()?;
-    if kind == MapKind::Doubt && jobs.pipeline.method(slot).output().is_some_and(|output| output.pair.doubt.is_none()) {
+    let job = jobs.pipeline.method(slot);
+    if kind == MapKind::Doubt && job.output().is_some_and(|output| output.pair.doubt.is_none()) {
         let reason = "This method does not say how far off it expects its output to be.";
         return Some(Problem { reason, instead: None });
     }
-    let refusal = jobs.pipeline.method(slot).refusal()?;
-    let instead = || state.methods.instead_of(refusal.method, state.radar());
+    let refusal = job.refusal()?;
     // The second method is chosen beside the maps.
-    Some(Problem { reason: &refusal.reason, instead: if slot == MethodSlot::First { instead() } else { None } })
+    let instead =
+        (slot == MethodSlot::First).then(|| state.methods.instead_of(refusal.method, state.radar())).flatten();
+    Some(Problem { reason: &refusal.reason, instead })
 }
 
 #[cfg(test)]

@@ -2,18 +2,15 @@
 
 use super::frame::{Cells, Frame};
 use crate::app::state::Cursor;
-use crate::app::widgets::{MARK, MARK_EDGE, MARK_SELECTED, axes, difference, with_unit};
+use crate::app::widgets::{MARK, MARK_SELECTED, axes, difference, edged, with_unit};
 use crate::maps::cfar::{Cfar, Level};
-use eframe::egui::{Align2, Painter, Pos2, Shape, Stroke, pos2, vec2};
+use eframe::egui::{Painter, Pos2, Shape, pos2};
 
 /// Points along each side of the window: in Cartesian maps sides are curved.
 const ALONG: usize = 12;
 
 /// Distance of the text below the top of the map, points: below the value of the cell.
 const BELOW: f32 = 28.0;
-
-/// Distance from the top within which the pointer would be under a text in the right corner, points.
-const NEAR_TOP: f32 = 40.0;
 
 /// Least width of a piece beyond an edge, as a part of the map's width; less is a rounding error.
 const MIN_PIECE_RATIO: f32 = 1e-4;
@@ -29,17 +26,11 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<
     let all = [guarded[0] + cfar.training[0], guarded[1] + cfar.training[1]];
     for (sides, colour) in [(all, MARK_SELECTED), (guarded, MARK)] {
         for outline in outlines(frame, [bin, column], sides) {
-            painter.add(Shape::closed_line(outline.clone(), Stroke::new(3.0, MARK_EDGE)));
-            painter.add(Shape::closed_line(outline, Stroke::new(1.4, colour)));
+            edged([3.0, 1.4], colour, |stroke| painter.add(Shape::closed_line(outline.clone(), stroke)));
         }
     }
     if let Some(found) = cells.and_then(|cells| level_of(cells, cfar, map, [bin, column])) {
-        // Below the value of the cell, in the corner away from the pointer.
-        let (rect, at) = (frame.rect, frame.cursor(cursor));
-        let (corner, align) = match at.y < rect.top() + NEAR_TOP && at.x > rect.center().x {
-            true => (rect.left_top() + vec2(10.0, BELOW), Align2::LEFT_TOP),
-            false => (rect.right_top() + vec2(-10.0, BELOW), Align2::RIGHT_TOP),
-        };
+        let (corner, align) = frame.far_corner(frame.cursor(cursor), BELOW);
         axes::text_on_patch(painter, corner, align, &told(&found));
     }
 }
@@ -93,7 +84,7 @@ mod tests {
     use crate::maps::{LambdaScale, RangeAngleMap};
     use crate::radar::{Convention, Radar};
     use crate::theory::MapPlace;
-    use eframe::egui::Rect;
+    use eframe::egui::{Rect, vec2};
     use egui_kittest::Harness;
 
     #[test]

@@ -40,7 +40,6 @@ pub(super) fn choices(ui: &mut Ui, radar: &mut Radar, label: Id) {
     counts(ui, radar);
 }
 
-/// Consequence of antennas that stand apart.
 fn consequence(radar: &Radar, antennas: &Antennas) -> String {
     let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
     let pairs = (0..radar.elements).filter(|n| !radar.is_gap(*n)).map(|n| radar.pair(n));

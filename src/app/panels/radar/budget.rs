@@ -1,16 +1,15 @@
 //! The link budget in the radar panel: its numbers, SNR against range, and the SNR of the selected object.
 
-use super::table::{GAP, Table, number};
+use super::table::{Table, number};
 use crate::app::widgets::{Axis, Chart, Inks, NumberField, Quantity, labelled};
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{LinkBudget, Radar};
-use eframe::egui::{Align, CollapsingHeader, Grid, Label, Sense, Stroke, Ui, vec2};
+use eframe::egui::{Align, CollapsingHeader, Label, Sense, Stroke, Ui, vec2};
 use egui_plot::{HLine, LineStyle};
 
 /// An object whose SNR is computed by the link budget.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selected {
-    /// Name of the object.
     pub name: String,
     /// Place of the object, (x, y).
     pub place_metres: [f64; 2],
@@ -66,7 +65,7 @@ const CHIRP: Quantity = Quantity::metres(
 
 /// Draws the group of the link budget.
 pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Option<&Selected>) {
-    let is_sought = table.seeks(HEADING);
+    let is_sought = table.sought == Some(HEADING);
     let group = CollapsingHeader::new(HEADING).id_salt(HEADING).open(is_sought.then_some(true));
     let shown = group.show_unindented(ui, |ui| {
         let mut has = radar.budget.is_some();
@@ -78,14 +77,7 @@ pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Optio
             ui.add(Label::new(WITHOUT).wrap());
             return;
         };
-        match table.consequence_width {
-            Some(_) => {
-                _ = Grid::new(HEADING).num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, |ui| {
-                    numbers(ui, table, radar, budget);
-                });
-            }
-            None => numbers(ui, table, radar, budget),
-        }
+        table.show(ui, HEADING, |ui| numbers(ui, table, radar, budget));
         curve(ui, radar);
         if let Some(selected) = selected {
             ui.add(Label::new(told(radar, selected)).wrap());
@@ -99,26 +91,17 @@ pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Optio
 
 fn numbers(ui: &mut Ui, table: Table, radar: &mut Radar, mut budget: LinkBudget) {
     let text = format!("1 m² at 10 m is received with {:.1} dBm", radar.received(0.0, 10.0).0);
-    if let Some(dbm) = number(ui, table, &TRANSMIT_POWER, budget.transmit_power_dbm, &text, true) {
-        budget.transmit_power_dbm = dbm;
-    }
+    number(ui, table, &TRANSMIT_POWER, (&mut budget.transmit_power_dbm, 1.0), &text, true);
     let text = format!("{:.1} dB on the way there and back", 2.0 * budget.antenna_gain_dbi);
-    if let Some(dbi) = number(ui, table, &ANTENNA_GAIN, budget.antenna_gain_dbi, &text, true) {
-        budget.antenna_gain_dbi = dbi;
-    }
+    number(ui, table, &ANTENNA_GAIN, (&mut budget.antenna_gain_dbi, 1.0), &text, true);
     pattern(ui, table, &mut budget);
     let text = format!("noise of {:.1} dBm in a sample", radar.receiver_noise().0);
-    if let Some(db) = number(ui, table, &NOISE_FIGURE, budget.noise_figure_db, &text, true) {
-        budget.noise_figure_db = db;
-    }
+    number(ui, table, &NOISE_FIGURE, (&mut budget.noise_figure_db, 1.0), &text, true);
     let text = format!("{:.2} MHz of noise: samples a second", radar.sample_rate_hz() * 1e-6);
-    if let Some(microseconds) = number(ui, table, &CHIRP, radar.chirp_seconds * 1e6, &text, true) {
-        radar.chirp_seconds = microseconds * 1e-6;
-    }
+    number(ui, table, &CHIRP, (&mut radar.chirp_seconds, 1e-6), &text, true);
     radar.budget = Some(budget);
 }
 
-/// Draws the choice between isotropic elements and a pattern of a width.
 fn pattern(ui: &mut Ui, table: Table, budget: &mut LinkBudget) {
     let tooltip = "Half-power width of an element: what it sends and hears falls as a power of the cosine of the angle off broadside. It changes \
                    the samples";

@@ -1,7 +1,8 @@
 //! Places of transmitters and receivers as lists of numbers, to be typed or pasted from a spreadsheet.
 
+use crate::app::widgets::{entry_problem, text_entry};
 use crate::radar::{Antennas, AntennasError, Radar};
-use eframe::egui::{Id, TextEdit, Ui};
+use eframe::egui::Ui;
 
 /// Names of the lists, places along the line and off it.
 const NAMES: [&str; 4] =
@@ -16,19 +17,6 @@ const TOOLTIPS: [&str; 2] = [
 /// Digits of a place after the point, millimetres.
 const DECIMALS: usize = 4;
 
-/// Maximum length of a list, characters.
-const MOST_LETTERS: usize = 100_000;
-
-/// A text typed into one of the lists.
-#[derive(Clone, Default)]
-struct Typed {
-    /// Places of the list when the text was typed, metres; the text is dropped once they change.
-    over: Vec<f64>,
-    text: String,
-    /// Reason why the text is refused.
-    problem: Option<String>,
-}
-
 /// Draws all lists, if `radar` has antennas, and applies the typed places.
 pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
     let Some(antennas) = radar.antennas.clone() else {
@@ -41,16 +29,13 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
         antennas.receiver_y_metres(),
     ];
     for (list, name) in NAMES.into_iter().enumerate() {
-        let id = ui.scope_id().with(name);
-        if let Some(places) = field(ui, id, (name, TOOLTIPS[list / 2]), own[list], is_free) {
-            match taken(own, list, places) {
-                Ok(antennas) => {
-                    *radar = radar.clone().with_antennas(antennas);
-                    ui.data_mut(|d| d.remove::<Typed>(id));
-                }
-                Err(error) => ui.data_mut(|d| d.get_temp_mut_or_default::<Typed>(id).problem = Some(error.to_string())),
-            }
+        let (id, width) = (ui.scope_id().with(name), ui.available_width().min(560.0));
+        let read = |text: &str| taken(own, list, places(text)?).map_err(|error| error.to_string());
+        let shown = (listed(own[list]), width);
+        if let Some(antennas) = text_entry(ui, id, (name, TOOLTIPS[list / 2]), shown, is_free, read) {
+            *radar = radar.clone().with_antennas(antennas);
         }
+        entry_problem(ui, id);
     }
 }
 
@@ -66,31 +51,6 @@ fn taken(own: [&[f64]; 4], list: usize, mut places: Vec<f64>) -> Result<Antennas
     }
     lists[list] = places;
     Antennas::new(&lists[0], &lists[1])?.off_line(&lists[2], &lists[3])
-}
-
-/// Draws one list. Returns its places in metres once a whole list was typed.
-fn field(ui: &mut Ui, id: Id, (name, tooltip): (&str, &str), own: &[f64], is_free: bool) -> Option<Vec<f64>> {
-    let typed = ui.data(|d| d.get_temp::<Typed>(id)).filter(|typed| typed.over == own);
-    let mut text = typed.as_ref().map_or_else(|| listed(own), |typed| typed.text.clone());
-    let label = ui.label(name).on_hover_text(tooltip);
-    let edit = TextEdit::singleline(&mut text).char_limit(MOST_LETTERS).desired_width(ui.available_width().min(560.0));
-    let response = ui.add_enabled(is_free, edit).labelled_by(label.id);
-    if let Some(problem) = typed.as_ref().and_then(|typed| typed.problem.as_ref()) {
-        ui.colored_label(ui.visuals().error_fg_color, problem);
-    }
-    if response.changed() {
-        ui.data_mut(|d| d.insert_temp(id, Typed { over: own.to_vec(), text: text.clone(), problem: None }));
-    }
-    if !(response.lost_focus() && (typed.is_some() || response.changed())) {
-        return None;
-    }
-    match places(&text) {
-        Ok(places) => Some(places),
-        Err(problem) => {
-            ui.data_mut(|d| d.insert_temp(id, Typed { over: own.to_vec(), text, problem: Some(problem) }));
-            None
-        }
-    }
 }
 
 /// Text of places in metres, as a list in millimetres.

@@ -2,11 +2,11 @@
 //!
 //! The mouse drags an antenna along the line and off it. The arrow keys choose one, and Shift with an arrow moves it.
 
-use crate::app::widgets::Inks;
+use crate::app::widgets::{Inks, keep_arrows};
 use crate::radar::{Antennas, Radar};
 use eframe::egui::{
-    self, Align2, Color32, CursorIcon, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Sense,
-    Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
+    self, Align2, CursorIcon, Id, Key, Modifiers, Pos2, Rect, Response, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2,
+    vec2,
 };
 
 /// Height of the drawing, points.
@@ -30,7 +30,6 @@ const FORWARD_STEP_POINTS: f32 = 4.0;
 /// Largest drawn distance of an antenna from its row's middle, points.
 const FORWARD_POINTS: f64 = 5.0;
 
-/// Names of the rows.
 const ROWS: [&str; 3] = ["transmitters", "receivers", "elements"];
 
 /// One antenna: a row, 0 the transmitters and 1 the receivers, and its number there.
@@ -39,6 +38,7 @@ type One = (usize, usize);
 /// Places of the antennas, and the part of the line that is drawn.
 #[derive(Clone)]
 struct Drawn {
+    rect: Rect,
     /// Places of transmitters and receivers along the line.
     x_metres: [Vec<f64>; 2],
     /// Distances of transmitters and receivers off the line.
@@ -47,26 +47,22 @@ struct Drawn {
     span_metres: [f64; 2],
 }
 
-/// A drag in progress.
 #[derive(Clone)]
 struct Drag {
-    /// The radar at the beginning of the drag.
     radar: Radar,
-    /// The antennas at the beginning of the drag.
     drawn: Drawn,
-    /// The antenna that is dragged.
     one: One,
-    /// Place of the pointer at the beginning of the drag.
     from: Pos2,
 }
 
 impl Drawn {
-    fn of(antennas: &Antennas) -> Self {
+    fn of(antennas: &Antennas, rect: Rect) -> Self {
         let [low, high] = antennas.span_metres();
         let beside = BESIDE * (high - low);
         let x_metres = [antennas.transmitter_x_metres().to_vec(), antennas.receiver_x_metres().to_vec()];
         let y_metres = [antennas.transmitter_y_metres().to_vec(), antennas.receiver_y_metres().to_vec()];
-        Drawn { x_metres, y_metres, span_metres: [low - beside, high + beside] }
+        let rect = Rect::from_min_max(rect.min + vec2(NAMES, 0.0), rect.max - vec2(6.0, 0.0));
+        Drawn { rect, x_metres, y_metres, span_metres: [low - beside, high + beside] }
     }
 
     /// The antennas with one of them `along` metres farther to the right and `forward` metres nearer to the scene.
@@ -87,11 +83,57 @@ impl Drawn {
         antennas.off_line(&self.y_metres[0], &self.y_metres[1]).ok()
     }
 
-    /// Drawn height of an antenna above its row's middle, points.
-    fn above(&self, (row, number): One) -> f32 {
-        let most = self.y_metres.iter().flatten().fold(0.0, |most: f64, y| most.max(y.abs()));
-        let y = self.y_metres[row].get(number).copied().unwrap_or_default();
-        if most > 0.0 { (FORWARD_POINTS * y / most) as f32 } else { 0.0 }
+    fn metres_per_point(&self) -> f64 {
+        (self.span_metres[1] - self.span_metres[0]) / f64::from(self.rect.width().max(1.0))
+    }
+
+    /// Place on screen in a row; `forward` is the distance off the line, as a part of the largest.
+    fn at(&self, row: usize, x_metres: f64, forward: f64) -> Pos2 {
+        let along = ((x_metres - self.span_metres[0]) / self.metres_per_point()) as f32;
+        let middle = HEIGHT * (row as f32 + 0.5) / ROWS.len() as f32;
+        self.rect.min + vec2(along, middle - (FORWARD_POINTS * forward) as f32)
+    }
+
+    /// The antenna under the pointer.
+    fn nearest(&self, pos: Pos2) -> Option<One> {
+        let row = ((pos.y - self.rect.top()) / HEIGHT * ROWS.len() as f32).floor().max(0.0) as usize;
+        let distances = self.x_metres.get(row)?.iter().map(|x| (self.at(row, *x, 0.0).x - pos.x).abs());
+        let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.filter(|(_, distance)| *distance <= REACH).map(|(number, _)| (row, number))
+    }
+
+    fn draw(&self, ui: &Ui, made: &Antennas, chosen: Option<One>) {
+        let painter = ui.painter();
+        let (ink, font) = (ui.visuals().text_color(), TextStyle::Small.resolve(ui.style()));
+        let upright = |at: Pos2, half: f32, stroke: Stroke| painter.vline(at.x, at.y - half..=at.y + half, stroke);
+        for (row, name) in ROWS.iter().enumerate() {
+            let at = pos2(self.rect.left() - NAMES, self.at(row, 0.0, 0.0).y);
+            painter.text(at, Align2::LEFT_CENTER, name, font.clone(), ink);
+        }
+        // A straight line has nothing to divide by.
+        let deepest = |y: f64| if y > 0.0 { y } else { 1.0 };
+        let most = deepest(self.y_metres.iter().flatten().fold(0.0, |most: f64, y| most.max(y.abs())));
+        for (row, places) in self.x_metres.iter().enumerate() {
+            for (number, x) in places.iter().enumerate() {
+                let at = self.at(row, *x, self.y_metres[row].get(number).map_or(0.0, |y| y / most));
+                match chosen == Some((row, number)) {
+                    true => upright(at, 8.0, Stroke::new(3.0, Inks::of(ui.visuals()).selected)),
+                    false => upright(at, 6.0, Stroke::new(1.4, ink)),
+                };
+            }
+        }
+        let most = deepest(made.depth_metres().into_iter().fold(0.0, |most: f64, y| most.max(y.abs())));
+        // The array's middle is at x = 0; the drawing stays where it was when a drag began.
+        let shift = self.x_metres[0].first().zip(made.transmitter_x_metres().first()).map_or(0.0, |(a, b)| a - b);
+        let middle = (made.pairs().len() as f64 - 1.0) / 2.0;
+        for (n, pair) in made.pairs().iter().enumerate() {
+            let forward = made.pair(n).map_or(0.0, |pair| pair.forward_metres());
+            let at = self.at(2, (n as f64 - middle) * made.spacing_metres() + shift, forward / most);
+            match pair {
+                Some(_) => _ = upright(at, 5.0, Stroke::new(1.2, ink)),
+                None => _ = painter.circle_filled(at, 1.0, ui.visuals().weak_text_color()),
+            }
+        }
     }
 }
 
@@ -111,12 +153,11 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
     let sense = if is_free { Sense::click_and_drag() } else { Sense::hover() };
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width().min(560.0), HEIGHT), sense);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, is_free, "Antennas"));
-    let strip = Strip { rect: Rect::from_min_max(rect.min + vec2(NAMES, 0.0), rect.max - vec2(6.0, 0.0)) };
     let chosen = ui.data(|d| d.get_temp::<One>(response.id.with("chosen")));
-    let at_rest = Drawn::of(&antennas);
-    let in_progress = if is_free { drag(ui, &strip, &response, radar, &at_rest) } else { None };
+    let at_rest = Drawn::of(&antennas, rect);
+    let in_progress = if is_free { drag(ui, &response, radar, &at_rest) } else { None };
     let (drawn, asked) = match in_progress {
-        Some(drag) => dragged_to(&strip, &response, drag),
+        Some(drag) => dragged_to(&response, drag),
         None => {
             let moved = if is_free { by_keys(ui, &response, &at_rest, step_metres(radar)) } else { None };
             tell(response, &antennas, is_free);
@@ -125,7 +166,7 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
         }
     };
     let made = asked.as_ref().and_then(|radar| radar.antennas.as_ref()).unwrap_or(&antennas);
-    strip.draw(ui, &drawn, made, chosen.filter(|_| is_free));
+    drawn.draw(ui, made, chosen.filter(|_| is_free));
     if let Some(asked) = asked {
         *radar = asked;
     }
@@ -134,12 +175,9 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
 /// Sets the tooltip of the drawing: the places of the antennas, and how they are dragged.
 fn tell(response: Response, antennas: &Antennas, is_free: bool) {
     let [low, high] = antennas.span_metres();
-    let how = match is_free {
-        true => {
-            " Drag a transmitter or a receiver along the line, or up towards the scene and down; undo brings it back."
-        }
-        false => "",
-    };
+    let how =
+        " Drag a transmitter or a receiver along the line, or up towards the scene and down; undo brings it back.";
+    let how = if is_free { how } else { "" };
     let [hind, fore] = antennas.depth_metres();
     let depth = match antennas.is_on_line() {
         true => String::new(),
@@ -149,9 +187,9 @@ fn tell(response: Response, antennas: &Antennas, is_free: bool) {
 }
 
 /// The drag in progress. A press on an antenna begins one; a click chooses the antenna.
-fn drag(ui: &Ui, strip: &Strip, response: &Response, radar: &Radar, drawn: &Drawn) -> Option<Drag> {
+fn drag(ui: &Ui, response: &Response, radar: &Radar, drawn: &Drawn) -> Option<Drag> {
     let (id, chosen) = (response.id.with("drag"), response.id.with("chosen"));
-    let under = |pos: Pos2| strip.nearest(drawn, pos);
+    let under = |pos: Pos2| drawn.nearest(pos);
     if response.hover_pos().and_then(under).is_some() {
         ui.set_cursor_icon(CursorIcon::Move);
     }
@@ -176,9 +214,9 @@ fn drag(ui: &Ui, strip: &Strip, response: &Response, radar: &Radar, drawn: &Draw
 }
 
 /// The antennas where a drag has moved them, and the radar that they make. Antennas that make no array stay where they were.
-fn dragged_to(strip: &Strip, response: &Response, drag: Drag) -> (Drawn, Option<Radar>) {
+fn dragged_to(response: &Response, drag: Drag) -> (Drawn, Option<Radar>) {
     let moved = response.interact_pointer_pos().map_or(vec2(0.0, 0.0), |at| at - drag.from);
-    let metres = f64::from(moved.x) * strip.metres_per_point(&drag.drawn);
+    let metres = f64::from(moved.x) * drag.drawn.metres_per_point();
     let step_metres = step_metres(&drag.radar);
     let steps = -moved.y / FORWARD_STEP_POINTS;
     let forward = f64::from((steps - steps.clamp(-1.0, 1.0)).round()) * FORWARD_STEP_METRES;
@@ -194,8 +232,7 @@ fn by_keys(ui: &Ui, response: &Response, drawn: &Drawn, step_metres: f64) -> Opt
     if !response.has_focus() {
         return None;
     }
-    let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
-    ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+    keep_arrows(response, [true; 2]);
     let id: Id = response.id.with("chosen");
     let (row, number) = ui.data(|d| d.get_temp::<One>(id)).unwrap_or_default();
     let pressed = |with, key| ui.input_mut(|i| i.count_and_consume_key(with, key)) as f64;
@@ -210,66 +247,6 @@ fn by_keys(ui: &Ui, response: &Response, drawn: &Drawn, step_metres: f64) -> Opt
     let one = (row, (number as f64 + along).clamp(0.0, last) as usize);
     ui.data_mut(|d| d.insert_temp(id, one));
     (steps != 0.0 || forward != 0.0).then(|| drawn.moved(one, [steps * step_metres, forward * FORWARD_STEP_METRES]))
-}
-
-/// Rectangle of the drawing.
-struct Strip {
-    rect: Rect,
-}
-
-impl Strip {
-    fn metres_per_point(&self, drawn: &Drawn) -> f64 {
-        (drawn.span_metres[1] - drawn.span_metres[0]) / f64::from(self.rect.width().max(1.0))
-    }
-
-    fn at(&self, drawn: &Drawn, row: usize, x_metres: f64) -> Pos2 {
-        let along = (x_metres - drawn.span_metres[0]) / self.metres_per_point(drawn);
-        pos2(self.rect.left() + along as f32, self.rect.top() + HEIGHT * (row as f32 + 0.5) / ROWS.len() as f32)
-    }
-
-    /// The antenna under the pointer.
-    fn nearest(&self, drawn: &Drawn, pos: Pos2) -> Option<One> {
-        let row = ((pos.y - self.rect.top()) / HEIGHT * ROWS.len() as f32).floor().max(0.0) as usize;
-        let distances = drawn.x_metres.get(row)?.iter().map(|x| (self.at(drawn, row, *x).x - pos.x).abs());
-        let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-        nearest.filter(|(_, distance)| *distance <= REACH).map(|(number, _)| (row, number))
-    }
-
-    fn draw(&self, ui: &Ui, drawn: &Drawn, made: &Antennas, chosen: Option<One>) {
-        let painter = ui.painter();
-        let font = TextStyle::Small.resolve(ui.style());
-        let (ink, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
-        for (row, name) in ROWS.iter().enumerate() {
-            self.name(painter, row, name, &font, ink);
-        }
-        for (row, places) in drawn.x_metres.iter().enumerate() {
-            for (number, x) in places.iter().enumerate() {
-                let is_chosen = chosen == Some((row, number));
-                let colour = if is_chosen { Inks::of(ui.visuals()).selected } else { ink };
-                let at = self.at(drawn, row, *x) - vec2(0.0, drawn.above((row, number)));
-                let half = vec2(0.0, if is_chosen { 8.0 } else { 6.0 });
-                painter.line_segment([at - half, at + half], Stroke::new(if is_chosen { 3.0 } else { 1.4 }, colour));
-            }
-        }
-        let deepest = made.depth_metres().into_iter().fold(0.0, |most: f64, y| most.max(y.abs()));
-        // The array's middle is at x = 0; the drawing stays where it was when a drag began.
-        let shift = drawn.x_metres[0].first().zip(made.transmitter_x_metres().first()).map_or(0.0, |(a, b)| a - b);
-        let middle = (made.pairs().len() as f64 - 1.0) / 2.0;
-        for (n, pair) in made.pairs().iter().enumerate() {
-            let forward = made.pair(n).map_or(0.0, |pair| pair.forward_metres());
-            let above = if deepest > 0.0 { (FORWARD_POINTS * forward / deepest) as f32 } else { 0.0 };
-            let at = self.at(drawn, 2, (n as f64 - middle) * made.spacing_metres() + shift) - vec2(0.0, above);
-            match pair {
-                Some(_) => _ = painter.line_segment([at - vec2(0.0, 5.0), at + vec2(0.0, 5.0)], Stroke::new(1.2, ink)),
-                None => _ = painter.circle_filled(at, 1.0, weak),
-            }
-        }
-    }
-
-    fn name(&self, painter: &Painter, row: usize, name: &str, font: &FontId, ink: Color32) {
-        let at = pos2(self.rect.left() - NAMES, self.rect.top() + HEIGHT * (row as f32 + 0.5) / ROWS.len() as f32);
-        painter.text(at, Align2::LEFT_CENTER, name, font.clone(), ink);
-    }
 }
 
 #[cfg(test)]
@@ -287,9 +264,8 @@ mod tests {
 
     fn at(panel: &Harness<'_, Radar>, (row, number): One) -> Pos2 {
         let rect = panel.get_by_label("Antennas").rect();
-        let strip = Strip { rect: Rect::from_min_max(rect.min + vec2(NAMES, 0.0), rect.max - vec2(6.0, 0.0)) };
-        let drawn = Drawn::of(panel.state().antennas.as_ref().unwrap());
-        strip.at(&drawn, row, drawn.x_metres[row][number])
+        let drawn = Drawn::of(panel.state().antennas.as_ref().unwrap(), rect);
+        drawn.at(row, drawn.x_metres[row][number], 0.0)
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! Rows of the radar panel: name, value and consequence of a constant.
 
 use crate::app::widgets::Quantity;
-use eframe::egui::{Align, Color32, Id, Label, Response, TextStyle, Ui};
+use eframe::egui::{Align, Color32, Grid, Id, Label, Response, TextStyle, Ui};
 
 /// Gap between two columns, points.
-pub(super) const GAP: f32 = 12.0;
+const GAP: f32 = 12.0;
 
 /// Width of the widest value, two names of windows beside each other, points.
 const VALUE_WIDTH: f32 = 170.0;
@@ -16,11 +16,11 @@ const LEAST_CONSEQUENCE_WIDTH: f32 = 150.0;
 #[derive(Clone, Copy)]
 pub(super) struct Table {
     /// Width of the longest name of a constant, points.
-    pub name_width: f32,
+    name_width: f32,
     /// Width of the column of consequences; `None` where it has no room, and each consequence stands below its constant.
     pub consequence_width: Option<f32>,
     /// Name of the row or the group that is to be brought into sight.
-    sought: Option<&'static str>,
+    pub sought: Option<&'static str>,
 }
 
 impl Table {
@@ -35,18 +35,20 @@ impl Table {
         Table { name_width, consequence_width, sought }
     }
 
-    /// Whether a row or a group is to be brought into sight.
-    pub fn seeks(self, name: &str) -> bool {
-        self.sought == Some(name)
-    }
-
-    /// The name of a row.
     fn name(self, ui: &mut Ui, (name, tooltip): (&str, &str)) -> Response {
         let label = ui.label(name);
-        if self.seeks(name) {
+        if self.sought == Some(name) {
             label.scroll_to_me(Some(Align::Center));
         }
         label.on_hover_text(tooltip)
+    }
+
+    /// Draws rows: in a grid of three columns, or below each other where consequences have no column.
+    pub fn show(self, ui: &mut Ui, name: &str, rows: impl FnOnce(&mut Ui)) {
+        match self.consequence_width {
+            Some(_) => _ = Grid::new(name).num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, rows),
+            None => rows(ui),
+        }
     }
 
     /// A row: the name, what `value` draws, what follows.
@@ -72,20 +74,22 @@ impl Table {
     }
 }
 
-/// Draws a row: name, number with its unit, and consequence. Returns the number after an edit.
+/// Draws a row: name, number in the unit of `field` and consequence. `size` is that unit in the unit of `value`. Returns whether the number was edited.
 pub(super) fn number(
     ui: &mut Ui,
     table: Table,
     field: &Quantity,
-    value: f64,
+    (value, size): (&mut f64, f64),
     consequence: &str,
     is_free: bool,
-) -> Option<f64> {
-    let mut edited = value;
-    let changed = table.row(ui, (field.name, field.tooltip), consequence, |ui, label| {
-        let number = field.field(&mut edited);
+) -> bool {
+    let mut shown = *value / size;
+    let is_edited = table.row(ui, (field.name, field.tooltip), consequence, |ui, label| {
+        let number = field.field(&mut shown);
         ui.add_enabled(is_free, number).labelled_by(label).on_hover_text(field.tooltip).changed()
     });
-    let step = 10f64.powi(-(field.decimals as i32));
-    (changed && (edited - value).abs() >= 0.5 * step).then_some(edited)
+    if is_edited {
+        *value = shown * size;
+    }
+    is_edited
 }

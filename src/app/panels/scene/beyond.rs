@@ -1,4 +1,4 @@
-//! A warning for objects beyond the maximum range, which the maps show elsewhere.
+//! Objects that the maps show elsewhere: a warning for those beyond the maximum range, and mirror images of those behind the array.
 
 use super::canvas::Canvas;
 use crate::interact::Place;
@@ -21,7 +21,6 @@ const NARROWEST: f32 = 110.0;
 /// Distance from the point of the arc at -60 degrees to the sentence, points: half a label and the margin.
 const BESIDE_ARC: f32 = 44.0;
 
-/// An object that reaches beyond the maximum range.
 struct Beyond<'a> {
     index: usize,
     object: &'a Object,
@@ -104,11 +103,8 @@ fn sign(painter: &Painter, canvas: Canvas<'_>, one: &Beyond<'_>, ink: Color32) -
     if !in_sight {
         let out = (target - at).normalized();
         let (tip, side) = (at + out * 12.5, vec2(-out.y, out.x) * 3.5);
-        painter.add(Shape::convex_polygon(
-            vec![tip, tip - out * 4.0 + side, tip - out * 4.0 - side],
-            ink,
-            Stroke::NONE,
-        ));
+        let head = vec![tip, tip - out * 4.0 + side, tip - out * 4.0 - side];
+        painter.add(Shape::convex_polygon(head, ink, Stroke::NONE));
     }
     at
 }
@@ -116,9 +112,40 @@ fn sign(painter: &Painter, canvas: Canvas<'_>, one: &Beyond<'_>, ink: Color32) -
 /// The point where the line from the middle of `inner` to `target` leaves `inner`.
 fn on_edge(inner: Rect, target: Pos2) -> Pos2 {
     let (middle, to) = (inner.center(), target - inner.center());
-    let part = |half: f32, way: f32| if way == 0.0 { f32::INFINITY } else { half / way.abs() };
-    let part = part(inner.width() / 2.0, to.x).min(part(inner.height() / 2.0, to.y)).min(1.0);
-    if part.is_finite() { middle + to * part } else { middle }
+    // Along an axis without a way the part is infinite.
+    let part = (inner.width() / 2.0 / to.x.abs()).min(inner.height() / 2.0 / to.y.abs()).min(1.0);
+    middle + to * part
+}
+
+/// Most objects whose mirror images are drawn.
+const MAX_OBJECTS_BEHIND: usize = 100;
+
+/// Radius of a mirror image, points.
+const MIRROR_RADIUS: f32 = 4.5;
+
+/// Draws the mirror images of objects behind the array. Returns a sentence on them, if there are any.
+pub fn mirror(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> Option<String> {
+    let centres = scene.objects.iter().map(|object| object.centre_metres()).enumerate();
+    let behind: Vec<(usize, [f64; 2])> = centres.filter(|(_, [_, y])| *y < 0.0).collect();
+    let stroke = Stroke::new(1.0, canvas.inks.grid_text);
+    let name = |index: usize| scene.objects[index].called(index);
+    for (index, [x, y]) in behind.iter().copied().take(MAX_OBJECTS_BEHIND) {
+        let (from, to) = (canvas.at(Place::new(x, y)), canvas.at(Place::new(x, -y)));
+        painter.extend(Shape::dashed_line(&[from, to + vec2(0.0, MIRROR_RADIUS)], stroke, 2.0, 4.0));
+        painter.circle_stroke(to, MIRROR_RADIUS, stroke);
+        let place = Rect::from_center_size(to, Vec2::splat(4.0 * MIRROR_RADIUS));
+        let response = ui.interact(place, Id::unique(("mirror image", index)), Sense::hover());
+        let said = format!("{} is behind the array: the maps show it here", name(index));
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &said));
+        response.on_hover_text(said);
+    }
+    match behind.as_slice() {
+        [] => None,
+        [(index, _)] => Some(format!("{} is behind the array, seen mirrored at the hollow circle.", name(*index))),
+        several => {
+            Some(format!("{} objects are behind the array, seen mirrored at the hollow circles.", several.len()))
+        }
+    }
 }
 
 /// Writes the sentence in the upper left corner, below the scale and below the hint that ends at `below`, beside the label of -60 degrees.

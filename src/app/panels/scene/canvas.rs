@@ -2,11 +2,11 @@
 
 use super::bodies;
 use crate::app::state::{Cursor, SceneView};
-use crate::app::widgets::{Inks, axes};
+use crate::app::widgets::{Inks, axes, cross};
 use crate::interact::{Grip, Place, grips};
 use crate::radar::{End, Radar};
 use crate::scene::{Object, Reflector};
-use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 use std::f64::consts::PI;
 
 /// Most reflectors that are drawn of one object.
@@ -21,7 +21,6 @@ const BETWEEN_LABELS: f32 = 5.0;
 /// Rectangle of the canvas, and the part of the scene that it shows.
 #[derive(Clone, Copy)]
 pub struct Canvas<'a> {
-    /// Rectangle on screen.
     pub rect: Rect,
     /// The visible part of the scene.
     pub view: SceneView,
@@ -36,14 +35,28 @@ impl Canvas<'_> {
     pub fn at(&self, place: Place) -> Pos2 {
         self.view.to_screen(self.rect, place)
     }
+
+    /// An arc around a place, between two angles in radians from the right.
+    fn arc(&self, centre: Place, radius: f64, [from, to]: [f64; 2]) -> Vec<Pos2> {
+        let at = |i: u32| {
+            let angle = from + (to - from) * f64::from(i) / 96.0;
+            self.at(Place::new(centre.x_metres + radius * angle.cos(), centre.y_metres + radius * angle.sin()))
+        };
+        (0..=96).map(at).collect()
+    }
+
+    /// A half circle ahead of the array.
+    fn half_circle(&self, radius: f64) -> Vec<Pos2> {
+        self.arc(Place::new(0.0, 0.0), radius, [0.0, PI])
+    }
 }
 
 /// Draws everything that doesn't move: ground, rings, spokes, fields of view, array.
 pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool, numbers: bool) {
-    let Canvas { rect, view, radar, extent_metres: extent, mut inks } = canvas;
+    let Canvas { rect, extent_metres, mut inks, .. } = canvas;
     painter.rect_filled(rect, 0.0, inks.beyond);
-    let origin = Place::new(0.0, 0.0);
-    painter.add(Shape::convex_polygon(half_disc(view, rect, origin, extent), inks.ground, Stroke::NONE));
+    let edge = canvas.half_circle(extent_metres);
+    painter.add(Shape::convex_polygon(edge.clone(), inks.ground, Stroke::NONE));
     if fields_of_view {
         for (end, colour) in End::BOTH.into_iter().zip(inks.ends) {
             field_of_view(painter, canvas, end, colour);
@@ -54,35 +67,21 @@ pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool, numbe
         inks.grid_text = Color32::TRANSPARENT;
     }
     rings(painter, Canvas { inks, ..canvas });
-    let edge = half_disc(view, rect, origin, extent);
     painter.add(Shape::line(edge, Stroke::new(1.5, ink)));
-    array(radar, view, painter, rect, inks);
-}
-
-/// Outline of the half disc ahead of the array.
-fn half_disc(view: SceneView, rect: Rect, centre: Place, radius: f64) -> Vec<Pos2> {
-    arc(view, rect, centre, radius, 0.0, PI)
-}
-
-fn arc(view: SceneView, rect: Rect, centre: Place, radius: f64, from: f64, to: f64) -> Vec<Pos2> {
-    let steps = 96;
-    let at = |i: usize| {
-        let angle = from + (to - from) * i as f64 / steps as f64;
-        Place::new(centre.x_metres + radius * angle.cos(), centre.y_metres + radius * angle.sin())
-    };
-    (0..=steps).map(|i| view.to_screen(rect, at(i))).collect()
+    array(painter, Canvas { inks, ..canvas });
 }
 
 fn rings(painter: &Painter, canvas: Canvas<'_>) {
     let Canvas { rect, view, extent_metres: extent, inks, .. } = canvas;
     let thin = Stroke::new(1.0, inks.grid);
+    let origin = canvas.at(Place::new(0.0, 0.0));
     let visible = f64::from(rect.width().min(2.0 * rect.height())) * view.metres_per_point;
     // From straight ahead, positive to the right.
     for degrees in [-75, -60, -45, -30, -15, 0, 15, 30, 45, 60, 75] {
         let angle = f64::from(90 - degrees) * PI / 180.0;
-        let end = view.to_screen(rect, Place::new(extent * angle.cos(), extent * angle.sin()));
+        let end = canvas.at(Place::new(extent * angle.cos(), extent * angle.sin()));
         let stroke = if degrees % 30 == 0 { thin } else { Stroke::new(1.0, inks.grid.gamma_multiply(0.5)) };
-        painter.line_segment([view.to_screen(rect, Place::new(0.0, 0.0)), end], stroke);
+        painter.line_segment([origin, end], stroke);
         if degrees % 30 == 0 {
             // Beyond the arc, on the side of the label that faces it.
             let out = end + 4.0 * vec2(angle.cos() as f32, -angle.sin() as f32);
@@ -95,15 +94,14 @@ fn rings(painter: &Painter, canvas: Canvas<'_>) {
     let ranges = axes::ticks(0.0, extent, (0.5 * extent * 8.0 / visible.max(1e-3)).clamp(4.0, 60.0) as f32);
     let step = ranges.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);
     let last = ranges.last().copied();
-    let origin = view.to_screen(rect, Place::new(0.0, 0.0));
     // Distance from the middle that the next label may reach: the outermost first, and none into the ends' marks.
     let mut free = f32::INFINITY;
     for range in ranges.into_iter().rev().filter(|r| *r > 0.0) {
-        painter.add(Shape::line(half_disc(view, rect, Place::new(0.0, 0.0), range), thin));
+        painter.add(Shape::line(canvas.half_circle(range), thin));
         let unit = if Some(range) == last { " m" } else { "" };
         let label = format!("{}{unit}", axes::tick_text(range, step));
         let half = axes::width(painter, &label) / 2.0;
-        let off = (view.to_screen(rect, Place::new(range, 0.0)) - origin).x;
+        let off = (canvas.at(Place::new(range, 0.0)) - origin).x;
         if off + half <= free && off - half >= ENDS_MARKS {
             free = off - half - BETWEEN_LABELS;
             for at in [origin - vec2(off, -3.0), origin + vec2(off, 3.0)] {
@@ -115,18 +113,19 @@ fn rings(painter: &Painter, canvas: Canvas<'_>) {
 
 /// Draws the field of view of one end: its unambiguous angles out to the maximum range (thesis figure 5-6).
 fn field_of_view(painter: &Painter, canvas: Canvas<'_>, end: End, colour: Color32) {
-    let Canvas { rect, view, radar, extent_metres, .. } = canvas;
+    let radar = canvas.radar;
     let centre = Place::new(radar.end_centre_metres(end), 0.0);
     let half = radar.end_field_of_view_radians();
-    let mut outline = arc(view, rect, centre, extent_metres, PI / 2.0 - half, PI / 2.0 + half);
-    outline.push(view.to_screen(rect, centre));
+    let mut outline = canvas.arc(centre, canvas.extent_metres, [PI / 2.0 - half, PI / 2.0 + half]);
+    outline.push(canvas.at(centre));
     painter.add(Shape::convex_polygon(outline.clone(), colour.gamma_multiply(0.07), Stroke::NONE));
     painter.add(Shape::closed_line(outline, Stroke::new(1.2, colour.gamma_multiply(0.7))));
 }
 
 /// Draws the array to scale on the x axis, its ends in their colours with markers that stay visible when the array is small.
-fn array(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: Inks) {
-    let at = |x: f64| view.to_screen(rect, Place::new(x, 0.0));
+fn array(painter: &Painter, canvas: Canvas<'_>) {
+    let Canvas { radar, inks, .. } = canvas;
+    let at = |x: f64| canvas.at(Place::new(x, 0.0));
     let half = radar.aperture_metres() / 2.0;
     painter.line_segment([at(-half), at(half)], Stroke::new(3.0, inks.array));
     for ((end, colour), name) in End::BOTH.into_iter().zip(inks.ends).zip(["0", "1"]) {
@@ -136,8 +135,7 @@ fn array(radar: &Radar, view: SceneView, painter: &Painter, rect: Rect, inks: In
         let tip = at((a + b) / 2.0) + vec2(0.0, 3.0);
         let triangle = vec![tip, tip + vec2(-5.0, 9.0), tip + vec2(5.0, 9.0)];
         painter.add(Shape::convex_polygon(triangle, colour, Stroke::NONE));
-        let side = if end == End::First { Align2::RIGHT_TOP } else { Align2::LEFT_TOP };
-        let shift = if end == End::First { -6.0 } else { 6.0 };
+        let (side, shift) = if end == End::First { (Align2::RIGHT_TOP, -6.0) } else { (Align2::LEFT_TOP, 6.0) };
         axes::text(painter, tip + vec2(shift, 1.0), side, name, colour);
     }
 }
@@ -254,9 +252,18 @@ fn turning_arrow(painter: &Painter, at: Pos2, stroke: Stroke) {
 pub fn found(painter: &Painter, canvas: Canvas<'_>, found: &[Reflector]) {
     let stroke = Stroke::new(1.5, canvas.inks.found);
     for r in found.iter().take(2000) {
-        let at = canvas.at(Place::new(r.x_metres, r.y_metres));
-        painter.line_segment([at + vec2(-5.0, -5.0), at + vec2(5.0, 5.0)], stroke);
-        painter.line_segment([at + vec2(-5.0, 5.0), at + vec2(5.0, -5.0)], stroke);
+        cross(painter, canvas.at(Place::new(r.x_metres, r.y_metres)), Vec2::splat(5.0), stroke);
+    }
+}
+
+/// Draws the paths along which a search moved the objects, with a ring at each beginning and a dot at each stop.
+pub fn trails(painter: &Painter, canvas: Canvas<'_>, trails: &[Vec<[f64; 2]>]) {
+    let ink = canvas.inks.selected;
+    for trail in trails.iter().filter(|trail| trail.len() > 1) {
+        let stops: Vec<Pos2> = trail.iter().map(|place| canvas.at((*place).into())).collect();
+        painter.line(stops.clone(), Stroke::new(1.2, ink.gamma_multiply(0.7)));
+        painter.circle_stroke(stops[0], 5.0, Stroke::new(1.2, ink));
+        stops[1..].iter().for_each(|stop| _ = painter.circle_filled(*stop, 2.2, ink));
     }
 }
 
@@ -265,9 +272,8 @@ pub fn cursor(painter: &Painter, canvas: Canvas<'_>, cursor: &Cursor) {
     let at = canvas.at(cursor.place);
     let stroke = Stroke::new(1.0, canvas.inks.selected.gamma_multiply(0.8));
     if cursor.range_metres <= canvas.extent_metres {
-        let origin = Place::new(0.0, 0.0);
-        painter.add(Shape::line(half_disc(canvas.view, canvas.rect, origin, cursor.range_metres), stroke));
-        painter.line_segment([canvas.at(origin), at], stroke);
+        painter.add(Shape::line(canvas.half_circle(cursor.range_metres), stroke));
+        painter.line_segment([canvas.at(Place::new(0.0, 0.0)), at], stroke);
     }
     painter.circle_stroke(at, 6.0, stroke);
 }

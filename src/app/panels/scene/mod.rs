@@ -1,48 +1,54 @@
 //! The scene panel: the canvas, with its keys and its pointer.
 
-mod behind;
 mod beyond;
 mod bodies;
 mod canvas;
 mod disturbances;
 mod handles;
 mod hint;
-mod told;
-mod trail;
 
-use crate::app::state::{Command, Cursor, EditCommand, NewObject, SceneView, ViewCommand};
-use crate::app::widgets::{Inks, entry, nudge, pan_keys, zoom_keys};
-use crate::interact::{Editor, Grip, Place, SelectionMode, Snap, hit};
-use crate::radar::Radar;
+use super::captions;
+use crate::app::content::{Content, Cx, Nothing};
+use crate::app::state::{Command, Cursor, EditCommand, MapKind, NewObject, SceneView, State, ViewCommand};
+use crate::app::widgets::{Inks, empty_text, entry, nudge, pan_keys, zoom_keys};
+use crate::interact::{Editor, Grip, Place, SelectionMode, hit};
 use crate::scene::{Reflector, Scene};
 use canvas::{Canvas, Look};
 use eframe::egui::{self, CursorIcon, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
 pub use hint::Hint;
-pub use told::ScenePanel;
 
-/// Settings and results that the canvas shows beside the scene.
+pub struct ScenePanel;
+
+impl Content for ScenePanel {
+    type Asks = Nothing;
+    type Remembers = ();
+    const MARKS_AGE: bool = true;
+
+    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
+        let (state, pipeline) = (cx.state, &cx.jobs.pipeline);
+        let input = Input {
+            found: pipeline.shown_found(state),
+            found_stale: pipeline.is_stale(MapKind::Output),
+            trails: cx.jobs.failures.search.trails(state.editor.document().id()),
+            error: pipeline.maps.scene_error(),
+            hint: captions::of_scene(state, pipeline),
+            tells_maps: !state.is_predicting(),
+        };
+        show(ui, input, state)
+    }
+}
+
+/// Results that the canvas shows beside the scene.
+#[derive(Default)]
 pub struct Input<'a> {
-    pub radar: &'a Radar,
-    /// Range of the echoes in a recording of one sample a chirp, metres: the sample doesn't measure it.
-    pub snapshot_range_metres: Option<f64>,
-    /// Snapping of dragged objects.
-    pub snap: Snap,
-    /// Whether the ends' fields of view are drawn.
-    pub fields_of_view: bool,
     /// Reflectors that the method found, where they are drawn.
     pub found: &'a [Reflector],
     /// Whether the found reflectors are those of an earlier scene.
     pub found_stale: bool,
     /// Places through which a search moved each object, (x, y) in metres.
     pub trails: Vec<Vec<[f64; 2]>>,
-    /// Place of the pointer, in any panel.
-    pub cursor: Option<Cursor>,
     /// Reason why the scene can't be computed.
     pub error: Option<&'a str>,
-    /// Whether ranges, angles and the scale have labels.
-    pub numbers: bool,
-    /// The scene at another time than 0, and that time in seconds; it can't be edited.
-    pub moved: Option<(&'a Scene, f64)>,
     /// The task at a first start, or the result of the first drag.
     pub hint: Option<Hint>,
     /// Whether effects on the maps are drawn: shadows, glints, and objects that the maps show elsewhere. Not while a lesson asks for them.
@@ -60,45 +66,50 @@ fn dimmed(painter: &egui::Painter, old: bool) -> egui::Painter {
 }
 
 /// Draws the canvas. Drags and selections go straight to the editor, since commands would take effect a frame later.
-pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut SceneView) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: Input<'_>, state: &mut State) -> Vec<Command> {
     let mut asked = Vec::new();
     let rect = ui.available_rect_before_wrap();
-    let extent_metres = extent_metres(input.radar, input.snapshot_range_metres);
-    fit(extent_metres, editor, view, rect);
+    let (radar, moved) = (state.editor.radar().clone(), state.timeline.moved());
+    let (cursor, has_numbers) = (state.shown_cursor(), state.shows_axes());
+    let extent_metres = extent_metres(state);
+    fit(extent_metres, &state.editor, &mut state.scene_view, rect);
     // `Sense::drag` alone: a drag starts with the first pixel.
     let response = ui.interact(rect, ui.scope_id().with("scene canvas"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Scene"));
-    navigate(view, ui, rect, &response);
-    match input.moved {
-        None => edit(ui, &input, editor, view, rect, &response, &mut asked),
+    navigate(&mut state.scene_view, ui, rect, &response);
+    match moved {
+        None => edit(ui, state, rect, &response, &mut asked),
+        // A scene at another time than 0 can't be edited.
         Some(_) if response.drag_started_by(PointerButton::Primary) => asked.push(ViewCommand::SetTime(0.0).into()),
         Some(_) => {}
     }
+    let (editor, view) = (&mut state.editor, &state.scene_view);
     let hover = response.hover_pos().map(|pos| view.to_scene(rect, pos));
-    let hovered = hover.filter(|_| input.moved.is_none()).and_then(|place| editor.hit(place, view.metres_per_point));
+    let hovered = hover.filter(|_| moved.is_none()).and_then(|place| editor.hit(place, view.metres_per_point));
     let painter = ui.painter().with_clip_rect(rect);
-    let canvas = Canvas { rect, view: *view, radar: input.radar, extent_metres, inks: Inks::of(ui.visuals()) };
-    canvas::ground(&painter, canvas, input.fields_of_view, input.numbers);
-    let scene = input.moved.map_or(&**editor.scene(), |(scene, _)| scene);
-    objects(&painter, canvas, scene, editor, hovered.map(|h| h.object), input.tells_maps);
+    let canvas = Canvas { rect, view: *view, radar: &radar, extent_metres, inks: Inks::of(ui.visuals()) };
+    canvas::ground(&painter, canvas, state.settings.show_fields_of_view, has_numbers);
+    let scene = moved.clone().unwrap_or_else(|| editor.scene().clone());
+    objects(&painter, canvas, &scene, editor, hovered.map(|h| h.object), input.tells_maps);
     canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
-    trail::draw(&painter, canvas, &input.trails);
-    if input.moved.is_none() {
-        handles::show(input.radar.range_resolution_metres(), editor, *view, ui, rect);
+    canvas::trails(&painter, canvas, &input.trails);
+    if moved.is_none() {
+        handles::show(radar.range_resolution_metres(), editor, *view, ui, rect);
     }
     if let (Some(start), Some(pos)) = (view.box_start, ui.input(|i| i.pointer.interact_pos())) {
         canvas::selection_box(&painter, canvas, start, pos);
     }
-    match (hover, input.cursor) {
-        (Some(place), _) => asked.push(ViewCommand::Hover(Cursor::at_place(input.radar, place)).into()),
+    match (hover, cursor) {
+        (Some(place), _) => asked.push(ViewCommand::Hover(Cursor::at_place(&radar, place)).into()),
         (None, Some(cursor)) => canvas::cursor(&painter, canvas, &cursor),
         (None, None) => {}
     }
-    if input.numbers {
+    if has_numbers {
         canvas::scale_bar(&painter, canvas);
     }
-    if input.numbers && input.tells_maps {
-        elsewhere(ui, &painter, canvas, &input, editor.scene());
+    if has_numbers && input.tells_maps {
+        let seconds = moved.is_some().then(|| state.timeline.seconds());
+        elsewhere(ui, &painter, canvas, &scene, seconds, input.hint.as_ref());
     }
     if let Some(hint) = &input.hint {
         hint.draw(&painter, canvas);
@@ -106,40 +117,35 @@ pub fn show(ui: &mut Ui, input: Input<'_>, editor: &mut Editor, view: &mut Scene
     let is_empty = editor.scene().objects.is_empty() && input.found.is_empty() && input.hint.is_none();
     say(ui, &painter, rect, is_empty, input.error);
     if let Some(hit) = editor.dragged().or(hovered) {
-        ui.set_cursor_icon(match (hit.grip, editor.dragged()) {
-            (Grip::Body, Some(_)) => CursorIcon::Grabbing,
-            (Grip::Body | Grip::Turn | Grip::Rotate, None) => CursorIcon::Grab,
-            (Grip::Turn | Grip::Rotate, Some(_)) => CursorIcon::Grabbing,
-            (Grip::SpreadX | Grip::Radius, _) => CursorIcon::ResizeHorizontal,
-            (Grip::NearEnd | Grip::FarEnd | Grip::Corner(_), _) => CursorIcon::Move,
-            _ => CursorIcon::ResizeVertical,
-        });
+        ui.set_cursor_icon(icon(hit.grip, editor.dragged().is_some()));
     }
-    if input.moved.is_none() {
-        context_menu(editor, *view, ui, rect, &response, &mut asked);
+    if moved.is_none() {
+        context_menu(state, ui, rect, &response, &mut asked);
     }
     asked
 }
 
-/// Handles keys and pointer, which edit the scene.
-fn edit(
-    ui: &Ui,
-    input: &Input<'_>,
-    editor: &mut Editor,
-    view: &mut SceneView,
-    rect: Rect,
-    response: &Response,
-    asked: &mut Vec<Command>,
-) {
-    keys(input.radar, editor, view, rect, response, asked);
-    let was_dragged = editor.dragged().is_some();
-    pointer(ui, input, editor, view, rect, response, asked);
-    if was_dragged && editor.dragged().is_none() {
-        view.dropped = response.ctx.pointer_latest_pos();
+/// The pointer's icon over a grip, and while it is dragged.
+fn icon(grip: Grip, is_dragged: bool) -> CursorIcon {
+    match grip {
+        Grip::Body | Grip::Turn | Grip::Rotate if is_dragged => CursorIcon::Grabbing,
+        Grip::Body | Grip::Turn | Grip::Rotate => CursorIcon::Grab,
+        Grip::SpreadX | Grip::Radius => CursorIcon::ResizeHorizontal,
+        Grip::NearEnd | Grip::FarEnd | Grip::Corner(_) => CursorIcon::Move,
+        _ => CursorIcon::ResizeVertical,
     }
 }
 
-/// Draws the objects with their shadows, glints and velocities.
+/// Handles keys and pointer, which edit the scene.
+fn edit(ui: &Ui, state: &mut State, rect: Rect, response: &Response, asked: &mut Vec<Command>) {
+    keys(state, rect, response, asked);
+    let was_dragged = state.editor.dragged().is_some();
+    pointer(ui, state, rect, response, asked);
+    if was_dragged && state.editor.dragged().is_none() {
+        state.scene_view.dropped = response.ctx.pointer_latest_pos();
+    }
+}
+
 fn objects(
     painter: &Painter,
     canvas: Canvas<'_>,
@@ -163,15 +169,14 @@ fn objects(
     }
 }
 
-/// Draws the warnings for objects that the maps show elsewhere, and the note on a scene at another time than 0.
-fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, input: &Input<'_>, scene: &Scene) {
-    let later = input.moved.map(|(_, seconds)| format!("At {seconds:.2} s. Press here to go back to 0 s and edit."));
-    let scene = input.moved.map_or(scene, |(scene, _)| scene);
-    let behind = behind::mirror(ui, painter, canvas, scene);
+/// Draws the warnings for objects that the maps show elsewhere, and the note on a scene at another time than 0, which is `seconds`.
+fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene, seconds: Option<f64>, hint: Option<&Hint>) {
+    let later = seconds.map(|seconds| format!("At {seconds:.2} s. Press here to go back to 0 s and edit."));
+    let behind = beyond::mirror(ui, painter, canvas, scene);
     let beyond = beyond::warn(ui, painter, canvas, scene);
     let said: Vec<String> = later.into_iter().chain(behind).chain(beyond).collect();
     if !said.is_empty() {
-        let below = input.hint.as_ref().map_or(0.0, |hint| hint.patch(painter, canvas).1.bottom());
+        let below = hint.map_or(0.0, |hint| hint.patch(painter, canvas).1.bottom());
         beyond::write(ui, painter, canvas, below, &said.join("\n"));
     }
 }
@@ -179,9 +184,7 @@ fn elsewhere(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, input: &Input<'_>, 
 /// Writes the text of an empty scene, and the error of a scene that can't be computed.
 fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>) {
     if empty {
-        let ink = ui.visuals().weak_text_color();
-        let text = "Empty scene: double-click to add a point";
-        painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(14.0), ink);
+        empty_text(ui, rect, "Empty scene: double-click to add a point");
     }
     if let Some(error) = error {
         let text = format!("Not computed: {error}");
@@ -197,8 +200,9 @@ fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>)
 const LABELS: Vec2 = vec2(30.0, 24.0);
 
 /// Largest range that is drawn, metres: the radar's maximum, or for a snapshot somewhat more than the range of its echoes.
-fn extent_metres(radar: &Radar, snapshot_range_metres: Option<f64>) -> f64 {
-    snapshot_range_metres.map_or(radar.max_range_metres(), |range| 1.25 * range)
+fn extent_metres(state: &State) -> f64 {
+    let of_snapshot = state.editor.document().recording().and_then(|recording| recording.range_metres);
+    of_snapshot.map_or(state.radar().max_range_metres(), |range| 1.25 * range)
 }
 
 /// Fits the view to the radar's ranges and to the objects nearby.
@@ -240,14 +244,8 @@ fn navigate(view: &mut SceneView, ui: &Ui, rect: Rect, response: &Response) {
 }
 
 /// Handles the keys while the canvas has the focus.
-fn keys(
-    radar: &Radar,
-    editor: &Editor,
-    view: &mut SceneView,
-    rect: Rect,
-    response: &Response,
-    asked: &mut Vec<Command>,
-) {
+fn keys(state: &mut State, rect: Rect, response: &Response, asked: &mut Vec<Command>) {
+    let (editor, view) = (&state.editor, &mut state.scene_view);
     if let Some(factor) = zoom_keys(response) {
         view.zoom(f64::from(factor), rect, rect.center());
         view.fitted = None;
@@ -258,20 +256,13 @@ fn keys(
         view.fitted = None;
     }
     if response.has_focus() && !editor.selection().is_empty() {
-        asked.extend(nudge(&response.ctx, radar.range_resolution_metres()));
+        asked.extend(nudge(&response.ctx, editor.radar().range_resolution_metres()));
     }
 }
 
 /// Handles the pointer: selects, drags, draws boxes and adds points.
-fn pointer(
-    ui: &Ui,
-    input: &Input<'_>,
-    editor: &mut Editor,
-    view: &mut SceneView,
-    rect: Rect,
-    response: &Response,
-    asked: &mut Vec<Command>,
-) {
+fn pointer(ui: &Ui, state: &mut State, rect: Rect, response: &Response, asked: &mut Vec<Command>) {
+    let (editor, view, snap) = (&mut state.editor, &mut state.scene_view, state.settings.snap);
     let (origin, now, modifiers) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers));
     // A tap can come and go within one frame: then there is no drag, but still something to select.
     let tapped = ui.input(|i| i.pointer.primary_pressed() && i.pointer.primary_released() && !i.pointer.primary_down());
@@ -294,7 +285,7 @@ fn pointer(
     // Drags in a map are handled by the map's panel.
     let dragging = response.dragged_by(PointerButton::Primary) || response.drag_stopped_by(PointerButton::Primary);
     if let (Some(_), Some(now), true) = (editor.dragged(), now, dragging) {
-        editor.drag_to(view.to_scene(rect, now), input.snap);
+        editor.drag_to(view.to_scene(rect, now), snap);
     }
     if response.drag_stopped_by(PointerButton::Primary) {
         editor.end_drag();
@@ -307,20 +298,14 @@ fn pointer(
     if let Some(pos) = now.filter(|_| double && response.contains_pointer()) {
         let place = view.to_scene(rect, pos);
         if editor.hit(place, view.metres_per_point).is_none() {
-            let place = input.snap.apply(input.radar, place);
+            let place = snap.apply(editor.radar(), place);
             asked.push(EditCommand::Add(NewObject::Point, Some(place)).into());
         }
     }
 }
 
-fn context_menu(
-    editor: &mut Editor,
-    view: SceneView,
-    ui: &Ui,
-    rect: Rect,
-    response: &Response,
-    asked: &mut Vec<Command>,
-) {
+fn context_menu(state: &mut State, ui: &Ui, rect: Rect, response: &Response, asked: &mut Vec<Command>) {
+    let (editor, view) = (&mut state.editor, state.scene_view);
     let id = ui.scope_id().with("context place");
     let clicked = ui.input(|i| i.pointer.button_clicked(PointerButton::Secondary));
     if clicked && let Some(pos) = response.hover_pos() {

@@ -1,6 +1,7 @@
 use super::*;
 use crate::app::widgets::seen::{self, User};
 use crate::interact::grips;
+use crate::radar::Radar;
 use crate::scene::{Block, GaussianCluster, Line, Object, Point, Scene, Wall};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -8,38 +9,21 @@ use egui_kittest::kittest::Queryable;
 mod answers;
 
 struct Held {
-    editor: Editor,
-    view: SceneView,
+    state: State,
     asked: Vec<Command>,
 }
 
-/// Input of a canvas where nothing is found, wrong or moved.
-fn input(radar: &Radar) -> Input<'_> {
-    Input {
-        radar,
-        snapshot_range_metres: None,
-        snap: Snap::Off,
-        fields_of_view: false,
-        found: &[],
-        found_stale: false,
-        trails: Vec::new(),
-        cursor: None,
-        error: None,
-        numbers: true,
-        hint: None,
-        tells_maps: true,
-        moved: None,
-    }
+/// Input of a canvas where nothing is found or wrong.
+fn input() -> Input<'static> {
+    Input { tells_maps: true, ..Input::default() }
 }
 
 fn panel(scene: Scene) -> Harness<'static, Held> {
-    let radar = Radar::default();
-    let draw = move |ui: &mut Ui, held: &mut Held| {
-        let input = Input { error: Some("too far"), ..input(&radar) };
-        let commands = show(ui, input, &mut held.editor, &mut held.view);
+    let draw = |ui: &mut Ui, held: &mut Held| {
+        let commands = show(ui, Input { error: Some("too far"), ..input() }, &mut held.state);
         held.asked.extend(commands);
     };
-    let held = Held { editor: Editor::new(scene), view: SceneView::default(), asked: Vec::new() };
+    let held = Held { state: State::of(Radar::default(), scene), asked: Vec::new() };
     let mut panel = Harness::builder().with_size([600.0, 400.0]).with_step_dt(0.02).build_ui_state(draw, held);
     panel.step();
     panel
@@ -51,8 +35,8 @@ fn a_drag_moves_the_object_and_tells_the_place_of_the_pointer() {
     let from = scene.get_by_label("point 1: move").rect().center();
     scene.drags(&[from, from + vec2(40.0, 0.0)]);
     let held = scene.state();
-    let moved = held.editor.scene().objects[0].centre_metres()[0];
-    assert!((moved - 40.0 * held.view.metres_per_point).abs() < 1e-6, "{moved}");
+    let moved = held.state.editor.scene().objects[0].centre_metres()[0];
+    assert!((moved - 40.0 * held.state.scene_view.metres_per_point).abs() < 1e-6, "{moved}");
     assert!(held.asked.iter().all(|c| matches!(c, Command::View(ViewCommand::Hover(_)))) && !held.asked.is_empty());
 }
 
@@ -61,7 +45,7 @@ fn ghosts_stand_where_the_radar_hears_them() {
     let mut mirrored = Scene::of_points([(3.0, 20.0)]);
     mirrored.disturbances.mirror = Some(crate::scene::Mirror::default());
     let rings = |scene: &Harness<'static, Held>| {
-        let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().view);
+        let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().state.scene_view);
         let shapes = scene.output().shapes.iter();
         let hollow = shapes.filter_map(|clipped| match &clipped.shape {
             egui::Shape::Circle(circle) if circle.fill == egui::Color32::TRANSPARENT => Some(circle.center),
@@ -84,19 +68,16 @@ fn labels_stand_around_the_half_disc_from_straight_ahead() {
     for (size, y_metres) in
         [([280.0, 170.0], 20.0), ([480.0, 300.0], 20.0), ([1400.0, 800.0], 20.0), ([490.0, 170.0], -30.0)]
     {
-        let radar = Radar::default();
-        let mut state = (Editor::new(Scene::default()), SceneView::default());
-        let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
-            _ = show(ui, input(&radar), editor, view);
-        };
-        state.0.add(Object::Point(Point::new(-12.0, y_metres)));
+        let mut state = State::of(Radar::default(), Scene::default());
+        let draw = |ui: &mut Ui, state: &mut State| _ = show(ui, input(), state);
+        state.editor.add(Object::Point(Point::new(-12.0, y_metres)));
         let scene = Harness::builder().with_size(size).build_ui_state(draw, state);
         seen::assert_readable(scene.output());
         let texts = seen::texts(scene.output());
         let middle = |label: &str| texts.iter().find(|t| t.text == label).map(|t| t.rect.center().x);
         let spokes = ["−60°", "−30°", "0°", "30°", "60°"].map(middle);
         assert!(spokes[0].is_some() && spokes.is_sorted(), "from straight ahead: {texts:?}");
-        let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().1);
+        let (rect, view) = (scene.get_by_label("Scene").rect(), scene.state().scene_view);
         let radius = Radar::default().max_range_metres() / view.metres_per_point;
         let origin = view.to_screen(rect, Place::new(0.0, 0.0));
         assert!(f64::from(origin.x - rect.left()) > radius + 10.0, "the disc doesn't touch the panel at {size:?}");
@@ -111,21 +92,23 @@ fn labels_stand_around_the_half_disc_from_straight_ahead() {
 fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
     let radar = Radar { samples: 1, elements: 86, ..Radar::default() };
     let found = [Reflector { x_metres: 0.0, y_metres: 15.0, reflectivity: 1.0 }];
-    let draw = move |ui: &mut Ui, (editor, view): &mut (Editor, SceneView)| {
-        let input = Input { snapshot_range_metres: Some(15.0), found: &found, ..input(&radar) };
-        _ = show(ui, input, editor, view);
-    };
-    let state = (Editor::new(Scene::default()), SceneView::default());
+    let draw = move |ui: &mut Ui, state: &mut State| _ = show(ui, Input { found: &found, ..input() }, state);
+    let signal = crate::signal::BeatSignal::silence(&radar);
+    let recording = crate::recording::Recording::of_signal(radar, signal);
+    let state = State::recorded(crate::recording::Recording { range_metres: Some(15.0), ..recording });
     let scene = Harness::builder().with_size([480.0, 300.0]).build_ui_state(draw, state);
     seen::assert_readable(scene.output());
     let rect = scene.get_by_label("Scene").rect();
-    assert!(rect.contains(scene.state().1.to_screen(rect, Place::new(0.0, 15.0))), "what was found is in sight");
+    assert!(
+        rect.contains(scene.state().scene_view.to_screen(rect, Place::new(0.0, 15.0))),
+        "what was found is in sight"
+    );
 }
 
 /// The panel with one object, which is selected.
 fn selected(object: Object) -> Harness<'static, Held> {
     let mut scene = panel(Scene { objects: vec![object], ..Scene::default() });
-    scene.state_mut().editor.select_all();
+    scene.state_mut().state.editor.select_all();
     scene.step();
     scene
 }
@@ -135,7 +118,7 @@ fn wall() -> Harness<'static, Held> {
 }
 
 fn line(scene: &Harness<'static, Held>) -> Line {
-    match &scene.state().editor.scene().objects[0] {
+    match &scene.state().state.editor.scene().objects[0] {
         Object::Line(line) => line.clone(),
         other => panic!("{other:?}"),
     }
@@ -145,7 +128,7 @@ fn line(scene: &Harness<'static, Held>) -> Line {
 fn drag(scene: &mut Harness<'static, Held>, handle: &str, by: egui::Vec2) -> f64 {
     let from = scene.get_by_label(handle).rect().center();
     scene.drags(&[0.0, 0.3, 0.7, 1.0].map(|part| from + by * part));
-    scene.state().view.metres_per_point
+    scene.state().state.scene_view.metres_per_point
 }
 
 #[test]
@@ -157,7 +140,7 @@ fn an_end_of_a_line_stretches_it_in_one_step_of_undo() {
     assert_eq!((shorter.direction_degrees, shorter.x_metres, shorter.y_start_metres), (90.0, 0.0, 10.0));
     let wanted = before.end_metres()[1] - 40.0 * metres;
     assert!((shorter.end_metres()[1] - wanted).abs() <= 0.25, "{shorter:?} ends at {wanted}");
-    assert!(scene.state_mut().editor.undo() && line(&scene) == before && !scene.state_mut().editor.undo());
+    assert!(scene.state_mut().state.editor.undo() && line(&scene) == before && !scene.state_mut().state.editor.undo());
 }
 
 #[test]
@@ -166,7 +149,7 @@ fn the_handle_of_a_line_turns_it_in_one_step_of_undo() {
     let (before, middle) = (line(&scene), [0.0, 15.0]);
     let handle = "line 1: turn the line about its middle";
     let rect = scene.get_by_label("Scene").rect();
-    let place = scene.state().view.to_scene(rect, scene.get_by_label(handle).rect().center());
+    let place = scene.state().state.scene_view.to_scene(rect, scene.get_by_label(handle).rect().center());
     let metres = drag(&mut scene, handle, vec2(60.0, 30.0));
     let turned = line(&scene);
     let [dx, dy] = [place.x_metres + 60.0 * metres - middle[0], place.y_metres - 30.0 * metres - middle[1]];
@@ -175,7 +158,7 @@ fn the_handle_of_a_line_turns_it_in_one_step_of_undo() {
     assert_eq!((turned.count, turned.spacing_metres), (before.count, before.spacing_metres));
     let [x, y] = turned.place_metres(10.0);
     assert!((x - middle[0]).hypot(y - middle[1]) < 1e-9, "the middle stays: {x}, {y}");
-    assert!(scene.state_mut().editor.undo() && line(&scene) == before && !scene.state_mut().editor.undo());
+    assert!(scene.state_mut().state.editor.undo() && line(&scene) == before && !scene.state_mut().state.editor.undo());
 }
 
 #[test]
@@ -184,7 +167,7 @@ fn what_stands_beyond_the_maximum_range_is_warned_of() {
     let mut scene = panel(Scene::of_points([(0.0, 20.0), (0.0, 60.0)]));
     let _told = scene.get_by_label(sentence);
     assert!(scene.reads(sentence), "it is seen, too");
-    let view = &mut scene.state_mut().view;
+    let view = &mut scene.state_mut().state.scene_view;
     (view.centre, view.metres_per_point, view.fit) = (Place::new(0.0, 18.0), 0.1, false);
     view.fitted = None;
     scene.step();
@@ -217,7 +200,7 @@ fn a_double_click_asks_for_a_point_there() {
         scene.step();
     }
     let held = scene.state();
-    let place = held.view.to_scene(scene.get_by_label("Scene").rect(), at);
+    let place = held.state.scene_view.to_scene(scene.get_by_label("Scene").rect(), at);
     assert!(held.asked.contains(&Command::Edit(EditCommand::Add(NewObject::Point, Some(place)))), "{:?}", held.asked);
 }
 
@@ -230,7 +213,7 @@ fn every_grip_is_dragged_by_arrow_keys_while_it_has_the_focus() {
         (Object::Gaussian(cluster), egui::Key::ArrowUp),
     ] {
         let mut scene = selected(object.clone());
-        let metres_per_point = scene.state().view.metres_per_point;
+        let metres_per_point = scene.state().state.scene_view.metres_per_point;
         let mut changed = 0;
         let names: Vec<String> = grips(&object, metres_per_point)
             .into_iter()
@@ -238,17 +221,17 @@ fn every_grip_is_dragged_by_arrow_keys_while_it_has_the_focus() {
             .map(|g| format!("{} 1: {}", object.noun(), g.grip.describe()))
             .collect();
         for name in &names {
-            let before = scene.state().editor.scene().objects[0].clone();
+            let before = scene.state().state.editor.scene().objects[0].clone();
             scene.get_by_label(name).focus();
             scene.run_steps(2);
             scene.key_press_modifiers(egui::Modifiers::SHIFT, key);
             scene.run_steps(2);
             assert!(scene.get_by_label(name).is_focused(), "{name}: the arrow doesn't take the focus away");
-            changed += usize::from(scene.state().editor.scene().objects[0] != before);
+            changed += usize::from(scene.state().state.editor.scene().objects[0] != before);
         }
         // Each of a cluster's two grips follows one of the arrows; the grip that turns a line may rest where it is for one along it.
         assert!(changed >= names.len() / 2, "{changed} of {names:?}");
-        assert_eq!(scene.state().editor.history().depth(), changed, "each is one undo step");
+        assert_eq!(scene.state().state.editor.history().depth(), changed, "each is one undo step");
     }
 }
 
@@ -257,12 +240,12 @@ fn arrow_keys_pan_the_scene_while_nothing_is_selected() {
     let mut scene = panel(Scene::of_points([(0.0, 20.0)]));
     scene.get_by_label("Scene").focus();
     scene.run_steps(2);
-    let centre = |scene: &Harness<'static, Held>| scene.state().view.centre;
+    let centre = |scene: &Harness<'static, Held>| scene.state().state.scene_view.centre;
     let before = centre(&scene);
     scene.presses(&[egui::Key::ArrowRight]);
     let panned = centre(&scene);
     assert!(panned.x_metres > before.x_metres && panned.y_metres == before.y_metres);
-    scene.state_mut().editor.select([0], SelectionMode::Replace);
+    scene.state_mut().state.editor.select([0], SelectionMode::Replace);
     scene.presses(&[egui::Key::ArrowRight]);
     assert_eq!(centre(&scene), panned, "arrows are the selection's");
     assert!(
@@ -278,15 +261,15 @@ fn a_corner_resizes_a_box_and_the_round_handle_turns_a_wall() {
     let object = Object::Box(Block::new([4.0, 12.0], [4.0, 2.0], 0.0));
     let mut scene = selected(object.clone());
     let metres = drag(&mut scene, "box 1: move corner 3", vec2(40.0, -30.0));
-    let Object::Box(after) = scene.state().editor.scene().objects[0].clone() else { panic!() };
+    let Object::Box(after) = scene.state().state.editor.scene().objects[0].clone() else { panic!() };
     assert!((after.length_metres - 4.0 - 40.0 * metres).abs() < 0.3, "{after:?}");
     assert!((after.width_metres - 2.0 - 30.0 * metres).abs() < 0.3, "{after:?}");
     let [x, y] = after.corners_metres()[0];
     assert!((x - 2.0).hypot(y - 11.0) < 1e-9, "the opposite corner stays: {x}, {y}");
-    assert!(scene.state_mut().editor.undo() && scene.state().editor.scene().objects[0] == object);
+    assert!(scene.state_mut().state.editor.undo() && scene.state().state.editor.scene().objects[0] == object);
     let mut scene = selected(Object::Wall(Wall::new(0.0, 15.0, 6.0, 0.0)));
     drag(&mut scene, "wall 1: turn it about its middle", vec2(0.0, -40.0));
-    let Object::Wall(after) = scene.state().editor.scene().objects[0].clone() else { panic!() };
+    let Object::Wall(after) = scene.state().state.editor.scene().objects[0].clone() else { panic!() };
     assert!(after.angle_degrees > 5.0 && (after.x_metres, after.y_metres) == (0.0, 15.0), "{after:?}");
     assert_eq!(after.length_metres, 6.0);
 }

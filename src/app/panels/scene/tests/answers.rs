@@ -1,7 +1,7 @@
 //! The scene while a lesson's question is open: nothing that is drawn gives the answer away.
 
 use super::super::*;
-use super::{Held, input};
+use super::Held;
 use crate::lesson::question::Answer;
 use crate::lesson::{Stage, Step, Truth, shipped};
 use crate::scattering::{EchoKind, heard_in_the_middle};
@@ -10,12 +10,10 @@ use egui_kittest::kittest::Queryable;
 
 /// A step's scene, drawn with or without its effects on the maps.
 fn step_drawn(step: &Step, tells_maps: bool) -> (Harness<'static, Held>, Vec<egui::Shape>) {
-    let (radar, scene) = (step.radar.clone(), step.scene());
     let draw = move |ui: &mut Ui, held: &mut Held| {
-        let input = Input { tells_maps, ..input(&radar) };
-        _ = show(ui, input, &mut held.editor, &mut held.view);
+        _ = show(ui, Input { tells_maps, ..Input::default() }, &mut held.state);
     };
-    let held = Held { editor: Editor::new(scene), view: SceneView::default(), asked: Vec::new() };
+    let held = Held { state: State::of(step.radar.clone(), step.scene()), asked: Vec::new() };
     let panel = Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, held);
     let shapes = panel.output().shapes.iter().map(|clipped| clipped.shape.clone()).collect();
     (panel, shapes)
@@ -46,12 +44,12 @@ fn no_drawn_mark_lies_at_the_answer_of_an_open_question() {
         for (number, step) in file.load().unwrap().steps.iter().enumerate().filter(|(_, step)| step.predict.is_some()) {
             let (panel, open) = step_drawn(step, false);
             let rect = panel.get_by_label("Scene").rect();
-            let (view, radar) = (panel.state().view, step.radar.clone());
+            let (view, radar) = (panel.state().state.scene_view, step.radar.clone());
             let canvas = Canvas {
                 rect,
                 view,
                 radar: &radar,
-                extent_metres: extent_metres(&radar, None),
+                extent_metres: radar.max_range_metres(),
                 inks: Inks::of(&panel.ctx.global_style().visuals),
             };
             // Ground and objects alone.

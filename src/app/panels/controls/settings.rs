@@ -1,8 +1,11 @@
-//! Settings of the maps: normalisation, floor, window and the seed of the noise.
+//! Rows of settings: maps, display, and a detector in place of thresholds.
 
-use crate::app::state::{Command, EditCommand, RadarCommand, Settings, State, ViewCommand};
-use crate::app::widgets::{NumberField, choices, rarely, row, row_of};
+use crate::app::state::{Command, Directions, EditCommand, RadarCommand, Settings, State, Units, ViewCommand};
+use crate::app::widgets::{NumberField, choices, rarely, row, row_of, tick};
+use crate::interact::Snap;
 use crate::maps::Normalisation;
+use crate::maps::cfar::{Cfar, MOST_CELLS, Statistic};
+use crate::picture::ColourMap;
 use crate::radar::{DecibelMilliwatts, Decibels, WindowFunction};
 use crate::signal::{self, Floor};
 use eframe::egui::Ui;
@@ -10,8 +13,8 @@ use eframe::egui::Ui;
 /// Largest seed that a scene file holds: TOML knows no larger whole number.
 const MAX_NOISE_SEED: u64 = i64::MAX as u64;
 
-/// Draws the group's rows.
-pub(super) fn show(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
+/// Draws the rows of the maps: normalisation, floor, window and the seed of the noise.
+pub(super) fn maps(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     let (settings, is_recorded) = (&state.settings, state.is_recorded());
     normalisation(ui, settings, asked);
     match is_recorded {
@@ -45,11 +48,9 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     });
 }
 
-/// Tooltip of the floor at a chosen level.
 const LEVEL: &str = "Thermal noise of this level in every sample, for any scene: an empty scene is noise alone. A reflector of σ 1 at \
     20 m has +18 dBm; with a link budget, what the radar equation says";
 
-/// Tooltip of the floor of the receivers' noise.
 const RECEIVER: &str = "The noise of the radar's receivers, kTBF, by its link budget in the panel Radar; by the usual one where it has none";
 
 fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
@@ -110,6 +111,99 @@ fn window(ui: &mut Ui, window: WindowFunction, asked: &mut Vec<Command>) {
         });
         choices(ui, window, of, RadarCommand::SetWindow, asked);
     });
+}
+
+/// Draws the rows of the display: units of axes and scales, colours, and snapping of dragged objects.
+pub(super) fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
+    row_of(ui, "Directions", "Unit of the axis of directions, in every map", |ui| {
+        let of = [(Directions::Cosine, "cos θ", ""), (Directions::Degrees, "degrees", "From straight ahead")];
+        choices(ui, settings.directions, of, ViewCommand::SetDirections, asked);
+        let tip =
+            "Draw maps of few elements on 256 columns: values between are interpolated, and nothing more is resolved";
+        tick(ui, settings.fine_columns, "256 columns", tip, |_| ViewCommand::ToggleFineColumns, asked);
+    });
+    row_of(ui, "Scale", "Unit of colour bars, cuts, readouts and thresholds (D)", |ui| {
+        let of = [(Units::Lambda, "Λ", ""), (Units::Decibels, "dB", "Decibels relative to the map's peak")];
+        choices(ui, settings.units, of, ViewCommand::SetUnits, asked);
+        let tip = "Inputs, target and output on the scale of the strongest: what is weaker looks weaker";
+        tick(ui, settings.one_scale, "one for all", tip, |_| ViewCommand::ToggleOneScale, asked);
+    });
+    row_of(ui, "Colours", "Colours of Λ", |ui| {
+        let of = ColourMap::ALL.map(|colours| (colours, colours.name(), ""));
+        choices(ui, settings.colours, of, ViewCommand::Colours, asked);
+    });
+    row_of(ui, "Snap", "Where dragged objects come to rest", |ui| {
+        let of = [
+            (Snap::Off, "Off", ""),
+            (Snap::Metres(0.5), "0.5 m", ""),
+            (Snap::Cells, "Cells", "Whole range bins and columns"),
+        ];
+        choices(ui, settings.snap, of, EditCommand::SetSnap, asked);
+    });
+}
+
+/// Draws the choice between a global threshold and the detectors.
+pub(super) fn detector(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
+    let tooltip = "The rule for detected cells in the panels Target > η' and Output > η";
+    row_of(ui, "Detect", tooltip, |ui| {
+        let of = [
+            (None, "Global", "One threshold for the whole map"),
+            (
+                Some(Statistic::CellAveraging),
+                "CA",
+                "Cell averaging (CFAR): the threshold of a cell is the mean power of its training cells times a factor",
+            ),
+            (
+                Some(Statistic::OrderedStatistics),
+                "OS",
+                "Ordered statistics (CFAR): the threshold is the training cell of rank 3/4 times a factor, so that strong \
+                 neighbours hide no echo",
+            ),
+        ];
+        let chosen = settings.cfar.map(|cfar| cfar.statistic);
+        choices(ui, chosen, of, ViewCommand::Detect, asked);
+    });
+}
+
+/// Draws the fields of the detector's cells and of its rate.
+pub(super) fn detector_cells(ui: &mut Ui, cfar: &Cfar, error: Option<&str>, asked: &mut Vec<Command>) {
+    let mut changed = *cfar;
+    let tooltip = "Cells a side that may hold the echo itself and measure nothing";
+    sides(ui, "Guard", tooltip, &mut changed.guard);
+    sides(ui, "Training", "Cells a side beyond the guard cells, which measure the noise", &mut changed.training);
+    rate(ui, &mut changed.false_alarm);
+    if changed != *cfar {
+        asked.push(ViewCommand::SetCfar(Some(changed)).into());
+    }
+    if let Some(error) = error {
+        ui.colored_label(ui.visuals().error_fg_color, error);
+    }
+}
+
+fn sides(ui: &mut Ui, name: &str, tooltip: &str, cells: &mut [usize; 2]) {
+    row_of(ui, name, tooltip, |ui| {
+        let [bins, columns] = cells;
+        for (cells, along, unit) in [(bins, "in range", " bins"), (columns, "in angle", " columns")] {
+            let field = NumberField::new(cells).range(0..=MOST_CELLS).speed(0.05).suffix(unit);
+            let field = ui.add(field).on_hover_text(format!("{tooltip}, {along}"));
+            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(format!("{name} cells {along}")));
+        }
+    });
+}
+
+fn rate(ui: &mut Ui, false_alarm: &mut f64) {
+    let tooltip = "Part of the cells of noise alone that are to be detected. It holds for noise that is independent from cell to \
+                   cell: a window function makes neighbours alike.";
+    row(ui, "P_FA", tooltip, |ui| {
+        let text = rate_text(*false_alarm);
+        let speed = 0.02 * *false_alarm;
+        ui.add(NumberField::new(false_alarm).range(1e-12..=0.9).speed(speed).standing_for(&text))
+    });
+}
+
+/// Text of a rate, which the field can parse again.
+fn rate_text(rate: f64) -> String {
+    if rate < 1e-3 { format!("{rate:.1e}") } else { format!("{rate:.3}") }
 }
 
 #[cfg(test)]
