@@ -125,7 +125,7 @@ impl Search<'_> {
     /// They are moved to their best places only if that is asked for.
     pub fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
-        atoms.extend(pairs.points.iter().copied());
+        atoms.extend(pairs.points.iter().map(|point| point.atom));
         if atoms.len() == known.atoms.len() {
             return Ok(known);
         }

@@ -16,11 +16,17 @@ const LOG_GAIN: f64 = 0.1;
 /// A disagreement of this many times all that is allowed makes no pair.
 const MOST_APART: f64 = 3.0;
 
+/// Pairs that agree within this part of what is allowed are points.
+const SURELY_ONE: f64 = 0.2;
+
 /// Range bins within which the last end is searched for the prediction of the first end's direction.
 const SEARCH_BINS: f64 = 2.0;
 
 /// Standard deviations of noise that are allowed.
 const DEVIATIONS: f64 = 4.0;
+
+/// A tone is alone where no other is heard within this many range bins.
+const ALONE_BINS: f64 = 3.0;
 
 /// Factor of the tolerances of directions and gains where tones are hardly separated; pairs within them are guesses.
 const GUESS: f64 = 6.0;
@@ -44,6 +50,26 @@ struct Heard {
     amplitude: f64,
     /// Largest error of the direction's cosine by noise.
     cos_tolerance: f64,
+    /// Whether no other tone is near.
+    is_alone: bool,
+}
+
+/// A point with a tone at both ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paired {
+    /// The point.
+    pub atom: Atom,
+    /// Disagreement of the ends, as a part of the tolerance: directions and gains together.
+    pub apart: f64,
+    /// Whether neither end hears another tone near its own.
+    pub is_alone: bool,
+}
+
+impl Paired {
+    /// Whether this is surely one reflector.
+    pub fn is_sure(&self) -> bool {
+        self.apart < SURELY_ONE && self.is_alone
+    }
 }
 
 /// A tone at each end that may be one reflector.
@@ -51,11 +77,9 @@ struct Heard {
 struct Pair {
     first: usize,
     last: usize,
-    point: Atom,
+    point: Paired,
     /// Disagreements of the directions at both ends and of the gains, as parts of their tolerances.
     disagreements: [f64; 3],
-    /// The sum of these, without their signs.
-    apart: f64,
 }
 
 impl Pair {
@@ -114,7 +138,7 @@ impl Listener {
 #[derive(Debug, Clone, Default)]
 pub struct Pairs {
     /// Points, each of tones of its own, those first on which the ends agree best.
-    pub points: Vec<Atom>,
+    pub points: Vec<Paired>,
     /// Places (x, y), metres, where points may be: those and others that take part in the same tones.
     pub guesses_metres: Vec<[f64; 2]>,
 }
@@ -137,11 +161,11 @@ pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> 
         pairs.extend(within);
         pairs.extend(beyond);
     }
-    pairs.sort_by(|a, b| a.apart.total_cmp(&b.apart));
+    pairs.sort_by(|a, b| a.point.apart.total_cmp(&b.point.apart));
     let guesses = matched(&pairs, &first, &last, MOST_GUESSES);
-    let guesses_metres = guesses.iter().map(|pair| pair.point.position_metres(0.0)).collect();
-    pairs.retain(|pair| pair.apart < MOST_APART);
-    let points: Vec<Atom> = matched(&pairs, &first, &last, 1).iter().map(|pair| pair.point).collect();
+    let guesses_metres = guesses.iter().map(|pair| pair.point.atom.position_metres(0.0)).collect();
+    pairs.retain(|pair| pair.point.apart < MOST_APART);
+    let points: Vec<Paired> = matched(&pairs, &first, &last, 1).iter().map(|pair| pair.point).collect();
     tracing::debug!(
         first = first.heard.len(),
         last = last.heard.len(),
@@ -199,11 +223,19 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
         }
     }
     let deviation = (noise_variance / radar.samples as f64).sqrt() / (radians_per_metre * step_metres).abs();
-    let heard = tones.iter().zip(&gains).zip(&cosines).map(|((tone, gain), cos)| Heard {
-        bins: tone.bins,
+    let is_alone = |i: usize| {
+        let apart = |j: usize| {
+            let off = (tones[i].bins - tones[j].bins).abs();
+            off.min(radar.samples as f64 - off)
+        };
+        (0..tones.len()).all(|j| j == i || apart(j) > ALONE_BINS)
+    };
+    let heard = gains.iter().zip(&cosines).enumerate().map(|(i, (gain, cos))| Heard {
+        bins: tones[i].bins,
         cos: *cos,
         amplitude: gain.norm(),
         cos_tolerance: COS + DEVIATIONS * deviation / gain.norm().max(f64::MIN_POSITIVE),
+        is_alone: is_alone(i),
     });
     let antennas = (!radar.is_monostatic()).then(|| [radar.pair(number), radar.pair(number + 1)]);
     Some(Listener { x_metres, step_metres, antennas, heard: heard.collect() })
@@ -239,8 +271,9 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
         ];
         let apart = disagreements.iter().map(|part| part.abs()).sum();
         if apart < GUESS * MOST_APART {
-            let point = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
-            pairs.push(Pair { first: i, last: j, point, disagreements, apart });
+            let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
+            let is_alone = own.is_alone && other.is_alone;
+            pairs.push(Pair { first: i, last: j, point: Paired { atom, apart, is_alone }, disagreements });
         }
     }
     pairs
@@ -263,8 +296,8 @@ mod tests {
         let noise = ends_noise_variance(&radar, &ends, Floor::Thesis.into());
         let found = paired_points(&radar, &ends.flat(), noise).unwrap().points;
         let near = |x: f64, y: f64| {
-            let distance = |a: &Atom| {
-                let [fx, fy] = a.position_metres(0.0);
+            let distance = |a: &Paired| {
+                let [fx, fy] = a.atom.position_metres(0.0);
                 (fx - x).hypot(fy - y)
             };
             found.iter().map(distance).fold(f64::INFINITY, f64::min)
