@@ -168,7 +168,8 @@ fn directions_rise_from_left_to_right_with_either_carrier() {
 #[test]
 fn a_map_of_an_earlier_scene_says_so_where_it_is_there() {
     for (stale, texture) in [(true, Some(TextureId::default())), (false, Some(TextureId::default())), (true, None)] {
-        let map = drawn([800.0, 600.0], state(), move |input| Input { stale, texture, ..input });
+        let after_first_start = State { captions: false, ..state() };
+        let map = drawn([800.0, 600.0], after_first_start, move |input| Input { stale, texture, ..input });
         let says_so = seen::texts(map.output()).iter().any(|t| t.text.contains("Previous scene"));
         assert_eq!((says_so, map.reads("computing…")), (stale && texture.is_some(), texture.is_none()));
     }
