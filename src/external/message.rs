@@ -18,7 +18,7 @@ const HEADER_BYTES: u64 = 4096 + 16;
 
 const MAX_ARRAYS: usize = 4;
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct Question<'a> {
     apertura: u32,
     ask: &'static str,
@@ -77,16 +77,7 @@ pub enum Map {
 
 /// The first question, which asks for the method's name and description.
 pub fn hello() -> Vec<u8> {
-    line_of(&Question {
-        apertura: VERSION,
-        ask: "hello",
-        id: 0,
-        radar: None,
-        noise: None,
-        normalisation: None,
-        snapshot_range_metres: None,
-        arrays: Vec::new(),
-    })
+    line_of(&Question { apertura: VERSION, ask: "hello", ..Question::default() })
 }
 
 /// The question for a map.
@@ -131,12 +122,9 @@ pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io:
         return Ok(None);
     }
     let line: AnswerHeader = serde_json::from_slice(&bytes).map_err(|error| rubbish(&bytes, &error.to_string()))?;
-    match line.apertura {
-        Some(VERSION) => {}
-        Some(other) => {
-            return Err(invalid(format!("it speaks version {other} of the protocol; expected {VERSION}")));
-        }
-        None => return Err(rubbish(&bytes, "it lacks \"apertura\"")),
+    let version = line.apertura.ok_or_else(|| rubbish(&bytes, "it lacks \"apertura\""))?;
+    if version != VERSION {
+        return Err(invalid(format!("it speaks version {version} of the protocol; expected {VERSION}")));
     }
     if line.arrays.len() > MAX_ARRAYS {
         return Err(invalid(format!("its answer has {} arrays; expected at most {MAX_ARRAYS}", line.arrays.len())));

@@ -66,8 +66,7 @@ fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
 pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let found = fs::metadata(path)?;
     if !found.is_file() {
-        let what = if found.is_dir() { "a folder" } else { "a device or pipe" };
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected a file")));
+        return Err(no_file(found.is_dir(), "a file"));
     }
     let too_large = |bytes| {
         let message = format!("has {bytes} bytes; files of at most {most} bytes are read here");
@@ -94,13 +93,15 @@ pub fn read_start(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+fn no_file(is_folder: bool, expected: &str) -> io::Error {
+    let what = if is_folder { "a folder" } else { "a device or pipe" };
+    io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected {expected}"))
+}
+
 fn destination(path: &Path) -> io::Result<PathBuf> {
     match fs::metadata(path) {
         Ok(found) if found.is_file() => fs::canonicalize(path),
-        Ok(found) => {
-            let what = if found.is_dir() { "a folder" } else { "a device or pipe" };
-            Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected the name of a file")))
-        }
+        Ok(found) => Err(no_file(found.is_dir(), "the name of a file")),
         Err(_) => Ok(path.to_owned()),
     }
 }

@@ -2,8 +2,7 @@
 
 use super::entries::check_entries;
 use super::{npy, write_atomically};
-use crate::platform::fs::Draft;
-use crate::platform::fs::File;
+use crate::platform::fs::{Draft, File};
 use ndarray::{Array, Array2, ArrayRef, Dimension};
 use ndarray_npy::npy::header::{Header, Layout};
 use ndarray_npy::{

@@ -196,16 +196,10 @@ impl Antennas {
 
     /// The same antennas with left and right exchanged.
     pub fn mirrored(&self) -> Self {
-        let mirrored = |places: &[f64]| places.iter().map(|x| -x).collect();
-        Antennas {
-            transmitter_x_metres: mirrored(&self.transmitter_x_metres),
-            receiver_x_metres: mirrored(&self.receiver_x_metres),
-            pairs: self.pairs.iter().rev().copied().collect(),
-            ..self.clone()
-        }
+        Antennas { pairs: self.pairs.iter().rev().copied().collect(), ..self.scaled(-1.0) }
     }
 
-    /// The same antennas, all distances along the line `factor` times as large.
+    /// The same antennas, all places along the line `factor` times as far.
     fn scaled(&self, factor: f64) -> Self {
         let scaled = |places: &[f64]| places.iter().map(|x| x * factor).collect();
         Antennas {

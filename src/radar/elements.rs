@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Deviation of one element from its nominal gain, phase and place.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ElementError {
     /// Gain error.
@@ -22,18 +22,6 @@ pub struct ElementError {
     pub forward_millimetres: f64,
     /// Whether the element is dead: it receives nothing.
     pub dead: bool,
-}
-
-impl Default for ElementError {
-    fn default() -> Self {
-        ElementError {
-            gain: Decibels(0.0),
-            phase_degrees: 0.0,
-            position_millimetres: 0.0,
-            forward_millimetres: 0.0,
-            dead: false,
-        }
-    }
 }
 
 impl ElementError {

@@ -32,23 +32,16 @@ impl Radar {
     }
 
     pub(super) fn check_memory(&self) -> Result<(), RadarError> {
-        let bytes = self.memory_bytes();
-        if bytes <= MAX_MEMORY_BYTES && self.chirp_bytes() <= MAX_MEMORY_BYTES / 2 {
+        let Radar { elements, samples, end_elements, chirps, .. } = *self;
+        let (bytes, most) = (Bytes(self.chirp_bytes()), Bytes(MAX_MEMORY_BYTES / 2));
+        if bytes > most {
+            return Err(RadarError::ChirpMemory { chirps, samples, bytes, most });
+        }
+        let (bytes, most) = (Bytes(self.memory_bytes()), Bytes(MAX_MEMORY_BYTES));
+        if bytes <= most {
             return Ok(());
         }
-        let bytes_of_chirps = Bytes(self.chirp_bytes());
-        if bytes_of_chirps.0 > MAX_MEMORY_BYTES / 2 {
-            let Radar { chirps, samples, .. } = *self;
-            return Err(RadarError::ChirpMemory {
-                chirps,
-                samples,
-                bytes: bytes_of_chirps,
-                most: Bytes(MAX_MEMORY_BYTES / 2),
-            });
-        }
-        let field = if self.elements >= self.samples { "elements" } else { "samples" };
-        let Radar { elements, samples, end_elements, .. } = *self;
-        let (bytes, most) = (Bytes(bytes), Bytes(MAX_MEMORY_BYTES));
+        let field = if elements >= samples { "elements" } else { "samples" };
         Err(RadarError::Memory { field, elements, samples, end_elements, bytes, most })
     }
 }

@@ -9,9 +9,7 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Calibration {
-    /// Gain of each element, decibels.
     pub gain_db: Vec<f64>,
-    /// Phase shift of each element, degrees.
     pub phase_degrees: Vec<f64>,
 }
 

@@ -32,9 +32,6 @@ const MAX_DEPTH: usize = 4;
 
 /// Reads the array called `key`: a variable, a member of a struct (`radar.adcData`), or the cells of one, all of one shape, one after
 /// another along a first axis.
-///
-/// # Errors
-/// [`Fault`] names the array, and what was expected of it.
 pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
     let mut search = Search { want: Some(key), ..Search::default() };
     look_through(file, &mut search)?;
@@ -44,9 +41,6 @@ pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
 }
 
 /// Names and shapes of all arrays of numbers, those in structs and cells too.
-///
-/// # Errors
-/// [`Fault`].
 pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut search = Search::default();
     look_through(file, &mut search)?;

@@ -7,22 +7,16 @@ use crate::files::npy::header_bytes;
 use crate::files::npz::Npz;
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 use ndarray_npy::npy::header::Header;
-use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
+use ndarray_npy::{ReadNpyExt, ReadableElement};
 use num_complex::{Complex32, Complex64};
 use std::io::{Cursor, Read, Seek};
 
 /// Reads the array `key` of an archive.
-///
-/// # Errors
-/// [`Fault`] names the key, and what was expected of it.
 pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     read_array(Npz::of(file)?.entry(key)?, &format!("array \"{key}\""))
 }
 
 /// Names and shapes of the arrays of an archive, without their numbers; those that can't be read are left out.
-///
-/// # Errors
-/// [`Fault`].
 pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut archive = Npz::of(file)?;
     let keys = archive.keys().to_vec();
@@ -35,9 +29,6 @@ pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>
 }
 
 /// Reads the one array of an `.npy` file.
-///
-/// # Errors
-/// [`Fault`].
 pub(super) fn read_npy(file: impl Read) -> Result<Numbers, Fault> {
     read_array(file, "the array")
 }
@@ -52,30 +43,29 @@ fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, Fault> {
     let header_length = header_bytes.len();
     let whole = Cursor::new(header_bytes).chain(file);
     let numbers = match found.trim_matches(['\'', '"']) {
-        "<c16" | ">c16" => Numbers::Complex(array::<Complex64>(whole).map_err(|e| damaged(e.to_string()))?),
-        "<c8" | ">c8" => {
-            let values = array::<Complex32>(whole).map_err(|e| damaged(e.to_string()))?;
-            Numbers::Complex(values.mapv(|v| Complex64::new(v.re.into(), v.im.into())))
-        }
-        "<f8" | ">f8" => Numbers::Real(array::<f64>(whole).map_err(|e| damaged(e.to_string()))?),
-        "<f4" | ">f4" => Numbers::Real(array::<f32>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<i2" | ">i2" => Numbers::Real(array::<i16>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<i4" | ">i4" => Numbers::Real(array::<i32>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<i8" | ">i8" => Numbers::Real(array::<i64>(whole).map_err(|e| damaged(e.to_string()))?.mapv(|v| v as f64)),
-        "<u2" | ">u2" => Numbers::Real(array::<u16>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "|i1" => Numbers::Real(array::<i8>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<f2" => Numbers::Real(words(whole, header_length, &header, 1, half_value).map_err(damaged)?.remove(0)),
+        "<c16" | ">c16" => array(whole, |v: Complex64| v).map(Numbers::Complex),
+        "<c8" | ">c8" => array(whole, |v: Complex32| Complex64::new(v.re.into(), v.im.into())).map(Numbers::Complex),
+        "<f8" | ">f8" => array(whole, |v: f64| v).map(Numbers::Real),
+        "<f4" | ">f4" => array::<f32, _>(whole, f64::from).map(Numbers::Real),
+        "<i2" | ">i2" => array::<i16, _>(whole, f64::from).map(Numbers::Real),
+        "<i4" | ">i4" => array::<i32, _>(whole, f64::from).map(Numbers::Real),
+        "<i8" | ">i8" => array(whole, |v: i64| v as f64).map(Numbers::Real),
+        "<u2" | ">u2" => array::<u16, _>(whole, f64::from).map(Numbers::Real),
+        "|i1" => array::<i8, _>(whole, f64::from).map(Numbers::Real),
+        "<f2" => words(whole, header_length, &header, 1, half_value).map(|mut parts| Numbers::Real(parts.remove(0))),
         _ if is_pair(&found) => {
-            let mut parts = words(whole, header_length, &header, 2, |word| f64::from(word as i16)).map_err(damaged)?;
-            let (second, first) = (parts.remove(1), parts.remove(0));
-            Numbers::Complex(ndarray::Zip::from(&first).and(&second).map_collect(|re, im| Complex64::new(*re, *im)))
+            let parts = words(whole, header_length, &header, 2, |word| f64::from(word as i16));
+            parts.map(|parts| {
+                let both = ndarray::Zip::from(&parts[0]).and(&parts[1]);
+                Numbers::Complex(both.map_collect(|re, im| Complex64::new(*re, *im)))
+            })
         }
         _ => {
             let expected = "complex or real numbers, integers of 16 or more bits or int8, or pairs of int16";
             return Err(Fault::Data(format!("{what} holds {found}; expected {expected}")));
         }
     };
-    Ok(numbers)
+    numbers.map_err(damaged)
 }
 
 /// Whether a structure of two 16-bit integers, low byte first, is meant: real and imaginary part.
@@ -106,8 +96,12 @@ fn words(
     (0..parts).map(part).collect()
 }
 
-fn array<T: ReadableElement>(file: impl Read) -> Result<ArrayD<T>, ReadNpyError> {
-    ArrayD::<T>::read_npy(file)
+fn array<T, U>(file: impl Read, number: impl FnMut(T) -> U) -> Result<ArrayD<U>, String>
+where
+    T: ReadableElement + Clone + 'static,
+    U: 'static,
+{
+    Ok(ArrayD::<T>::read_npy(file).map_err(|e| e.to_string())?.mapv_into_any(number))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The table `[recording]` of a recording's TOML.
 
-use super::signs::{BeatSign, CarrierAt, Said, Signs, Sweep, oldest};
+use super::signs::{BeatSign, CarrierAt, Sweep};
 use super::{AxisKind, Calibration, Capture, Chirp, Fault};
 use crate::radar::{End, Radar};
 use serde::Deserialize;
@@ -27,10 +27,11 @@ pub(super) struct Table {
     #[serde(default)]
     pub missing: Vec<usize>,
     pub range_metres: Option<f64>,
-    conjugate: Option<bool>,
-    carrier_at: Option<CarrierAt>,
-    beat_sign: Option<BeatSign>,
-    sweep: Option<Sweep>,
+    /// Whether the samples are conjugated: format 1 alone.
+    pub conjugate: Option<bool>,
+    pub carrier_at: Option<CarrierAt>,
+    pub beat_sign: Option<BeatSign>,
+    pub sweep: Option<Sweep>,
     #[serde(default)]
     pub reverse_elements: bool,
     #[serde(default)]
@@ -77,20 +78,6 @@ impl Table {
             }
         }
         Ok(())
-    }
-
-    /// The changes that signs and carrier ask of the samples. The carrier of a `.cfg` is that in the middle of the samples.
-    pub fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
-        let Table { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
-        let carrier_at = match carrier_at {
-            Some(CarrierAt::FirstSample) if has_profile => {
-                let expected = "\"middle\", as the .cfg says, or no such key";
-                return Err(Fault::key("recording.carrier_at", "is \"first-sample\"", expected));
-            }
-            None if has_profile && format > oldest() && radar.samples > 1 => Some(CarrierAt::Middle),
-            said => said,
-        };
-        Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
     }
 
     /// Chooses another frame than the text's.

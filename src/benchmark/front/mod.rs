@@ -57,8 +57,7 @@ impl FrontRequest {
 }
 
 /// The measured choice of algorithm: the planner's, or a forced one. Written and read as "plan" or the algorithm's name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(into = "String")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Entrant {
     Planned,
     Forced(Algorithm),
@@ -84,12 +83,6 @@ impl FromStr for Entrant {
 
     fn from_str(s: &str) -> Result<Self, Self::Err> {
         if s == "plan" { Ok(Entrant::Planned) } else { s.parse().map(Entrant::Forced) }
-    }
-}
-
-impl From<Entrant> for String {
-    fn from(entrant: Entrant) -> String {
-        entrant.name().to_owned()
     }
 }
 
@@ -144,7 +137,7 @@ impl fmt::Display for MapConvention {
     }
 }
 
-/// Serialises a floor or a normalisation as the command line writes it.
+/// Serialises a floor, a normalisation or an entrant as the command line writes it.
 fn as_text<S: Serializer>(value: &impl fmt::Display, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(value)
 }
@@ -162,6 +155,7 @@ pub struct LambdaError {
 pub struct FrontRow {
     pub task: FrontTask,
     pub reflectors: usize,
+    #[serde(serialize_with = "as_text")]
     pub algorithm: Entrant,
     /// The planner's choice for the whole scene, or the forced algorithm.
     pub chosen: Algorithm,

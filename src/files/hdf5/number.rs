@@ -44,20 +44,8 @@ pub fn half_value(word: u16) -> f64 {
 
 /// The type of an array's numbers.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Member {
-    One(NumberKind),
-    /// A compound of two: the offsets and types of real and imaginary part.
-    Two {
-        bytes: usize,
-        parts: [(usize, NumberKind); 2],
-    },
-}
-
-impl Member {
-    pub fn bytes(&self) -> usize {
-        match self {
-            Member::One(kind) => kind.bytes,
-            Member::Two { bytes, .. } => *bytes,
-        }
-    }
+pub(super) struct Member {
+    pub bytes: usize,
+    /// Offset and type of the number; of a compound those of real and imaginary part.
+    pub parts: Vec<(usize, NumberKind)>,
 }

@@ -4,11 +4,10 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 /// An error of reading an array.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum Hdf5Error {
-    /// The system could not read.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// The file has no superblock.
     #[error("not an HDF5 file; expected one as h5py or MATLAB (-v7.3) writes it")]
     Signature,
     /// The bytes contradict themselves or end too soon.
@@ -17,24 +16,10 @@ pub enum Hdf5Error {
     /// A way of storing that is not read.
     #[error("{0} is not read; expected it as h5py writes by itself, or as an .npz")]
     Unread(&'static str),
-    /// The file lacks the array.
     #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
-    Missing {
-        /// The name asked for.
-        key: String,
-        /// The names the file has.
-        found: String,
-    },
-    /// More numbers than are read.
+    Missing { key: String, found: String },
     #[error("array \"{key}\" has shape {shape:?}; expected at most {most} numbers")]
-    TooLarge {
-        /// The name.
-        key: String,
-        /// Its shape.
-        shape: Vec<usize>,
-        /// Most numbers that are read.
-        most: usize,
-    },
+    TooLarge { key: String, shape: Vec<usize>, most: usize },
 }
 
 /// The file, and the sizes of its addresses and lengths.

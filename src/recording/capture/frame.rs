@@ -39,7 +39,7 @@ impl Frame {
             take_out_constant(&mut all);
         }
         if capture.static_clutter == Part::Out && loops > 1 {
-            let mean = mean_over_loops(&all);
+            let mean = all.sum_axis(Axis(0)).mapv_into(|v| v / loops as f64);
             all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
         }
         if layout.parts == Parts::Real {
@@ -82,13 +82,6 @@ impl Frame {
         let sum: f64 = weights.iter().sum();
         weights.into_iter().map(|w| w / sum).collect()
     }
-}
-
-fn mean_over_loops(all: &Array4<Complex64>) -> Array3<Complex64> {
-    let mut mean = all.sum_axis(Axis(0));
-    let loops = all.dim().0.max(1) as f64;
-    mean.mapv_inplace(|v| v / loops);
-    mean
 }
 
 fn take_out_constant(all: &mut Array4<Complex64>) {

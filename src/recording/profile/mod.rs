@@ -1,18 +1,15 @@
 //! The `.cfg` that sets a TI radar up over its command line ("mmWave SDK User Guide", configuration file format).
 //!
-//! `lines` finds the commands, `commands` keeps those that are read, `frames` reads the frames, `dialect` names other texts.
+//! `lines` finds the commands and names texts of other dialects, `commands` keeps those that are read and reads the frames.
 
 mod commands;
-mod dialect;
-mod frames;
 pub(super) mod lines;
 #[cfg(test)]
 pub(super) mod tests;
 
 use super::Fault;
-use commands::Commands;
-use frames::{Frame, frames};
-use lines::Line;
+use commands::{Commands, Frame, frames};
+use lines::{Line, check_dialect};
 use num_complex::Complex64;
 
 /// The radar and the data format that a `.cfg` sets.
@@ -101,7 +98,7 @@ impl RadarProfile {
     /// # Errors
     /// As [`RadarProfile::parse`].
     pub fn of_sub_frame(text: &str, sub_frame: Option<usize>) -> Result<RadarProfile, Fault> {
-        dialect::check(text)?;
+        check_dialect(text)?;
         let commands = Commands::read(text)?;
         if commands.profiles.is_empty() {
             return Err(missing("profileCfg"));

@@ -11,20 +11,16 @@
 //! | `text` | the TOML |
 //! | `array` | arrays without a text |
 //! | `axes` | the quantities that the axes of an array count, by evidence |
-//! | `imported` | the ways to read a file |
 
 mod array;
 mod axes;
 mod beside;
 pub mod boards;
 mod first_frame;
-mod imported;
 mod line;
 #[cfg(test)]
 pub(super) mod tests;
 mod text;
-
-pub use imported::Imported;
 
 use super::axes::{Chirp, Join};
 use super::capture::{Capture, Part};
@@ -41,6 +37,28 @@ use std::path::{Path, PathBuf};
 
 /// Most layouts that are offered.
 const OFFERED: usize = 4;
+
+/// The ways to read a file, and the texts that describe it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// The file, and the ways to read it.
+    pub origin: Origin,
+    /// The layouts of a raw capture; nothing for an array.
+    pub found: Option<Found>,
+}
+
+impl Imported {
+    /// Certainty of the choice.
+    pub fn certainty(&self) -> Certainty {
+        self.found.as_ref().map_or_else(|| Certainty::of(self.margin()), Found::certainty)
+    }
+
+    /// Log-odds of the best above those of the next; `None` where there is no next.
+    pub fn margin(&self) -> Option<f64> {
+        let offers = &self.origin.offers;
+        Some(offers.first()?.log_odds - offers.get(1)?.log_odds)
+    }
+}
 
 /// Whether `path` names a raw capture, an array without a text, or the `.cfg` of one, by its ending. An `.npz` is one only by its arrays:
 /// [`is_raw_at`].
