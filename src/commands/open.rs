@@ -131,15 +131,12 @@ fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Re
 /// `apertura.png`, or `apertura-2.png` and so on where that name is taken by a file that this program did not draw.
 fn free_name(folder: &Path) -> PathBuf {
     let ours = |path: &Path| std::fs::read(path).is_ok_and(|bytes| is_our_png(&bytes));
-    let name = |number: u32| if number == 1 { PICTURE.to_owned() } else { format!("apertura-{number}.png") };
-    let mut number = 1;
-    loop {
-        let path = if folder == Path::new(".") { name(number).into() } else { folder.join(name(number)) };
-        if std::fs::symlink_metadata(&path).is_err() || ours(&path) {
-            return path;
-        }
-        number += 1;
-    }
+    let path = |number: u32| {
+        let name = if number == 1 { PICTURE.to_owned() } else { format!("apertura-{number}.png") };
+        if folder == Path::new(".") { PathBuf::from(name) } else { folder.join(name) }
+    };
+    let is_free = |path: &PathBuf| std::fs::symlink_metadata(path).is_err() || ours(path);
+    (1..u32::MAX).map(path).find(is_free).unwrap_or_else(|| path(u32::MAX))
 }
 
 #[cfg(test)]

@@ -6,22 +6,14 @@ pub mod kind;
 pub mod memory;
 pub mod npy;
 pub mod npz;
+mod number;
 pub mod sha256;
 
+pub use number::{NumberKind, Numbers};
+
 use crate::platform::fs::{self, Draft, File};
-use ndarray::ArrayD;
-use num_complex::Complex64;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
-
-/// Numbers of an array, in the order of its axes.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Numbers {
-    /// Real numbers or integers.
-    Real(ArrayD<f64>),
-    /// Complex numbers.
-    Complex(ArrayD<Complex64>),
-}
 
 /// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. A reader sees the
 /// old file or the new one, never a part; on any error the old one stays as it was.

@@ -8,7 +8,6 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
 
-/// Most numbers whose chirps are joined.
 const MOST_JOINED: usize = 1 << 23;
 
 /// The quantity that an axis of an array counts.

@@ -13,9 +13,7 @@ pub struct Calibration {
     pub phase_degrees: Vec<f64>,
 }
 
-/// Largest gain that is taken off, decibels either way.
 const MOST_GAIN_DB: f64 = 200.0;
-/// Largest phase that is taken off, degrees either way.
 const MOST_PHASE_DEGREES: f64 = 3600.0;
 
 impl Calibration {

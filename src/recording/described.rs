@@ -18,7 +18,6 @@ use serde::Deserialize;
 use std::io::{self, BufReader, Read};
 use std::path::Path;
 
-/// Longest text that is read, bytes.
 const MAX_TEXT_BYTES: u64 = 1 << 20;
 
 #[derive(Deserialize)]
@@ -43,7 +42,6 @@ pub(super) fn open_file(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Opens the data files in a folder by their names.
 pub(super) fn beside(folder: &Path) -> impl Fn(&str) -> io::Result<Box<dyn Source>> {
     |name| Ok(Box::new(BufReader::new(open_file(&folder.join(name))?)))
 }
@@ -94,7 +92,6 @@ pub(super) struct Described<'a> {
     pub radar: Radar,
     pub profile: Option<RadarProfile>,
     pub signs: Signs,
-    /// Whether the text says the interval of loops.
     says_interval: bool,
 }
 

@@ -2,14 +2,9 @@
 
 use super::Fault;
 use super::numbers::{Numbers, bounded_count, too_large};
-use crate::files::hdf5::half_value;
-use crate::files::npy::header_bytes;
+use crate::files::npy::NpyHeader;
 use crate::files::npz::Npz;
-use ndarray::{ArrayD, IxDyn, ShapeBuilder};
-use ndarray_npy::npy::header::Header;
-use ndarray_npy::{ReadNpyExt, ReadableElement};
-use num_complex::{Complex32, Complex64};
-use std::io::{Cursor, Read, Seek};
+use std::io::{self, Read, Seek};
 
 /// Reads the array `key` of an archive.
 pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
@@ -20,11 +15,7 @@ pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fau
 pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut archive = Npz::of(file)?;
     let keys = archive.keys().to_vec();
-    let shape = |key: String| {
-        let bytes = header_bytes(&mut archive.entry(&key).ok()?).ok()?;
-        let header = Header::from_reader(&mut bytes.as_slice()).ok()?;
-        Some((key, header.shape))
-    };
+    let shape = |key: String| Some((key.clone(), NpyHeader::read(&mut archive.entry(&key).ok()?).ok()?.shape));
     Ok(keys.into_iter().filter_map(shape).collect())
 }
 
@@ -34,74 +25,14 @@ pub(super) fn read_npy(file: impl Read) -> Result<Numbers, Fault> {
 }
 
 fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, Fault> {
-    let damaged =
-        |reason: String| Fault::Data(format!("{what} can't be read: {reason}; expected what numpy.save writes"));
-    let header_bytes = header_bytes(&mut file).map_err(|e| damaged(e.to_string()))?;
-    let header = Header::from_reader(&mut header_bytes.as_slice()).map_err(|e| damaged(e.to_string()))?;
+    let damaged = |e: io::Error| Fault::Data(format!("{what} can't be read: {e}; expected what numpy.save writes"));
+    let header = NpyHeader::read(&mut file).map_err(damaged)?;
     bounded_count(&header.shape).ok_or_else(|| too_large(what, &header.shape))?;
-    let found = header.type_descriptor.to_string();
-    let header_length = header_bytes.len();
-    let whole = Cursor::new(header_bytes).chain(file);
-    let numbers = match found.trim_matches(['\'', '"']) {
-        "<c16" | ">c16" => array(whole, |v: Complex64| v).map(Numbers::Complex),
-        "<c8" | ">c8" => array(whole, |v: Complex32| Complex64::new(v.re.into(), v.im.into())).map(Numbers::Complex),
-        "<f8" | ">f8" => array(whole, |v: f64| v).map(Numbers::Real),
-        "<f4" | ">f4" => array::<f32, _>(whole, f64::from).map(Numbers::Real),
-        "<i2" | ">i2" => array::<i16, _>(whole, f64::from).map(Numbers::Real),
-        "<i4" | ">i4" => array::<i32, _>(whole, f64::from).map(Numbers::Real),
-        "<i8" | ">i8" => array(whole, |v: i64| v as f64).map(Numbers::Real),
-        "<u2" | ">u2" => array::<u16, _>(whole, f64::from).map(Numbers::Real),
-        "|i1" => array::<i8, _>(whole, f64::from).map(Numbers::Real),
-        "<f2" => words(whole, header_length, &header, 1, half_value).map(|mut parts| Numbers::Real(parts.remove(0))),
-        _ if is_pair(&found) => {
-            let parts = words(whole, header_length, &header, 2, |word| f64::from(word as i16));
-            parts.map(|parts| {
-                let both = ndarray::Zip::from(&parts[0]).and(&parts[1]);
-                Numbers::Complex(both.map_collect(|re, im| Complex64::new(*re, *im)))
-            })
-        }
-        _ => {
-            let expected = "complex or real numbers, integers of 16 or more bits or int8, or pairs of int16";
-            return Err(Fault::Data(format!("{what} holds {found}; expected {expected}")));
-        }
+    let unread = || {
+        let expected = "complex or real numbers, integers of 16 or more bits or int8, or pairs of int16";
+        Fault::Data(format!("{what} holds {}; expected {expected}", header.descriptor))
     };
-    numbers.map_err(damaged)
-}
-
-/// Whether a structure of two 16-bit integers, low byte first, is meant: real and imaginary part.
-fn is_pair(found: &str) -> bool {
-    found.starts_with('[') && found.matches("'<i2'").count() == 2 && found.matches('\'').count() == 8
-}
-
-/// `parts` arrays of the header's shape, of 16-bit words that stand in turn.
-fn words(
-    mut file: impl Read,
-    header_length: usize,
-    header: &Header,
-    parts: usize,
-    number: fn(u16) -> f64,
-) -> Result<Vec<ArrayD<f64>>, String> {
-    let count = bounded_count(&header.shape).ok_or("too many numbers")?;
-    let mut bytes = Vec::new();
-    let length = header_length + 2 * parts * count;
-    file.by_ref().take(length as u64).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
-    let data = bytes.get(header_length..).filter(|data| data.len() == 2 * parts * count).ok_or("it ends too early")?;
-    let words: Vec<f64> = data.chunks_exact(2).map(|b| number(u16::from_le_bytes([b[0], b[1]]))).collect();
-    let in_columns = matches!(header.layout, ndarray_npy::npy::header::Layout::Fortran);
-    let shape = IxDyn(&header.shape).set_f(in_columns);
-    let part = |n: usize| {
-        let values = words.iter().skip(n).step_by(parts).copied().collect();
-        ArrayD::from_shape_vec(shape.clone(), values).map_err(|e| e.to_string())
-    };
-    (0..parts).map(part).collect()
-}
-
-fn array<T, U>(file: impl Read, number: impl FnMut(T) -> U) -> Result<ArrayD<U>, String>
-where
-    T: ReadableElement + Clone + 'static,
-    U: 'static,
-{
-    Ok(ArrayD::<T>::read_npy(file).map_err(|e| e.to_string())?.mapv_into_any(number))
+    header.numbers(file).ok_or_else(unread)?.map_err(damaged)
 }
 
 #[cfg(test)]
@@ -109,6 +40,8 @@ mod tests {
     use super::*;
     use ndarray::{Array, Dimension, array};
     use ndarray_npy::{NpzWriter, WritableElement, WriteNpyExt};
+    use num_complex::{Complex32, Complex64};
+    use std::io::Cursor;
 
     fn npy<T: WritableElement, D: Dimension>(values: &Array<T, D>) -> Vec<u8> {
         let mut bytes = Vec::new();

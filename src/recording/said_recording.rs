@@ -42,7 +42,6 @@ pub(super) struct Table {
     pub has_places: bool,
 }
 
-/// The elements whose samples a file holds.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Covers {

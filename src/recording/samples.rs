@@ -10,9 +10,8 @@ use super::said_recording::{Covers, Table};
 use super::{AxisKind, Capture, Chirp, Fault, Recorded, hdf5};
 use crate::radar::Radar;
 use crate::signal::BeatSignal;
-use ndarray::{Array2, Array3, Axis, concatenate};
+use ndarray::{Array2, Array3, Axis, ShapeError, concatenate};
 use num_complex::Complex64;
-use std::cell::RefCell;
 use std::collections::HashSet;
 use std::io;
 
@@ -126,51 +125,56 @@ impl Described<'_> {
     }
 
     fn arrays(&self) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
-        let table = &self.table;
-        let Some(axes) = &table.axes else {
+        let Table { axes, array, first, last, .. } = &self.table;
+        let Some(axes) = axes else {
             let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
             return Err(Fault::key("recording.axes", "is missing", kinds));
         };
-        let notes = RefCell::new(Vec::new());
-        let array = |key: Option<&str>| -> Result<Array2<Complex64>, Fault> {
-            let mut numbers = self.numbers(key)?;
-            let mut kinds = axes.clone();
-            notes.borrow_mut().extend(numbers.mend_signs());
-            let numbers = one_frame(numbers, &mut kinds, table.frame)?;
-            notes.borrow_mut().extend(told_of_real(&numbers, &kinds));
-            let numbers = in_turn(numbers, &mut kinds, table.transmitters_in_turn)?;
-            let len = |kind| kinds.iter().position(|k| *k == kind).map_or(1, |place| numbers.shape()[place]);
-            let sizes = [len(AxisKind::Transmitter), len(AxisKind::Receiver)];
-            let rows = if table.chirp == Some(Chirp::Joined(Join::Strongest)) && kinds.contains(&AxisKind::Chirp) {
-                let (rows, note) = self.joined(numbers, &kinds)?;
-                notes.borrow_mut().extend(note);
-                rows
-            } else {
-                arrange(numbers, &kinds, table.chirp)?
-            };
-            Ok(match taken(table, rows.nrows(), sizes)? {
-                Some(places) => rows.select(Axis(0), &places),
-                None => rows,
-            })
-        };
-        let rows = match (&table.array, &table.first, &table.last) {
-            (array_key, None, None) => array(array_key.as_deref()),
+        match (array, first, last) {
+            (array, None, None) => self.array(array.as_deref(), axes.clone()),
             (None, Some(first), Some(last)) => {
-                let (first, last) = (array(Some(first))?, array(Some(last))?);
+                let (first, mut notes) = self.array(Some(first), axes.clone())?;
+                let (last, of_last) = self.array(Some(last), axes.clone())?;
                 if first.dim() != last.dim() {
                     let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
                     return Err(Fault::count("numbers in \"last\"", last.len(), &expected, last.dim()));
                 }
+                notes.extend(of_last);
+                notes.dedup();
                 // Equal shapes join.
-                concatenate(Axis(0), &[first.view(), last.view()])
-                    .map_err(|e| Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\""))
+                let rows = concatenate(Axis(0), &[first.view(), last.view()]);
+                let unlike = |e: ShapeError| {
+                    Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\"")
+                };
+                Ok((rows.map_err(unlike)?, notes))
             }
             _ => {
                 Err(Fault::key("recording.array", "stands beside half a pair", "either array, or both first and last"))
             }
-        }?;
-        let mut notes = notes.into_inner();
-        notes.dedup();
+        }
+    }
+
+    /// The array called `key`, `[elements, samples]`, and sentences on its samples.
+    fn array(&self, key: Option<&str>, mut kinds: Vec<AxisKind>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+        let table = &self.table;
+        let mut numbers = self.numbers(key)?;
+        let mut notes: Vec<String> = numbers.mend_signs().into_iter().collect();
+        let numbers = one_frame(numbers, &mut kinds, table.frame)?;
+        notes.extend(told_of_real(&numbers, &kinds));
+        let numbers = in_turn(numbers, &mut kinds, table.transmitters_in_turn)?;
+        let len = |kind| kinds.iter().position(|k| *k == kind).map_or(1, |place| numbers.shape()[place]);
+        let sizes = [len(AxisKind::Transmitter), len(AxisKind::Receiver)];
+        let rows = if table.chirp == Some(Chirp::Joined(Join::Strongest)) && kinds.contains(&AxisKind::Chirp) {
+            let (rows, told) = self.joined(numbers, &kinds)?;
+            notes.extend(told);
+            rows
+        } else {
+            arrange(numbers, &kinds, table.chirp)?
+        };
+        let rows = match taken(table, rows.nrows(), sizes)? {
+            Some(places) => rows.select(Axis(0), &places),
+            None => rows,
+        };
         Ok((rows, notes))
     }
 
@@ -227,17 +231,14 @@ impl Described<'_> {
         let missing: HashSet<usize> = table.missing.iter().copied().collect();
         let present: Vec<usize> = covered.iter().copied().filter(|n| !missing.contains(n)).collect();
         let places = [&covered, &present].into_iter().find(|places| places.len() == rows.nrows()).ok_or_else(|| {
-            let without = if present.len() < covered.len() {
-                format!(", or {} without the missing ones", present.len())
-            } else {
-                String::new()
-            };
+            let fewer =
+                (present.len() < covered.len()).then(|| format!(", or {} without the missing ones", present.len()));
             let whose = if table.covers() == Covers::All {
                 "radar.elements says"
             } else {
                 "radar.end_elements says for two ends"
             };
-            let expected = format!("{} as {whose}{without}", covered.len());
+            let expected = format!("{} as {whose}{}", covered.len(), fewer.unwrap_or_default());
             Fault::count("elements", rows.nrows(), &expected, rows.dim())
         })?;
         let mut samples = Array2::zeros((radar.elements, radar.samples));

@@ -4,22 +4,19 @@
 //! Features of newer writers (version 4 of chunks, dense groups, other filters) are refused by name. A file is read by seeking, and no
 //! memory is asked for before the size was compared with the file's or with the bound.
 //!
-//! `source` reads bytes, `object` headers of objects, `data` numbers; `number` has the types of numbers.
+//! `source` reads bytes, `object` headers of objects, `data` numbers.
 
 mod data;
-mod number;
 mod object;
 mod source;
 #[cfg(test)]
 mod tests;
 
-pub use number::half_value;
 pub use source::Hdf5Error;
 
-use super::Numbers;
+use super::{NumberKind, Numbers};
 use ndarray::ArrayD;
 use num_complex::Complex64;
-use number::NumberKind;
 use object::{Hdf5Object, MOST_OBJECTS};
 use source::{Hdf5Bytes, HeaderBytes};
 use std::io::{Read, Seek};

@@ -1,7 +1,7 @@
 //! Headers of objects: groups with their members, arrays with their shape, kind and place.
 
-use super::number::{Member, NumberKind};
 use super::source::{Hdf5Bytes, Hdf5Error, HeaderBytes};
+use crate::files::NumberKind;
 use std::io::{Read, Seek};
 
 /// Most objects that are looked at.
@@ -22,6 +22,14 @@ pub(super) enum ChunkFilter {
     /// A sum behind the bytes, which is not compared.
     Sum,
     Unread,
+}
+
+/// The type of an array's numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Member {
+    pub bytes: usize,
+    /// Offset and type of the number; of a compound those of real and imaginary part.
+    pub parts: Vec<(usize, NumberKind)>,
 }
 
 /// Storage of an array's numbers.

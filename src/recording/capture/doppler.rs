@@ -102,7 +102,6 @@ fn transformed(frame: &Frame) -> Array3<Complex64> {
     out
 }
 
-/// Transforms range profiles back to samples.
 fn transform_back(rows: &mut Array3<Complex64>) {
     let samples = rows.dim().2;
     let fft = Simd::chosen().forward_fft::<f64>(samples);
@@ -114,7 +113,6 @@ fn transform_back(rows: &mut Array3<Complex64>) {
     }
 }
 
-/// The Doppler cell of a bin.
 #[derive(Clone, Copy)]
 struct Cell {
     /// Turns from loop to loop, -0.5 to 0.5.
@@ -197,7 +195,6 @@ impl Cells {
     }
 }
 
-/// Power of the middle cell.
 fn middle(powers: &[f64]) -> f64 {
     let mut sorted = powers.to_vec();
     sorted.sort_by(f64::total_cmp);

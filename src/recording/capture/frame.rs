@@ -11,12 +11,10 @@ use ndarray::{Array3, Array4, Axis, s};
 use num_complex::Complex64;
 use std::io::{Read, Seek};
 
-/// The samples of a frame.
 #[derive(Debug, Clone)]
 pub(in crate::recording) struct Frame {
     /// `[loops, chirps, receivers, samples]`: complex, real ones as analytic signals of half as many samples.
     pub samples: Array4<Complex64>,
-    /// Zeros of lost packets, saturation, constant part, and other faults of the samples.
     pub quality: Quality,
 }
 

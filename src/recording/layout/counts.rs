@@ -74,7 +74,6 @@ const ALIKE_NOTE: &str = "All rows of samples are alike, as of one receiver, or 
 pub(super) const CLIPPED_NOTE: &str = "Many samples stand at the ends of their type, so echoes have harmonics that look like receivers and rows: \
     samples and receivers may be others.";
 
-/// Likely counts.
 pub(super) struct LikelyCounts {
     /// The order of parts that they are counts of; `None` where any may be.
     pub parts: Option<Parts>,
@@ -83,13 +82,6 @@ pub(super) struct LikelyCounts {
     pub guessed: Option<&'static str>,
     /// Log-odds of the rows that repeat, and of the number of receivers.
     pub odds: [f64; 2],
-}
-
-impl LikelyCounts {
-    /// Counts that are known.
-    pub fn of(counts: Counts) -> LikelyCounts {
-        LikelyCounts { parts: None, counts, guessed: None, odds: [0.0; 2] }
-    }
 }
 
 /// One way to cut the numbers into rows.
@@ -176,12 +168,6 @@ fn prior(layout: &Layout, length: usize, bytes: u64) -> f64 {
     fills + if is_usual { USUAL_LENGTH } else { 0.0 }
 }
 
-/// The level of rows of one length.
-fn row_level(numbers: &[Complex64], length: usize, is_real: bool) -> f64 {
-    let spectrum = Spectrum::of(&rows(numbers, length, 1), 1);
-    if is_real { spectrum.of_real().level } else { spectrum.level }
-}
-
 /// Sum of the levels of the spectra of rows of a few lengths. Rows of real numbers are twice as long and hold as much. `None` where there are too few
 /// numbers.
 fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
@@ -191,7 +177,8 @@ fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
         if numbers.len() < 2 * length {
             break;
         }
-        sum += row_level(numbers, length, is_real);
+        let spectrum = Spectrum::of(&rows(numbers, length, 1), 1);
+        sum += if is_real { spectrum.of_real().level } else { spectrum.level };
     }
     (numbers.len() >= 4 * LEVEL_LENGTHS[0]).then_some(sum)
 }

@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 /// A chirp of a `chirpCfg`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ChirpLine {
-    /// Number of its profile.
     pub profile: usize,
     /// Its transmitters, as bits.
     pub transmitters: u32,
@@ -80,13 +79,11 @@ impl<'a> Commands<'a> {
     }
 }
 
-/// Chirps that repeat.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Frame {
     /// Numbers of the first and the last chirp.
     pub first: usize,
     pub last: usize,
-    /// Number of times that the chirps repeat in a frame.
     pub loops: usize,
     /// Number of frames that are sent; 0 where they go on until stopped.
     pub frames: usize,

@@ -64,7 +64,6 @@ pub struct RadarProfile {
 /// Bytes of the header before each chirp, where `lvdsStreamCfg` asks for one.
 const CHIRP_HEADER_BYTES: usize = 64;
 
-/// Receivers of a chip.
 pub(super) const CHIP_RECEIVERS: usize = 4;
 
 /// Most chirps in a loop, samples in a chirp and loops in a frame that the hardware knows, with room to spare.
@@ -108,7 +107,7 @@ impl RadarProfile {
         if mask == 0 {
             return Err(channels.fault("no receiver is on"));
         }
-        let receiver_numbers: Vec<usize> = (0..16).filter(|bit| mask >> bit & 1 == 1).collect();
+        let receiver_numbers: Vec<usize> = bits(mask as u32).collect();
         let all = frames(&commands)?;
         let found = all.len();
         let chosen = sub_frame.unwrap_or(0);
@@ -136,7 +135,7 @@ impl RadarProfile {
     /// The transmitter of each chirp of a loop, after those that send together are told apart: of several at once the first.
     pub fn senders(&self) -> Vec<usize> {
         match (self.both_transmitters, self.chirp_transmitters.first()) {
-            (true, Some(mask)) => (0..32).filter(|bit| mask >> bit & 1 == 1).collect(),
+            (true, Some(mask)) => bits(*mask).collect(),
             _ => self.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect(),
         }
     }
@@ -214,7 +213,11 @@ impl RadarProfile {
     }
 }
 
-/// The error of a command that is missing.
+/// Numbers of the bits of a mask that are set.
+pub(super) fn bits(mask: u32) -> impl Iterator<Item = usize> {
+    (0..32).filter(move |bit| mask >> bit & 1 == 1)
+}
+
 fn missing(command: &str) -> Fault {
     Fault::Data(format!("has no line \"{command}\"; expected profileCfg, channelCfg, chirpCfg and frameCfg"))
 }
