@@ -117,7 +117,9 @@ impl NpyHeader {
         let mut bytes = vec![0; kind.bytes];
         let mut next = || match file.read_exact(&mut bytes) {
             Ok(()) => Ok(kind.value(&bytes)),
-            Err(e) if e.kind() == io::ErrorKind::UnexpectedEof => Err(promised("it ends too early for what")),
+            Err(e) if e.kind() == io::ErrorKind::UnexpectedEof => {
+                Err(promised("it ends too early for the numbers that"))
+            }
             Err(e) => Err(e),
         };
         let shape = IxDyn(&self.shape).set_f(self.in_columns);

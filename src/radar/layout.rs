@@ -15,16 +15,8 @@ pub struct Layout {
 
 /// Elements that a radar has not.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum LayoutError {
-    #[error("a random layout of {asked} elements was asked for; the aperture has room for 1 to {places}")]
-    Random { asked: usize, places: usize },
-    /// The fault by [`check_layout`].
-    #[error("{0}")]
-    Elements(String),
-    #[error("the elements of {0} don't stand on the radar's own grid")]
-    OffGrid(String),
-}
+#[error("{0}")]
+pub struct LayoutError(pub(super) String);
 
 /// Checks a layout that is a list of numbers of elements.
 /// # Errors
@@ -81,7 +73,9 @@ impl Layout {
     pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, LayoutError> {
         let places = radar.elements;
         if count == 0 || count > places {
-            return Err(LayoutError::Random { asked: count, places });
+            return Err(LayoutError(format!(
+                "a random layout of {count} elements was asked for; the aperture has room for 1 to {places}"
+            )));
         }
         let last = places - 1;
         let inner = index::sample(&mut ChaCha8Rng::seed_from_u64(seed), last - 1, count.saturating_sub(2));

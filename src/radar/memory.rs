@@ -35,14 +35,18 @@ impl Radar {
         let Radar { elements, samples, end_elements, chirps, .. } = *self;
         let (bytes, most) = (Bytes(self.chirp_bytes()), Bytes(MAX_MEMORY_BYTES / 2));
         if bytes > most {
-            return Err(RadarError::ChirpMemory { chirps, samples, bytes, most });
+            let map = format!("a range-Doppler map of {chirps} chirps by {samples} samples");
+            let told = format!(" asks for too much memory: {map} needs {bytes}; at most {most} can be had");
+            return Err(RadarError { field: "chirps", told });
         }
         let (bytes, most) = (Bytes(self.memory_bytes()), Bytes(MAX_MEMORY_BYTES));
         if bytes <= most {
             return Ok(());
         }
         let field = if elements >= samples { "elements" } else { "samples" };
-        Err(RadarError::Memory { field, elements, samples, end_elements, bytes, most })
+        let of = format!("{elements} elements by {samples} samples with ends of {end_elements}");
+        let told = format!(" asks for too much memory: {of} need {bytes}; at most {most} can be had");
+        Err(RadarError { field, told })
     }
 }
 

@@ -53,20 +53,20 @@ pub(super) enum Covers {
 impl Table {
     /// Checks that the keys of the TOML agree with each other and with `radar`.
     pub fn check(&self, radar: &Radar) -> Result<(), Fault> {
-        match (radar.samples, self.range_metres) {
-            (1, Some(range)) if range.is_finite() && range > 0.0 => {}
-            (1, Some(range)) => {
-                return Err(Fault::key("recording.range_metres", format!("is {range}"), "a number above 0"));
-            }
+        let unfit = match (radar.samples, self.range_metres) {
             (1, None) => {
-                let why = "the range of the snapshot in metres: one sample cannot tell it";
-                return Err(Fault::key("recording.range_metres", "is missing", why));
+                Some(("is missing".to_owned(), "the range of the snapshot in metres: one sample cannot tell it"))
             }
-            (_, None) => {}
-            (_, Some(_)) => {
-                let why = "it only where radar.samples is 1: several samples tell ranges";
-                return Err(Fault::key("recording.range_metres", "is there", why));
+            (1, Some(range)) if !(range.is_finite() && range > 0.0) => {
+                Some((format!("is {range}"), "a number above 0"))
             }
+            (2.., Some(_)) => {
+                Some(("is there".to_owned(), "it only where radar.samples is 1: several samples tell ranges"))
+            }
+            _ => None,
+        };
+        if let Some((found, expected)) = unfit {
+            return Err(Fault::key("recording.range_metres", found, expected));
         }
         let mut may_miss = vec![false; radar.elements];
         self.covered(radar).into_iter().for_each(|n| may_miss[n] = true);

@@ -26,27 +26,20 @@ pub enum Hdf5Error {
 #[derive(Debug)]
 pub struct Hdf5Bytes<R> {
     file: R,
-    /// Bytes of the file.
     pub bytes: u64,
     /// Byte from which addresses count.
     pub base: u64,
-    /// Bytes of an address.
     pub offset_bytes: usize,
-    /// Bytes of a length.
     pub length_bytes: usize,
 }
 
 impl<R: Read + Seek> Hdf5Bytes<R> {
     /// The bytes of a whole file, with the usual sizes of addresses and lengths.
-    ///
-    /// # Errors
-    /// [`Hdf5Error::Io`].
     pub fn new(mut file: R) -> Result<Self, Hdf5Error> {
         let bytes = file.seek(SeekFrom::End(0))?;
         Ok(Hdf5Bytes { file, bytes, base: 0, offset_bytes: 8, length_bytes: 8 })
     }
 
-    /// Bytes of the file.
     pub fn read(&mut self, place: u64, count: u64) -> Result<Vec<u8>, Hdf5Error> {
         if place.checked_add(count).is_none_or(|end| end > self.bytes) {
             return Err(Hdf5Error::Damaged("it points beyond its end"));

@@ -8,7 +8,7 @@ pub(super) mod lines;
 pub(super) mod tests;
 
 use super::Fault;
-use commands::{Commands, Frame, frames};
+use commands::{ChirpLine, Commands, Frame, frames};
 use lines::{Line, check_dialect};
 use num_complex::Complex64;
 
@@ -253,9 +253,10 @@ impl<'a> Part<'a> {
                 .get(&number)
                 .or_else(|| commands.profiles.values().next().filter(|_| commands.profiles.len() == 1))
         };
-        let first = line(chirps[0].profile).ok_or_else(|| missing("profileCfg"))?;
+        let line = |chirp: &ChirpLine| line(chirp.profile).ok_or_else(|| missing("profileCfg"));
+        let first = line(&chirps[0])?;
         for chirp in &chirps[1..] {
-            let other = line(chirp.profile).ok_or_else(|| missing("profileCfg"))?;
+            let other = line(chirp)?;
             // The profile's own number differs; powers, phases, the transmitter's start and gains (5, 6, 8, 11 on) may.
             // Bits are compared, since NaN equals nothing. NaN is refused where it is read.
             let same = |i: usize| other.values.get(i).map(|v| v.to_bits()) == first.values.get(i).map(|v| v.to_bits());
