@@ -54,12 +54,7 @@ impl Args {
             None => InputArgs::Scene(Box::new(presets::default_scene())),
         };
         let method = self.method.as_deref().map(methods::by_name).transpose()?;
-        let reason = match self.open_window(started) {
-            Ok(()) => return Ok(()),
-            Err(WindowError::NoWindow(reason)) => reason,
-            #[cfg(feature = "app")]
-            Err(WindowError::Failed(error)) => return Err(error.into()),
-        };
+        let Some(reason) = self.open_window(started)? else { return Ok(()) };
         let reason = shortened(&reason);
         console::say(&format!("apertura: {reason}; drawing its panels to a picture instead"));
         draw_instead(&input, method)
@@ -72,8 +67,9 @@ impl Args {
         self.weights.iter().map(name).collect::<Result<_, _>>().map_err(CommandError)
     }
 
+    /// Opens the window until it is closed; the reason where there can be none.
     #[cfg(feature = "app")]
-    fn open_window(self, started: Instant) -> Result<(), WindowError> {
+    fn open_window(self, started: Instant) -> Result<Option<String>, CommandError> {
         use crate::app::{self, AppError};
         let shared = self.scene.as_deref().and_then(super::input::shared_text).map(str::to_owned);
         let options = app::Options {
@@ -84,15 +80,16 @@ impl Args {
             started: Some(started),
             ..app::Options::default()
         };
-        app::run(options).map_err(|error| match error {
-            AppError::Window(_) => WindowError::NoWindow(error.to_string()),
-            AppError::Start(_) => WindowError::Failed(error),
-        })
+        match app::run(options) {
+            Ok(()) => Ok(None),
+            Err(error @ AppError::Window(_)) => Ok(Some(error.to_string())),
+            Err(error) => Err(CommandError::failed(error)),
+        }
     }
 
     #[cfg(not(feature = "app"))]
-    fn open_window(self, _: Instant) -> Result<(), WindowError> {
-        Err(WindowError::NoWindow("this build has no app".to_owned()))
+    fn open_window(self, _: Instant) -> Result<Option<String>, CommandError> {
+        Ok(Some("this build has no app".to_owned()))
     }
 }
 
@@ -109,13 +106,6 @@ fn shortened(message: &str) -> String {
         Some(format!("{before}there is no OpenGL here ({reason})"))
     });
     plain.as_deref().unwrap_or(message).trim_end_matches('.').to_owned()
-}
-
-/// A reason for which the window did not open.
-enum WindowError {
-    NoWindow(String),
-    #[cfg(feature = "app")]
-    Failed(crate::app::AppError),
 }
 
 fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Result<(), CommandError> {
@@ -140,15 +130,12 @@ fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Re
 /// `apertura.png`, or `apertura-2.png` and so on where that name is taken by a file that this program did not draw.
 fn free_name(folder: &Path) -> PathBuf {
     let ours = |path: &Path| std::fs::read(path).is_ok_and(|bytes| is_our_png(&bytes));
-    let name = |number: u32| if number == 1 { PICTURE.to_owned() } else { format!("apertura-{number}.png") };
-    let mut number = 1;
-    loop {
-        let path = if folder == Path::new(".") { name(number).into() } else { folder.join(name(number)) };
-        if std::fs::symlink_metadata(&path).is_err() || ours(&path) {
-            return path;
-        }
-        number += 1;
-    }
+    let path = |number: u32| {
+        let name = if number == 1 { PICTURE.to_owned() } else { format!("apertura-{number}.png") };
+        if folder == Path::new(".") { PathBuf::from(name) } else { folder.join(name) }
+    };
+    let is_free = |path: &PathBuf| std::fs::symlink_metadata(path).is_err() || ours(path);
+    (1..u32::MAX).map(path).find(is_free).unwrap_or_else(|| path(u32::MAX))
 }
 
 #[cfg(test)]

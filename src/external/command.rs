@@ -12,13 +12,8 @@ pub struct CommandLine {
 
 /// The reason why a text is no command.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum CommandLineError {
-    #[error("the command is empty; expected a program with its arguments, such as \"python my_network.py\"")]
-    Empty,
-    #[error("the command {text} has a {quote} without a second one")]
-    Quote { text: String, quote: char },
-}
+#[error("the command {0}")]
+pub struct CommandLineError(String);
 
 impl FromStr for CommandLine {
     type Err = CommandLineError;
@@ -39,11 +34,12 @@ impl FromStr for CommandLine {
             }
         }
         if let Some(quote) = quote {
-            return Err(CommandLineError::Quote { text: text.to_owned(), quote });
+            return Err(CommandLineError(format!("{text} has a {quote} without a second one")));
         }
         words.extend(word);
         if words.first().is_none_or(String::is_empty) {
-            return Err(CommandLineError::Empty);
+            let expected = "a program with its arguments, such as \"python my_network.py\"";
+            return Err(CommandLineError(format!("is empty; expected {expected}")));
         }
         Ok(CommandLine { text: text.trim().to_owned(), words })
     }

@@ -1,11 +1,12 @@
 //! Questions and answers as bytes: a line of JSON, then NumPy arrays whose lengths the line says (`docs/own-network.md`).
 
-use crate::files::npy;
+use crate::files::Numbers;
+use crate::files::npy::NpyHeader;
 use crate::radar::Radar;
 use crate::reconstruct::Request;
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Axis, stack};
-use ndarray_npy::{ReadNpyError, ReadNpyExt, WriteNpyExt};
+use ndarray_npy::WriteNpyExt;
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufRead, Read};
 
@@ -18,7 +19,7 @@ const HEADER_BYTES: u64 = 4096 + 16;
 
 const MAX_ARRAYS: usize = 4;
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct Question<'a> {
     apertura: u32,
     ask: &'static str,
@@ -77,16 +78,7 @@ pub enum Map {
 
 /// The first question, which asks for the method's name and description.
 pub fn hello() -> Vec<u8> {
-    line_of(&Question {
-        apertura: VERSION,
-        ask: "hello",
-        id: 0,
-        radar: None,
-        noise: None,
-        normalisation: None,
-        snapshot_range_metres: None,
-        arrays: Vec::new(),
-    })
+    line_of(&Question { apertura: VERSION, ask: "hello", ..Question::default() })
 }
 
 /// The question for a map.
@@ -131,12 +123,9 @@ pub fn read_answer(from: &mut impl BufRead, most_bytes: &dyn Fn() -> u64) -> io:
         return Ok(None);
     }
     let line: AnswerHeader = serde_json::from_slice(&bytes).map_err(|error| rubbish(&bytes, &error.to_string()))?;
-    match line.apertura {
-        Some(VERSION) => {}
-        Some(other) => {
-            return Err(invalid(format!("it speaks version {other} of the protocol; expected {VERSION}")));
-        }
-        None => return Err(rubbish(&bytes, "it lacks \"apertura\"")),
+    let version = line.apertura.ok_or_else(|| rubbish(&bytes, "it lacks \"apertura\""))?;
+    if version != VERSION {
+        return Err(invalid(format!("it speaks version {version} of the protocol; expected {VERSION}")));
     }
     if line.arrays.len() > MAX_ARRAYS {
         return Err(invalid(format!("its answer has {} arrays; expected at most {MAX_ARRAYS}", line.arrays.len())));
@@ -203,20 +192,16 @@ impl ExternalAnswer {
     }
 }
 
-fn numbers(name: &str, bytes: &[u8]) -> Result<Array2<f64>, String> {
-    let damaged = |why: String| format!("its array \"{name}\" can't be read: {why}");
-    npy::check(bytes).map_err(damaged)?;
-    let told = |error: ReadNpyError| match error {
-        ReadNpyError::WrongDescriptor(found) => {
-            format!("its \"{name}\" has the type {found}; expected float32 or float64")
+fn numbers(name: &str, mut bytes: &[u8]) -> Result<Array2<f64>, String> {
+    let damaged = |e: io::Error| format!("its array \"{name}\" can't be read: {e}");
+    let header = NpyHeader::read(&mut bytes).map_err(damaged)?;
+    let axes = header.shape.len();
+    match header.numbers(bytes) {
+        Some(Err(error)) => Err(damaged(error)),
+        Some(Ok(Numbers::Real(cells))) if ["f4", "f8"].contains(&header.code()) => {
+            cells.into_dimensionality().map_err(|_| format!("its \"{name}\" has {axes} axes; expected 2"))
         }
-        ReadNpyError::WrongNdim(_, found) => format!("its \"{name}\" has {found} axes; expected 2"),
-        other => damaged(other.to_string()),
-    };
-    match Array2::<f32>::read_npy(bytes) {
-        Ok(cells) => Ok(cells.mapv(f64::from)),
-        Err(ReadNpyError::WrongDescriptor(_)) => Array2::<f64>::read_npy(bytes).map_err(told),
-        Err(other) => Err(told(other)),
+        _ => Err(format!("its \"{name}\" has the type {}; expected float32 or float64", header.descriptor)),
     }
 }
 
@@ -225,6 +210,7 @@ pub(super) mod tests {
     use super::*;
     use crate::maps::Normalisation;
     use crate::radar::Decibels;
+    use ndarray_npy::ReadNpyExt;
     use num_complex::Complex64;
 
     pub fn small() -> Radar {

@@ -184,19 +184,16 @@ impl Reconstructor for ExternalMethod {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let broken = |reason: String| self.unusable(format!("{reason}\n(the next request starts it anew)"));
-        let mut state = match self.state(&request.task) {
-            Ok(state) => state,
-            Err(ProcessFailure::Cancelled) => return Err(ReconstructError::Cancelled),
-            Err(ProcessFailure::Broken(reason)) => return Err(broken(reason)),
+        let failed = |failure: ProcessFailure| match failure {
+            ProcessFailure::Cancelled => ReconstructError::Cancelled,
+            ProcessFailure::Broken(reason) => broken(reason),
         };
-        let answer = match self.asked(&mut state, radar, ends, request) {
-            Ok(answer) => answer,
-            Err(ProcessFailure::Cancelled) => return Err(ReconstructError::Cancelled),
-            Err(ProcessFailure::Broken(reason)) => {
-                state.process = None;
-                return Err(broken(reason));
-            }
-        };
+        let mut state = self.state(&request.task).map_err(failed)?;
+        let asked = self.asked(&mut state, radar, ends, request);
+        if matches!(asked, Err(ProcessFailure::Broken(_))) {
+            state.process = None;
+        }
+        let answer = asked.map_err(failed)?;
         if let Some(error) = &answer.line.error {
             return Err(self.unusable(error.chars().take(LONGEST_TEXT).collect()));
         }

@@ -6,7 +6,7 @@ use super::tail::Tail;
 use crate::platform::{Instant, spawn};
 use crate::task::{Cancelled, Task};
 use std::io::{self, BufReader, Write};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -134,8 +134,11 @@ impl Process {
                     return Ok(answer);
                 }
                 Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => {
-                    let status = self.ended();
-                    return Err(ProcessFailure::Broken(self.with_last_words(status, LAST_WORDS)));
+                    let ended = match self.end_within(LAST_WORDS) {
+                        Some(status) => format!("it ended ({status}) before it answered"),
+                        None => "it closed its standard output before it answered".to_owned(),
+                    };
+                    return Err(ProcessFailure::Broken(self.with_last_words(ended, LAST_WORDS)));
                 }
                 Ok(Err(error)) => {
                     return Err(ProcessFailure::Broken(self.with_last_words(error.to_string(), LAST_WORDS / 5)));
@@ -149,16 +152,16 @@ impl Process {
         }
     }
 
-    fn ended(&mut self) -> String {
+    /// The child's status where it ends within `wait`.
+    fn end_within(&mut self, wait: Duration) -> Option<ExitStatus> {
         let began = Instant::now();
-        while began.elapsed() < LAST_WORDS {
+        while began.elapsed() < wait {
             match self.child.try_wait() {
-                Ok(Some(status)) => return format!("it ended ({status}) before it answered"),
                 Ok(None) => std::thread::sleep(POLL_INTERVAL / 4),
-                Err(_) => break,
+                ended => return ended.ok().flatten(),
             }
         }
-        "it closed its standard output before it answered".to_owned()
+        None
     }
 
     /// The reason `why` with the end of the process' standard error, waiting up to `wait` for that end.
@@ -177,12 +180,8 @@ impl Drop for Process {
             return;
         }
         self.questions = None;
-        let began = Instant::now();
-        while self.pending == 0 && began.elapsed() < FAREWELL {
-            match self.child.try_wait() {
-                Ok(None) => std::thread::sleep(POLL_INTERVAL / 4),
-                _ => break,
-            }
+        if self.pending == 0 {
+            self.end_within(FAREWELL);
         }
         #[cfg(unix)]
         {

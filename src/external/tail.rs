@@ -9,13 +9,7 @@ const KEPT_BYTES: usize = 2000;
 
 /// The last bytes that were read, shared between the reading thread and the callers.
 #[derive(Debug, Clone, Default)]
-pub struct Tail(Arc<Shared>);
-
-#[derive(Debug, Default)]
-struct Shared {
-    kept: Mutex<Kept>,
-    ended: Condvar,
-}
+pub struct Tail(Arc<(Mutex<Kept>, Condvar)>);
 
 #[derive(Debug, Default)]
 struct Kept {
@@ -26,7 +20,7 @@ struct Kept {
 impl Tail {
     /// Reads until the end of `from`.
     pub fn follow(&self, mut from: impl Read) {
-        let Shared { kept, ended } = &*self.0;
+        let (kept, ended) = &*self.0;
         let mut bytes = [0; 1024];
         while let Ok(count @ 1..) = from.read(&mut bytes) {
             tracing::debug!("{}", String::from_utf8_lossy(&bytes[..count]).trim_end());
@@ -41,7 +35,7 @@ impl Tail {
 
     /// The bytes so far, after waiting up to `wait` for the end: whole lines, where more than one is kept.
     pub fn text(&self, wait: Duration) -> String {
-        let Shared { kept, ended } = &*self.0;
+        let (kept, ended) = &*self.0;
         let kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
         let (kept, _) =
             ended.wait_timeout_while(kept, wait, |kept| !kept.is_whole).unwrap_or_else(PoisonError::into_inner);

@@ -6,22 +6,14 @@ pub mod kind;
 pub mod memory;
 pub mod npy;
 pub mod npz;
+mod number;
 pub mod sha256;
 
+pub use number::{NumberKind, Numbers};
+
 use crate::platform::fs::{self, Draft, File};
-use ndarray::ArrayD;
-use num_complex::Complex64;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
-
-/// Numbers of an array, in the order of its axes.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Numbers {
-    /// Real numbers or integers.
-    Real(ArrayD<f64>),
-    /// Complex numbers.
-    Complex(ArrayD<Complex64>),
-}
 
 /// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. A reader sees the
 /// old file or the new one, never a part; on any error the old one stays as it was.
@@ -66,8 +58,7 @@ fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
 pub fn read_bounded(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let found = fs::metadata(path)?;
     if !found.is_file() {
-        let what = if found.is_dir() { "a folder" } else { "a device or pipe" };
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected a file")));
+        return Err(no_file(found.is_dir(), "a file"));
     }
     let too_large = |bytes| {
         let message = format!("has {bytes} bytes; files of at most {most} bytes are read here");
@@ -94,13 +85,15 @@ pub fn read_start(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+fn no_file(is_folder: bool, expected: &str) -> io::Error {
+    let what = if is_folder { "a folder" } else { "a device or pipe" };
+    io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected {expected}"))
+}
+
 fn destination(path: &Path) -> io::Result<PathBuf> {
     match fs::metadata(path) {
         Ok(found) if found.is_file() => fs::canonicalize(path),
-        Ok(found) => {
-            let what = if found.is_dir() { "a folder" } else { "a device or pipe" };
-            Err(io::Error::new(io::ErrorKind::InvalidInput, format!("is {what}; expected the name of a file")))
-        }
+        Ok(found) => Err(no_file(found.is_dir(), "the name of a file")),
         Err(_) => Ok(path.to_owned()),
     }
 }

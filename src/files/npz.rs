@@ -1,15 +1,13 @@
 //! NumPy archives (`.npz`): reading by key with errors that name key, shape and type, and writing in one step.
 
 use super::entries::check_entries;
-use super::{npy, write_atomically};
-use crate::platform::fs::Draft;
-use crate::platform::fs::File;
-use ndarray::{Array, Array2, ArrayRef, Dimension};
+use super::npy::NpyHeader;
+use super::{Numbers, write_atomically};
+use crate::platform::fs::{Draft, File};
+use ndarray::{Array, Array2, ArrayD, ArrayRef, Dimension, ShapeError};
 use ndarray_npy::npy::header::{Header, Layout};
-use ndarray_npy::{
-    NpzWriter, ReadNpyError, ReadNpyExt, ReadableElement, WritableElement, WriteNpyError, WriteNpyExt, WriteNpzError,
-};
-use num_complex::{Complex32, Complex64};
+use ndarray_npy::{NpzWriter, WritableElement, WriteNpyError, WriteNpyExt, WriteNpzError};
+use num_complex::Complex64;
 use std::cell::RefCell;
 use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
 use std::path::Path;
@@ -112,18 +110,10 @@ impl<R: Read + Seek> Npz<R> {
     /// # Errors
     /// [`NpzError`] names the key and what was expected of it.
     pub fn reals<D: Dimension>(&mut self, key: &str) -> Result<Array<f64, D>, NpzError> {
-        let values = match self.read::<f64, D>(key)? {
-            Ok(values) => values,
-            Err(_) => match self.read::<f32, D>(key)? {
-                Ok(values) => values.mapv(f64::from),
-                Err(_) => match self.read::<i64, D>(key)? {
-                    Ok(values) => values.mapv(|v| v as f64),
-                    Err(_) => match self.read::<i32, D>(key)? {
-                        Ok(values) => values.mapv(f64::from),
-                        Err(found) => return Err(type_error(key, found, "real numbers (float64)")),
-                    },
-                },
-            },
+        let found = self.numbers(key, &["f8", "f4", "i8", "i4"], "real numbers (float64)", D::NDIM)?;
+        let values = match found {
+            Numbers::Real(values) => values,
+            Numbers::Complex(values) => values.mapv(|v| v.re),
         };
         all_finite(key, values)
     }
@@ -132,30 +122,38 @@ impl<R: Read + Seek> Npz<R> {
     /// # Errors
     /// [`NpzError`] names the key and what was expected of it.
     pub fn complexes<D: Dimension>(&mut self, key: &str) -> Result<Array<Complex64, D>, NpzError> {
-        let values = match self.read::<Complex64, D>(key)? {
-            Ok(values) => values,
-            Err(_) => match self.read::<Complex32, D>(key)? {
-                Ok(values) => values.mapv(|v| Complex64::new(v.re.into(), v.im.into())),
-                Err(found) => return Err(type_error(key, found, "complex numbers (complex128)")),
-            },
+        let found = self.numbers(key, &["c16", "c8"], "complex numbers (complex128)", D::NDIM)?;
+        let values = match found {
+            Numbers::Real(values) => values.mapv(Complex64::from),
+            Numbers::Complex(values) => values,
         };
         all_finite(key, values)
     }
 
-    fn read<T: ReadableElement, D: Dimension>(&mut self, key: &str) -> Result<Result<Array<T, D>, String>, NpzError> {
-        let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
-        let bytes = self.bytes(key)?;
-        npy::check(&bytes).map_err(damaged)?;
-        match Array::read_npy(bytes.as_slice()) {
-            Ok(values) => Ok(Ok(values)),
-            Err(ReadNpyError::WrongDescriptor(found)) => Ok(Err(found.to_string())),
-            Err(ReadNpyError::WrongNdim(expected, found)) => Err(NpzError::Shape {
-                key: key.to_owned(),
-                found: format!("with {found} dimensions"),
-                expected: format!("{} dimensions", expected.unwrap_or_default()),
-            }),
-            Err(error) => Err(damaged(error.to_string())),
+    /// The numbers under `key`, of one of the types `codes` and of so many dimensions.
+    fn numbers(
+        &mut self,
+        key: &str,
+        codes: &[&str],
+        expected: &'static str,
+        dimensions: Option<usize>,
+    ) -> Result<Numbers, NpzError> {
+        let most = self.most_bytes;
+        let mut file = self.entry(key)?;
+        let damaged = |error: io::Error| NpzError::Damaged { key: key.to_owned(), reason: error.to_string() };
+        let header = NpyHeader::read(&mut file).map_err(damaged)?;
+        if !codes.contains(&header.code()) {
+            return Err(NpzError::Type { key: key.to_owned(), found: header.descriptor, expected });
         }
+        if header.bytes().is_none_or(|bytes| bytes as u64 > most) {
+            return Err(NpzError::TooLarge { key: key.to_owned(), most });
+        }
+        if let Some(asked) = dimensions.filter(|asked| *asked != header.shape.len()) {
+            let (found, expected) = (format!("with {} dimensions", header.shape.len()), format!("{asked} dimensions"));
+            return Err(NpzError::Shape { key: key.to_owned(), found, expected });
+        }
+        let unread = || damaged(io::Error::other("its type is not read"));
+        header.numbers(file).ok_or_else(unread)?.map_err(damaged)
     }
 
     /// The bytes of the array under `key`, as `numpy.save` writes them.
@@ -170,33 +168,15 @@ impl<R: Read + Seek> Npz<R> {
         };
         self.archive.by_index(index).map_err(|e| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() })
     }
-
-    fn bytes(&mut self, key: &str) -> Result<Vec<u8>, NpzError> {
-        let damaged = |reason: String| NpzError::Damaged { key: key.to_owned(), reason };
-        let most = self.most_bytes;
-        let file = self.entry(key)?;
-        let mut bytes = Vec::new();
-        file.take(most + 1).read_to_end(&mut bytes).map_err(|e| damaged(e.to_string()))?;
-        if bytes.len() as u64 > most {
-            return Err(NpzError::TooLarge { key: key.to_owned(), most });
-        }
-        Ok(bytes)
-    }
 }
 
-fn type_error(key: &str, found: String, expected: &'static str) -> NpzError {
-    NpzError::Type { key: key.to_owned(), found, expected }
-}
-
-fn all_finite<T: Finite, D: Dimension>(key: &str, values: Array<T, D>) -> Result<Array<T, D>, NpzError> {
-    match values.view().into_dyn().indexed_iter().find(|(_, v)| !v.is_finite()) {
-        Some((index, value)) => Err(NpzError::NotFinite {
-            key: key.to_owned(),
-            index: ndarray::Dimension::slice(&index).to_vec(),
-            value: value.to_string(),
-        }),
-        None => Ok(values),
+fn all_finite<T: Finite, D: Dimension>(key: &str, values: ArrayD<T>) -> Result<Array<T, D>, NpzError> {
+    if let Some((index, value)) = values.indexed_iter().find(|(_, v)| !v.is_finite()) {
+        let (index, value) = (Dimension::slice(&index).to_vec(), value.to_string());
+        return Err(NpzError::NotFinite { key: key.to_owned(), index, value });
     }
+    let damaged = |e: ShapeError| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() };
+    values.into_dimensionality().map_err(damaged)
 }
 
 /// An archive being written.

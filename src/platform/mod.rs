@@ -11,28 +11,21 @@ mod memory_files;
 #[cfg(target_arch = "wasm32")]
 mod page;
 
-#[cfg(all(feature = "live", not(target_arch = "wasm32")))]
-pub(crate) use desktop::live_weights;
-#[cfg(all(feature = "pictures", not(target_arch = "wasm32")))]
-pub(crate) use desktop::register_font;
 #[cfg(not(target_arch = "wasm32"))]
-pub use desktop::{
-    IN_A_BROWSER, WRITES_WAIT, address, fs, has_threads, has_window, lock, on_panic, page_address, pool, problems,
-    spawn, tell,
-};
-#[cfg(all(feature = "app", not(target_arch = "wasm32")))]
-pub use desktop::{choose_file, dropped, open_window, storage_folder, waker};
-#[cfg(all(feature = "live", target_arch = "wasm32"))]
-pub(crate) use page::live_weights;
-#[cfg(all(feature = "pictures", target_arch = "wasm32"))]
-pub(crate) use page::register_font;
+use desktop as system;
 #[cfg(target_arch = "wasm32")]
-pub use page::{
+use page as system;
+
+#[cfg(feature = "live")]
+pub(crate) use system::live_weights;
+#[cfg(feature = "pictures")]
+pub(crate) use system::register_font;
+pub use system::{
     IN_A_BROWSER, WRITES_WAIT, address, fs, has_threads, has_window, lock, on_panic, page_address, pool, problems,
     spawn, tell,
 };
-#[cfg(all(feature = "app", target_arch = "wasm32"))]
-pub use page::{choose_file, dropped, open_window, storage_folder, waker};
+#[cfg(feature = "app")]
+pub use system::{choose_file, dropped, open_window, storage_folder, waker};
 
 /// A clock that works on a desktop and in a page.
 pub use web_time::Instant;

@@ -3,15 +3,22 @@
 //! A range is half the path from transmitter to receiver ([`Pair`]). In the far field a pair receives what a single antenna at the midpoint
 //! would. At range `R` its path is longer by up to `a^2 / 4R`, where `a` is the distance between both antennas.
 
-mod error;
 mod off_line;
 
-pub use error::AntennasError;
-
 use super::{Convention, Pair, Radar};
-use error::{MAX_ELEMENTS, MAX_OFF_LINE_PART, MAX_Y_METRES, MIN_ELEMENTS};
 use std::fmt;
 use std::sync::Arc;
+
+const MIN_ELEMENTS: usize = 2;
+const MAX_ELEMENTS: usize = 65536;
+
+/// Largest distance of a pair's midpoint from an evenly spaced line, as a fraction of the spacing.
+const MAX_OFF_LINE_PART: f64 = 0.01;
+
+/// A reason for which transmitters and receivers form no uniform array.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct AntennasError(String);
 
 /// Midpoints nearer to each other than this fraction of their mean distance count as one place.
 const ONE_PLACE: f64 = 0.02;
@@ -75,7 +82,7 @@ impl Midpoints {
         let apart = self.x_metres.windows(2).map(|two| two[1] - two[0]).filter(|apart| *apart > ONE_PLACE * mean);
         let smallest = apart.fold(f64::INFINITY, f64::min);
         if !(smallest.is_finite() && mean > 0.0) {
-            return Err(AntennasError::OnePlace);
+            return Err(AntennasError("all pairs have one midpoint; expected a line of them".to_owned()));
         }
         let even = |divisions: usize| self.even(smallest / divisions as f64);
         (2..=MAX_SPACING_DIVISIONS)
@@ -89,7 +96,15 @@ impl Midpoints {
             let off_metres = (self.x_metres[i] - self.x_metres[0] - place * spacing_metres).abs();
             if off_metres > MAX_OFF_LINE_PART * spacing_metres {
                 let [transmitter, receiver] = self.pairs[i];
-                return Err(AntennasError::Uneven { transmitter, receiver, off_metres, spacing_metres });
+                let millimetres = |metres: f64| format!("{:.3} mm", metres * 1e3);
+                return Err(AntennasError(format!(
+                    "the midpoint of transmitter {} and receiver {} stands {} off the even line, whose places are {} apart; expected at most {}",
+                    transmitter + 1,
+                    receiver + 1,
+                    millimetres(off_metres),
+                    millimetres(spacing_metres),
+                    millimetres(MAX_OFF_LINE_PART * spacing_metres)
+                )));
             }
         }
         Ok(spacing_metres)
@@ -104,8 +119,11 @@ impl Antennas {
         check_places("transmitter_x_metres", transmitter_x_metres)?;
         check_places("receiver_x_metres", receiver_x_metres)?;
         let (transmitters, receivers) = (transmitter_x_metres.len(), receiver_x_metres.len());
-        if !(MIN_ELEMENTS..=MAX_ELEMENTS).contains(&transmitters.saturating_mul(receivers)) {
-            return Err(AntennasError::Count { transmitters, receivers });
+        let pairs = transmitters.saturating_mul(receivers);
+        if !(MIN_ELEMENTS..=MAX_ELEMENTS).contains(&pairs) {
+            return Err(AntennasError(format!(
+                "{transmitters} transmitters and {receivers} receivers make {pairs} elements; expected {MIN_ELEMENTS} to {MAX_ELEMENTS}"
+            )));
         }
         let midpoints = Midpoints::of(transmitter_x_metres, receiver_x_metres);
         let spacing_metres = midpoints.spacing_metres()?;
@@ -113,7 +131,10 @@ impl Antennas {
         // Distinct transmitters and receivers form at least this many distinct midpoints.
         let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(MIN_ELEMENTS);
         if !(fewest as f64..=MAX_ELEMENTS as f64).contains(&elements) {
-            return Err(AntennasError::Line { elements: elements as usize });
+            return Err(AntennasError(format!(
+                "the pairs stand on a line of {} places; expected as many as such antennas make, {MIN_ELEMENTS} to {MAX_ELEMENTS}",
+                elements as usize
+            )));
         }
         let mut pairs = vec![None; elements as usize];
         for (pair, place) in midpoints.pairs.iter().zip(midpoints.places(spacing_metres)) {
@@ -196,16 +217,10 @@ impl Antennas {
 
     /// The same antennas with left and right exchanged.
     pub fn mirrored(&self) -> Self {
-        let mirrored = |places: &[f64]| places.iter().map(|x| -x).collect();
-        Antennas {
-            transmitter_x_metres: mirrored(&self.transmitter_x_metres),
-            receiver_x_metres: mirrored(&self.receiver_x_metres),
-            pairs: self.pairs.iter().rev().copied().collect(),
-            ..self.clone()
-        }
+        Antennas { pairs: self.pairs.iter().rev().copied().collect(), ..self.scaled(-1.0) }
     }
 
-    /// The same antennas, all distances along the line `factor` times as large.
+    /// The same antennas, all places along the line `factor` times as far.
     fn scaled(&self, factor: f64) -> Self {
         let scaled = |places: &[f64]| places.iter().map(|x| x * factor).collect();
         Antennas {
@@ -223,13 +238,13 @@ fn apart(places: &[f64]) -> usize {
     sorted.len()
 }
 
-fn check_places(list: &'static str, places: &[f64]) -> Result<(), AntennasError> {
+fn check_places(list: &str, places: &[f64]) -> Result<(), AntennasError> {
     let found = match places.iter().find(|x| !x.is_finite()) {
         Some(x) => x.to_string(),
         None if places.is_empty() => "no numbers".to_owned(),
         None => return Ok(()),
     };
-    Err(AntennasError::Places { list, found })
+    Err(AntennasError(format!("{list} has {found}; expected finite numbers, at least one")))
 }
 
 impl Radar {

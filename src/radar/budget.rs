@@ -55,7 +55,7 @@ impl Default for LinkBudget {
 impl LinkBudget {
     /// Checks every number.
     /// # Errors
-    /// [`RadarError::Budget`] names the first invalid number, the values allowed, and the reason.
+    /// [`RadarError`] names the first invalid number, the values allowed, and the reason.
     pub fn validate(&self) -> Result<(), RadarError> {
         let width = self.half_power_width_degrees.unwrap_or(90.0);
         for (field, value, is_usable, expected) in [
@@ -85,7 +85,8 @@ impl LinkBudget {
             ),
         ] {
             if !is_usable {
-                return Err(RadarError::Budget { field, value, expected });
+                let told = format!(".{field} is {value}; expected {expected}");
+                return Err(RadarError { field: "budget", told });
             }
         }
         Ok(())

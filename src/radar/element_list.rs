@@ -6,17 +6,8 @@ const COLUMNS: [&str; 4] = ["place in mm", "forward in mm", "gain in dB", "phase
 
 /// A reason for which a text is no list of elements.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum ElementListError {
-    #[error("line {line}, {column}: \"{found}\" is no number")]
-    Cell { line: usize, column: &'static str, found: String },
-    #[error(
-        "line {line} has {found} columns; expected at most 4: place in mm, forward in mm, gain in dB, phase in degrees"
-    )]
-    Columns { line: usize, found: usize },
-    #[error("{found} lines for {expected} elements; expected one line an element, the leftmost first")]
-    Lines { found: usize, expected: usize },
-}
+#[error("{0}")]
+pub struct ElementListError(String);
 
 /// Characters of a cell in an error message.
 const SHOWN: usize = 20;
@@ -31,7 +22,9 @@ impl BuiltArray {
         let lines = text.trim_end().lines();
         let found = lines.clone().count();
         if found != elements {
-            return Err(ElementListError::Lines { found, expected: elements });
+            return Err(ElementListError(format!(
+                "{found} lines for {elements} elements; expected one line an element, the leftmost first"
+            )));
         }
         let elements = lines.enumerate().map(|(i, line)| element(i + 1, line)).collect::<Result<_, _>>()?;
         Ok(BuiltArray { elements })
@@ -50,13 +43,15 @@ fn cells(line: &str) -> Vec<&str> {
 fn element(line: usize, text: &str) -> Result<ElementError, ElementListError> {
     let cells = cells(text);
     if cells.len() > COLUMNS.len() {
-        return Err(ElementListError::Columns { line, found: cells.len() });
+        let (found, expected) = (cells.len(), COLUMNS.join(", "));
+        return Err(ElementListError(format!("line {line} has {found} columns; expected at most 4: {expected}")));
     }
     let mut numbers = [0.0; COLUMNS.len()];
     for ((number, cell), column) in numbers.iter_mut().zip(cells).zip(COLUMNS) {
         if !cell.is_empty() {
             let parsed = cell.parse::<f64>().ok().filter(|v| v.is_finite());
-            let problem = || ElementListError::Cell { line, column, found: cell.chars().take(SHOWN).collect() };
+            let shown: String = cell.chars().take(SHOWN).collect();
+            let problem = || ElementListError(format!("line {line}, {column}: \"{shown}\" is no number"));
             *number = parsed.ok_or_else(problem)?;
         }
     }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Deviation of one element from its nominal gain, phase and place.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ElementError {
     /// Gain error.
@@ -22,18 +22,6 @@ pub struct ElementError {
     pub forward_millimetres: f64,
     /// Whether the element is dead: it receives nothing.
     pub dead: bool,
-}
-
-impl Default for ElementError {
-    fn default() -> Self {
-        ElementError {
-            gain: Decibels(0.0),
-            phase_degrees: 0.0,
-            position_millimetres: 0.0,
-            forward_millimetres: 0.0,
-            dead: false,
-        }
-    }
 }
 
 impl ElementError {
@@ -179,13 +167,8 @@ const MAX_ELEMENTS: usize = 65536;
 
 /// A reason for which a list of element errors is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum BuiltArrayError {
-    #[error("{found} elements are described; the radar has {expected}")]
-    Count { found: usize, expected: usize },
-    #[error("element {element}: {field} is {value}; expected a number from -{most} to {most}")]
-    Value { element: usize, field: &'static str, value: f64, most: f64 },
-}
+#[error("{0}")]
+pub struct BuiltArrayError(String);
 
 const MAX_GAIN_DB: f64 = 200.0;
 const MAX_PHASE_DEGREES: f64 = 3600.0;
@@ -281,7 +264,7 @@ impl BuiltArray {
     pub fn validate(&self, radar: &Radar) -> Result<(), BuiltArrayError> {
         let (found, expected) = (self.elements.len(), radar.elements);
         if found != 0 && found != expected {
-            return Err(BuiltArrayError::Count { found, expected });
+            return Err(BuiltArrayError(format!("{found} elements are described; the radar has {expected}")));
         }
         for (element, e) in self.elements.iter().enumerate() {
             for (field, value, most) in [
@@ -291,7 +274,9 @@ impl BuiltArray {
                 ("forward_millimetres", e.forward_millimetres, MAX_POSITION_MILLIMETRES),
             ] {
                 if value.is_nan() || value.abs() > most {
-                    return Err(BuiltArrayError::Value { element, field, value, most });
+                    return Err(BuiltArrayError(format!(
+                        "element {element}: {field} is {value}; expected a number from -{most} to {most}"
+                    )));
                 }
             }
         }

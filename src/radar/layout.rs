@@ -15,16 +15,8 @@ pub struct Layout {
 
 /// Elements that a radar has not.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum LayoutError {
-    #[error("a random layout of {asked} elements was asked for; the aperture has room for 1 to {places}")]
-    Random { asked: usize, places: usize },
-    /// The fault by [`check_layout`].
-    #[error("{0}")]
-    Elements(String),
-    #[error("the elements of {0} don't stand on the radar's own grid")]
-    OffGrid(String),
-}
+#[error("{0}")]
+pub struct LayoutError(pub(super) String);
 
 /// Checks a layout that is a list of numbers of elements.
 /// # Errors
@@ -81,22 +73,20 @@ impl Layout {
     pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, LayoutError> {
         let places = radar.elements;
         if count == 0 || count > places {
-            return Err(LayoutError::Random { asked: count, places });
+            return Err(LayoutError(format!(
+                "a random layout of {count} elements was asked for; the aperture has room for 1 to {places}"
+            )));
         }
         let last = places - 1;
-        let outermost = [0, last];
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let inner = index::sample(&mut rng, last - 1, count.saturating_sub(2));
+        let inner = index::sample(&mut ChaCha8Rng::seed_from_u64(seed), last - 1, count.saturating_sub(2));
         let mut chosen: Vec<usize> =
-            outermost.into_iter().take(count).chain(inner.into_iter().map(|i| i + 1)).collect();
+            [0, last].into_iter().take(count).chain(inner.into_iter().map(|i| i + 1)).collect();
         chosen.sort_unstable();
         Ok(Layout::of_elements(radar, chosen))
     }
 
     pub(super) fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
-        let elements: Vec<usize> = elements.into_iter().filter(|n| !radar.is_gap(*n)).collect();
-        let pairs = (!radar.is_monostatic()).then(|| elements.iter().map(|n| radar.pair(*n)).collect());
-        Layout { x_metres: elements.iter().map(|n| radar.element_x_metres(*n)).collect(), pairs }
+        Layout::of_numbers(radar, &elements.into_iter().filter(|n| !radar.is_gap(*n)).collect::<Vec<_>>())
     }
 
     /// Monostatic elements at these places in rising order, metres.
@@ -169,18 +159,14 @@ impl Mimo {
     /// A far reflector delays the way out by `x_t cos(theta)` and the way back by `x_r cos(theta)`: the pair measures what one
     /// element at `x_t + x_r` would.
     pub fn virtual_elements(&self) -> Vec<VirtualElement> {
-        let mut pairs: Vec<VirtualElement> = self
-            .transmitter_x_metres
-            .iter()
-            .enumerate()
-            .flat_map(|(transmitter, t)| {
-                self.receiver_x_metres.iter().enumerate().map(move |(receiver, r)| VirtualElement {
-                    transmitter,
-                    receiver,
-                    x_metres: t + r,
-                })
-            })
-            .collect();
+        let Mimo { transmitter_x_metres, receiver_x_metres } = self;
+        let pair = |(transmitter, receiver): (usize, usize)| {
+            let x_metres = transmitter_x_metres[transmitter] + receiver_x_metres[receiver];
+            VirtualElement { transmitter, receiver, x_metres }
+        };
+        let receivers = receiver_x_metres.len();
+        let numbers = (0..transmitter_x_metres.len()).flat_map(|t| (0..receivers).map(move |r| (t, r)));
+        let mut pairs: Vec<VirtualElement> = numbers.map(pair).collect();
         pairs.sort_by(|a, b| a.x_metres.total_cmp(&b.x_metres));
         pairs
     }

@@ -67,7 +67,7 @@ impl LayoutKind {
             LayoutKind::Thinned { step } => (0..radar.elements).step_by((*step).max(1)).collect(),
             LayoutKind::Listed(numbers) => numbers.clone(),
         };
-        check_layout(&numbers, radar.elements).map_err(LayoutError::Elements)?;
+        check_layout(&numbers, radar.elements).map_err(LayoutError)?;
         Ok(Layout::of_elements(radar, numbers))
     }
 
@@ -75,7 +75,9 @@ impl LayoutKind {
     /// # Errors
     /// [`LayoutError`] as of [`LayoutKind::layout`], and for elements that stand between those of `radar`.
     pub fn numbers(&self, radar: &Radar) -> Result<Vec<usize>, LayoutError> {
-        self.layout(radar)?.numbers(radar).ok_or_else(|| LayoutError::OffGrid(self.to_string()))
+        self.layout(radar)?
+            .numbers(radar)
+            .ok_or_else(|| LayoutError(format!("the elements of {self} don't stand on the radar's own grid")))
     }
 }
 

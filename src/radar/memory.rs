@@ -32,24 +32,21 @@ impl Radar {
     }
 
     pub(super) fn check_memory(&self) -> Result<(), RadarError> {
-        let bytes = self.memory_bytes();
-        if bytes <= MAX_MEMORY_BYTES && self.chirp_bytes() <= MAX_MEMORY_BYTES / 2 {
+        let Radar { elements, samples, end_elements, chirps, .. } = *self;
+        let (bytes, most) = (Bytes(self.chirp_bytes()), Bytes(MAX_MEMORY_BYTES / 2));
+        if bytes > most {
+            let map = format!("a range-Doppler map of {chirps} chirps by {samples} samples");
+            let told = format!(" asks for too much memory: {map} needs {bytes}; at most {most} can be had");
+            return Err(RadarError { field: "chirps", told });
+        }
+        let (bytes, most) = (Bytes(self.memory_bytes()), Bytes(MAX_MEMORY_BYTES));
+        if bytes <= most {
             return Ok(());
         }
-        let bytes_of_chirps = Bytes(self.chirp_bytes());
-        if bytes_of_chirps.0 > MAX_MEMORY_BYTES / 2 {
-            let Radar { chirps, samples, .. } = *self;
-            return Err(RadarError::ChirpMemory {
-                chirps,
-                samples,
-                bytes: bytes_of_chirps,
-                most: Bytes(MAX_MEMORY_BYTES / 2),
-            });
-        }
-        let field = if self.elements >= self.samples { "elements" } else { "samples" };
-        let Radar { elements, samples, end_elements, .. } = *self;
-        let (bytes, most) = (Bytes(bytes), Bytes(MAX_MEMORY_BYTES));
-        Err(RadarError::Memory { field, elements, samples, end_elements, bytes, most })
+        let field = if elements >= samples { "elements" } else { "samples" };
+        let of = format!("{elements} elements by {samples} samples with ends of {end_elements}");
+        let told = format!(" asks for too much memory: {of} need {bytes}; at most {most} can be had");
+        Err(RadarError { field, told })
     }
 }
 

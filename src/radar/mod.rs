@@ -125,43 +125,18 @@ pub struct Radar {
     pub budget: Option<LinkBudget>,
 }
 
-/// A fault of a [`Radar`].
+/// A fault of a [`Radar`], with the value found and the values allowed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum RadarError {
-    #[error("radar.{field} is {value}; it must be a finite number above 0")]
-    NotPositive { field: &'static str, value: f64 },
-    #[error("radar.{field} is {value}; it must be between {min} and {max}")]
-    Count { field: &'static str, value: usize, min: usize, max: usize },
-    #[error(
-        "radar.{field} asks for too much memory: {elements} elements by {samples} samples with ends of {end_elements} need {bytes}; \
-         at most {most} can be had"
-    )]
-    Memory { field: &'static str, elements: usize, samples: usize, end_elements: usize, bytes: Bytes, most: Bytes },
-    #[error("radar.chirp_interval_seconds is {interval}; it must be at least chirp_seconds, which is {chirp}")]
-    Interval { interval: f64, chirp: f64 },
-    #[error(
-        "radar.chirps asks for too much memory: a range-Doppler map of {chirps} chirps by {samples} samples needs {bytes}; at most {most} can be had"
-    )]
-    ChirpMemory { chirps: usize, samples: usize, bytes: Bytes, most: Bytes },
-    #[error("radar.budget.{field} is {value}; expected {expected}")]
-    Budget { field: &'static str, value: f64, expected: &'static str },
-    #[error("radar.{field} is {value}; its {transmitters} transmitters and {receivers} receivers make {expected}")]
-    Pairs { field: &'static str, value: f64, expected: f64, transmitters: usize, receivers: usize },
+#[error("radar.{field}{told}")]
+pub struct RadarError {
+    field: &'static str,
+    told: String,
 }
 
 impl RadarError {
     /// Name of the field that is wrong.
     pub fn field(&self) -> &'static str {
-        match self {
-            RadarError::ChirpMemory { .. } => "chirps",
-            RadarError::Interval { .. } => "chirp_interval_seconds",
-            RadarError::NotPositive { field, .. }
-            | RadarError::Count { field, .. }
-            | RadarError::Memory { field, .. }
-            | RadarError::Pairs { field, .. } => field,
-            RadarError::Budget { .. } => "budget",
-        }
+        self.field
     }
 }
 
@@ -182,7 +157,8 @@ impl Radar {
             ("chirp_interval_seconds", self.chirp_interval_seconds),
         ] {
             if !(value.is_finite() && value > 0.0) {
-                return Err(RadarError::NotPositive { field, value });
+                let told = format!(" is {value}; it must be a finite number above 0");
+                return Err(RadarError { field, told });
             }
         }
         for (field, value, min, max) in [
@@ -192,12 +168,14 @@ impl Radar {
             ("chirps", self.chirps, 1, MAX_CHIRPS),
         ] {
             if !(min..=max).contains(&value) {
-                return Err(RadarError::Count { field, value, min, max });
+                let told = format!(" is {value}; it must be between {min} and {max}");
+                return Err(RadarError { field, told });
             }
         }
         let (interval, chirp) = (self.chirp_interval_seconds, self.chirp_seconds);
         if self.chirps > 1 && interval < chirp {
-            return Err(RadarError::Interval { interval, chirp });
+            let told = format!(" is {interval}; it must be at least chirp_seconds, which is {chirp}");
+            return Err(RadarError { field: "chirp_interval_seconds", told });
         }
         self.check_pairs()?;
         self.budget.map_or(Ok(()), |budget| budget.validate())?;
@@ -213,7 +191,8 @@ impl Radar {
             ("element_spacing_metres", self.element_spacing_metres, spacing),
         ] {
             if (value / expected - 1.0).abs() > 1e-9 {
-                return Err(RadarError::Pairs { field, value, expected, transmitters, receivers });
+                let of = format!("its {transmitters} transmitters and {receivers} receivers");
+                return Err(RadarError { field, told: format!(" is {value}; {of} make {expected}") });
             }
         }
         Ok(())

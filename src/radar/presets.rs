@@ -1,6 +1,6 @@
 //! Radars that exist, and radars that show the effect of one constant.
 
-use super::{AntennasError, CHIRP_SECONDS, Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
+use super::{CHIRP_SECONDS, Carrier, Radar, SPEED_OF_LIGHT, WindowFunction};
 use std::sync::LazyLock;
 
 /// A radar that comes with the program.
@@ -45,96 +45,87 @@ impl Default for Radar {
 }
 
 /// Every preset, table 3.1 first.
-pub static ALL: LazyLock<Vec<RadarPreset>> =
-    LazyLock::new(|| MONOSTATIC.iter().cloned().chain(of_pairs().into_iter().flatten()).collect());
-
-fn of_pairs() -> [Option<RadarPreset>; 2] {
-    let preset = |id, name, about, radar: Result<Radar, AntennasError>| {
-        Some(RadarPreset { id, name, about, radar: radar.ok()? })
-    };
-    let cascade = Radar { bandwidth_hz: 1e9, end_elements: 16, samples: 256, ..TABLE_3_1 }.of_pairs(12, 16);
-    let chip = Radar { bandwidth_hz: 3.072e9, end_elements: 4, samples: 128, ..TABLE_3_1 }.of_pairs(3, 4);
-    [
-        preset(
-            "cascade-12x16",
-            "77 GHz cascade, 12 x 16 pairs",
-            "Four radar chips side by side: 12 transmitters, 16 receivers, and a filled line of the 192 elements halfway between them, in the \
-             physical convention. An end is one transmitter with all receivers. Near by the ways of pairs are longer than those of their \
-             midpoints; the map shows it up to some 10 m.",
-            cascade,
-        ),
-        preset(
-            "chip-3x4",
-            "77 GHz single chip, 3 x 4 pairs",
-            "Three transmitters and four receivers on one chip, in the physical convention: 12 elements, a beam of 15 degrees with a Hann \
-             window, and range bins of 5 cm up to 6 m.",
-            chip,
-        ),
+pub static ALL: LazyLock<Vec<RadarPreset>> = LazyLock::new(|| {
+    // Antennas whose pairs make no array would leave table 3.1, which a test would see.
+    let of_pairs = |radar: Radar, transmitters, receivers| radar.of_pairs(transmitters, receivers).unwrap_or_default();
+    vec![
+        RadarPreset {
+            id: "table-3.1",
+            name: "The thesis' radar (table 3.1)",
+            about: "1024 elements over 2 m, 2 GHz of bandwidth: range bins of 7.5 cm, a beam of 0.17 degrees with a Hann window. The table says \
+                    77 GHz; the thesis' formula is a radar at 38.5 GHz whose chirp falls. Every scene lies in the near field, which extends to about 2 km.",
+            radar: TABLE_3_1,
+        },
+        RadarPreset {
+            id: "table-3.1-physical",
+            name: "Table 3.1 in the physical convention",
+            about: "The constants of table 3.1, as a radar that is built measures: a chirp that rises from 77 GHz, carrier and beat there and back with \
+                    one sign. Elements stand a quarter of a wavelength apart, so the array is 1 m long. Blobs stand 1.3 % farther from \
+                    broadside than their reflectors, not 2.6 % nearer.",
+            radar: Radar {
+                element_spacing_metres: SPEED_OF_LIGHT / (77e9 + 2e9 / 2.0) / 4.0,
+                carrier: Carrier::TwoWay,
+                ..TABLE_3_1
+            },
+        },
+        RadarPreset {
+            id: "cascade-86",
+            name: "77 GHz cascade, 86 elements",
+            about: "Four radar chips side by side, whose virtual elements form a line of 86: 17 cm wide, a beam of 2.0 degrees with a Hann window. \
+                    Its far field begins at 14 m, so plane waves are a fair assumption.",
+            radar: Radar { bandwidth_hz: 1e9, elements: 86, samples: 256, ..TABLE_3_1 },
+        },
+        RadarPreset {
+            id: "chip-8",
+            name: "77 GHz single chip, 8 elements",
+            about: "Two transmitters and four receivers on one chip, the radar of most laboratories: range bins of 5 cm up to 6 m, but a beam of \
+                    25 degrees with a Hann window.",
+            radar: Radar { bandwidth_hz: 3.072e9, elements: 8, end_elements: 3, samples: 128, ..TABLE_3_1 },
+        },
+        RadarPreset {
+            id: "24-ghz",
+            name: "24 GHz, 256 elements",
+            about: "The older band: a wavelength three times as long makes the same number of elements three times as wide, and its 250 MHz allow \
+                    range bins of 60 cm only.",
+            radar: Radar {
+                bandwidth_hz: 250e6,
+                carrier_hz: 24.125e9,
+                element_spacing_metres: half_wavelength_metres(24.125e9),
+                elements: 256,
+                samples: 256,
+                ..TABLE_3_1
+            },
+        },
+        RadarPreset {
+            id: "one-wavelength",
+            name: "Elements one wavelength apart",
+            about: "Table 3.1 with twice the spacing: the beam is half as wide, but each column stands for two directions (grating lobes).",
+            radar: Radar { element_spacing_metres: 2.0 * half_wavelength_metres(77e9), ..TABLE_3_1 },
+        },
+        RadarPreset {
+            id: "150-mhz",
+            name: "150 MHz of bandwidth",
+            about: "Table 3.1 with a fraction of its bandwidth: a range bin is 1 m, as long as a range cell of long-range automotive radars, and \
+                    what stands less than that apart merges.",
+            radar: Radar { bandwidth_hz: 150e6, ..TABLE_3_1 },
+        },
+        RadarPreset {
+            id: "cascade-12x16",
+            name: "77 GHz cascade, 12 x 16 pairs",
+            about: "Four radar chips side by side: 12 transmitters, 16 receivers, and a filled line of the 192 elements halfway between them, in the \
+                    physical convention. An end is one transmitter with all receivers. Near by the ways of pairs are longer than those of their \
+                    midpoints; the map shows it up to some 10 m.",
+            radar: of_pairs(Radar { bandwidth_hz: 1e9, end_elements: 16, samples: 256, ..TABLE_3_1 }, 12, 16),
+        },
+        RadarPreset {
+            id: "chip-3x4",
+            name: "77 GHz single chip, 3 x 4 pairs",
+            about: "Three transmitters and four receivers on one chip, in the physical convention: 12 elements, a beam of 15 degrees with a Hann \
+                    window, and range bins of 5 cm up to 6 m.",
+            radar: of_pairs(Radar { bandwidth_hz: 3.072e9, end_elements: 4, samples: 128, ..TABLE_3_1 }, 3, 4),
+        },
     ]
-}
-
-const MONOSTATIC: &[RadarPreset] = &[
-    RadarPreset {
-        id: "table-3.1",
-        name: "The thesis' radar (table 3.1)",
-        about: "1024 elements over 2 m, 2 GHz of bandwidth: range bins of 7.5 cm, a beam of 0.17 degrees with a Hann window. The table says \
-                77 GHz; the thesis' formula is a radar at 38.5 GHz whose chirp falls. Every scene lies in the near field, which extends to about 2 km.",
-        radar: TABLE_3_1,
-    },
-    RadarPreset {
-        id: "table-3.1-physical",
-        name: "Table 3.1 in the physical convention",
-        about: "The constants of table 3.1, as a radar that is built measures: a chirp that rises from 77 GHz, carrier and beat there and back with \
-                one sign. Elements stand a quarter of a wavelength apart, so the array is 1 m long. Blobs stand 1.3 % farther from \
-                broadside than their reflectors, not 2.6 % nearer.",
-        radar: Radar {
-            element_spacing_metres: SPEED_OF_LIGHT / (77e9 + 2e9 / 2.0) / 4.0,
-            carrier: Carrier::TwoWay,
-            ..TABLE_3_1
-        },
-    },
-    RadarPreset {
-        id: "cascade-86",
-        name: "77 GHz cascade, 86 elements",
-        about: "Four radar chips side by side, whose virtual elements form a line of 86: 17 cm wide, a beam of 2.0 degrees with a Hann window. \
-                Its far field begins at 14 m, so plane waves are a fair assumption.",
-        radar: Radar { bandwidth_hz: 1e9, elements: 86, samples: 256, ..TABLE_3_1 },
-    },
-    RadarPreset {
-        id: "chip-8",
-        name: "77 GHz single chip, 8 elements",
-        about: "Two transmitters and four receivers on one chip, the radar of most laboratories: range bins of 5 cm up to 6 m, but a beam of \
-                25 degrees with a Hann window.",
-        radar: Radar { bandwidth_hz: 3.072e9, elements: 8, end_elements: 3, samples: 128, ..TABLE_3_1 },
-    },
-    RadarPreset {
-        id: "24-ghz",
-        name: "24 GHz, 256 elements",
-        about: "The older band: a wavelength three times as long makes the same number of elements three times as wide, and its 250 MHz allow \
-                range bins of 60 cm only.",
-        radar: Radar {
-            bandwidth_hz: 250e6,
-            carrier_hz: 24.125e9,
-            element_spacing_metres: half_wavelength_metres(24.125e9),
-            elements: 256,
-            samples: 256,
-            ..TABLE_3_1
-        },
-    },
-    RadarPreset {
-        id: "one-wavelength",
-        name: "Elements one wavelength apart",
-        about: "Table 3.1 with twice the spacing: the beam is half as wide, but each column stands for two directions (grating lobes).",
-        radar: Radar { element_spacing_metres: 2.0 * half_wavelength_metres(77e9), ..TABLE_3_1 },
-    },
-    RadarPreset {
-        id: "150-mhz",
-        name: "150 MHz of bandwidth",
-        about: "Table 3.1 with a fraction of its bandwidth: a range bin is 1 m, as long as a range cell of long-range automotive radars, and \
-                what stands less than that apart merges.",
-        radar: Radar { bandwidth_hz: 150e6, ..TABLE_3_1 },
-    },
-];
+});
 
 impl RadarPreset {
     /// The preset called `id`.
@@ -158,7 +149,7 @@ mod tests {
             assert_eq!(RadarPreset::by_id(preset.id), Some(preset));
         }
         assert_eq!(ALL[0].radar, Radar::default());
-        assert_eq!(ALL.len(), MONOSTATIC.len() + of_pairs().len(), "every radar of pairs is an array");
+        assert!(ALL.iter().skip(1).all(|preset| preset.radar != Radar::default()), "every radar of pairs is an array");
     }
 
     #[test]

@@ -121,34 +121,24 @@ impl TryFrom<Said> for Radar {
 impl Said {
     /// The antennas; the error names a key beside them that disagrees.
     fn antennas(&self) -> Result<Option<Antennas>, String> {
-        let (transmitters, receivers) = match (&self.transmitter_x_metres, &self.receiver_x_metres) {
-            (None, None) => {
-                let off_line = [
-                    ("transmitter", self.transmitter_y_metres.is_some()),
-                    ("receiver", self.receiver_y_metres.is_some()),
-                ];
-                return off_line.into_iter().find(|(_, is_said)| *is_said).map_or(Ok(None), |(of, _)| {
-                    Err(format!(
-                        "radar.{of}_y_metres is there without radar.{of}_x_metres; expected it beside that list"
-                    ))
-                });
+        let lists = [
+            ("transmitter", &self.transmitter_x_metres, &self.transmitter_y_metres),
+            ("receiver", &self.receiver_x_metres, &self.receiver_y_metres),
+        ];
+        let [(_, Some(transmitters), _), (_, Some(receivers), _)] = lists else {
+            let [one, other] = lists.map(|(of, x_metres, _)| (of, x_metres.is_some()));
+            if one.1 || other.1 {
+                let (missing, there) = if one.1 { (other.0, one.0) } else { (one.0, other.0) };
+                return Err(format!("radar.{missing}_x_metres is missing; expected it beside {there}_x_metres"));
             }
-            (Some(transmitters), Some(receivers)) => (transmitters, receivers),
-            (Some(_), None) => {
-                return Err("radar.receiver_x_metres is missing; expected it beside transmitter_x_metres".into());
-            }
-            (None, Some(_)) => {
-                return Err("radar.transmitter_x_metres is missing; expected it beside receiver_x_metres".into());
-            }
+            return lists.into_iter().find(|(_, _, y_metres)| y_metres.is_some()).map_or(Ok(None), |(of, ..)| {
+                Err(format!("radar.{of}_y_metres is there without radar.{of}_x_metres; expected it beside that list"))
+            });
         };
-        let on_line = |count: usize| vec![0.0; count];
-        let y_metres = |said: &Option<Vec<f64>>, count: usize| said.clone().unwrap_or_else(|| on_line(count));
-        let antennas = Antennas::new(transmitters, receivers).map_err(|e| format!("radar: {e}"))?;
-        let antennas = antennas
-            .off_line(
-                &y_metres(&self.transmitter_y_metres, transmitters.len()),
-                &y_metres(&self.receiver_y_metres, receivers.len()),
-            )
+        let [of_transmitters, of_receivers] =
+            lists.map(|(_, x, y)| y.clone().unwrap_or_else(|| vec![0.0; x.as_ref().map_or(0, Vec::len)]));
+        let antennas = Antennas::new(transmitters, receivers)
+            .and_then(|antennas| antennas.off_line(&of_transmitters, &of_receivers))
             .map_err(|e| format!("radar: {e}"))?;
         let (pairs, spacing) = (antennas.pairs().len(), antennas.spacing_metres());
         if let Some(elements) = self.elements.filter(|n| *n != pairs) {

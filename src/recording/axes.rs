@@ -8,24 +8,19 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
 
-/// Most numbers whose chirps are joined.
 const MOST_JOINED: usize = 1 << 23;
 
 /// The quantity that an axis of an array counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AxisKind {
-    /// Elements of the array, or of the two ends.
     Element,
     /// Transmitters of a MIMO array: with [`AxisKind::Receiver`] in place of elements, which count through the receivers first.
     Transmitter,
-    /// Receivers of a MIMO array.
     Receiver,
-    /// Samples of one chirp.
     Sample,
     /// Chirps or anything else that repeats: [`Chirp`] picks.
     Chirp,
-    /// Frames, of which one is looked at.
     Frame,
     /// Real and imaginary part, in this order.
     Iq,
@@ -33,15 +28,8 @@ pub enum AxisKind {
 
 impl Display for AxisKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            AxisKind::Element => "element",
-            AxisKind::Transmitter => "transmitter",
-            AxisKind::Receiver => "receiver",
-            AxisKind::Sample => "sample",
-            AxisKind::Chirp => "chirp",
-            AxisKind::Frame => "frame",
-            AxisKind::Iq => "iq",
-        })
+        // Its name in texts.
+        f.write_str(&format!("{self:?}").to_lowercase())
     }
 }
 
@@ -49,9 +37,7 @@ impl Display for AxisKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a number from 0, \"mean\" or \"strongest\"")]
 pub enum Chirp {
-    /// The chirp or loop of this number, from 0.
     Number(usize),
-    /// A way to join them all.
     Joined(Join),
 }
 

@@ -9,15 +9,11 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Calibration {
-    /// Gain of each element, decibels.
     pub gain_db: Vec<f64>,
-    /// Phase shift of each element, degrees.
     pub phase_degrees: Vec<f64>,
 }
 
-/// Largest gain that is taken off, decibels either way.
 const MOST_GAIN_DB: f64 = 200.0;
-/// Largest phase that is taken off, degrees either way.
 const MOST_PHASE_DEGREES: f64 = 3600.0;
 
 impl Calibration {

@@ -2,7 +2,6 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// A source of a data file's bytes.
 pub(super) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}

@@ -6,6 +6,7 @@
 
 use super::Fault;
 use super::numbers::{MAX_NUMBERS, Numbers, bounded_count, too_large};
+use crate::files::NumberKind;
 use flate2::read::ZlibDecoder;
 use ndarray::{ArrayD, Axis, IxDyn, ShapeBuilder, ShapeError, stack};
 use num_complex::Complex64;
@@ -22,7 +23,6 @@ const COMPRESSED: u32 = 15;
 /// Longest name that is read, bytes; MATLAB's own have up to 63.
 const MAX_NAME_BYTES: u64 = 256;
 
-/// Most dimensions of an array.
 const MAX_DIMENSIONS: u64 = 16;
 
 /// Longest text of a struct's field names, bytes; most cells that are frames of one array; and how deep structs are looked into.
@@ -32,9 +32,6 @@ const MAX_DEPTH: usize = 4;
 
 /// Reads the array called `key`: a variable, a member of a struct (`radar.adcData`), or the cells of one, all of one shape, one after
 /// another along a first axis.
-///
-/// # Errors
-/// [`Fault`] names the array, and what was expected of it.
 pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
     let mut search = Search { want: Some(key), ..Search::default() };
     look_through(file, &mut search)?;
@@ -44,9 +41,6 @@ pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
 }
 
 /// Names and shapes of all arrays of numbers, those in structs and cells too.
-///
-/// # Errors
-/// [`Fault`].
 pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut search = Search::default();
     look_through(file, &mut search)?;
@@ -256,13 +250,11 @@ struct Tag {
     small: Option<[u8; 4]>,
 }
 
-/// An element's kind and bytes.
 struct Element {
     kind: u32,
     bytes: Vec<u8>,
 }
 
-/// Elements one after another.
 struct Elements<'a> {
     file: &'a mut dyn Read,
     big_endian: bool,
@@ -320,28 +312,9 @@ impl Elements<'_> {
         if bytes.len() != width * count {
             return Err(format!("it has {} bytes of numbers; expected {}", bytes.len(), width * count));
         }
-        Ok(bytes.chunks_exact(width).map(|b| number(kind, b, self.big_endian)).collect())
-    }
-}
-
-/// One number of `kind` from its bytes.
-fn number(kind: u32, bytes: &[u8], big_endian: bool) -> f64 {
-    // Low byte first, so that the narrow types are the first bytes of the wide ones.
-    let mut low_first = [0; 8];
-    let width = bytes.len();
-    low_first[..width].copy_from_slice(bytes);
-    if big_endian {
-        low_first[..width].reverse();
-    }
-    let word = u64::from_le_bytes(low_first);
-    match kind {
-        1 => f64::from(word as i8),
-        3 => f64::from(word as i16),
-        5 => f64::from(word as i32),
-        7 => f64::from(f32::from_bits(word as u32)),
-        9 => f64::from_bits(word),
-        12 => word as i64 as f64,
-        _ => word as f64,
+        let (is_float, is_signed) = ([7, 9].contains(&kind), [1, 3, 5, 12].contains(&kind));
+        let kind = NumberKind { bytes: width, is_float, is_signed, is_big: self.big_endian };
+        Ok(bytes.chunks_exact(width).map(|b| kind.value(b)).collect())
     }
 }
 

@@ -13,7 +13,7 @@
 //! | `capture`, `profile` | samples of a capture card, and the `.cfg` that set the radar up |
 //! | [`layout`] | layouts of a raw capture's bytes, by evidence |
 //! | [`raw`] | raw captures and arrays as they are: the text that describes them is made |
-//! | `origin`, `reread` | the file of a recording, its frames and other ways to read it |
+//! | `origin` | the file of a recording, its frames and other ways to read it |
 //! | [`packets`], [`card`] | packets that a capture card sends, to frames; listening to them |
 //! | `axes`, `analytic` | an array of any shape, of real samples too, to `[elements, samples]` |
 //! | `calibration` | gains and phases that are taken off each element |
@@ -43,25 +43,22 @@ pub mod packets;
 pub mod presets;
 mod profile;
 pub mod raw;
-mod reread;
 mod said_radar;
 mod said_recording;
 mod samples;
 mod signs;
 
-pub use axes::{AxisKind, Chirp};
-pub use calibration::Calibration;
-pub use capture::Capture;
 pub use described::FrameLoops;
 pub use error::{Fault, RecordingError};
-pub use numbers::MAX_NUMBERS;
 pub use origin::{Offer, Origin};
 pub use profile::RadarProfile;
 pub use profile::lines::text_of as config_text;
-pub use signs::FORMAT;
 
 use crate::radar::Radar;
 use crate::signal::{BeatSignal, TwoEnds};
+use axes::{AxisKind, Chirp};
+use calibration::Calibration;
+use capture::Capture;
 use std::sync::Arc;
 
 /// Samples of a radar's elements, and the radar.

@@ -2,7 +2,6 @@
 
 use super::Fault;
 pub(super) use crate::files::Numbers;
-use num_complex::Complex64;
 
 /// Most numbers that an array of a recording may hold: half a gigabyte of complex ones.
 pub const MAX_NUMBERS: usize = 1 << 25;
@@ -11,25 +10,22 @@ pub const MAX_NUMBERS: usize = 1 << 25;
 const MOST_SIGNED: f64 = i16::MAX as f64;
 
 impl Numbers {
+    fn parts(&mut self) -> Box<dyn Iterator<Item = &mut f64> + '_> {
+        match self {
+            Numbers::Real(values) => Box::new(values.iter_mut()),
+            Numbers::Complex(values) => Box::new(values.iter_mut().flat_map(|v| [&mut v.re, &mut v.im])),
+        }
+    }
+
     /// Gives 16-bit integers that lost their sign their sign again: 65535 is -1. Such numbers are whole, from 0 to 65535, and some lie beyond 32767.
     /// Returns a sentence where it was done.
     pub(super) fn mend_signs(&mut self) -> Option<String> {
         let is_word = |v: f64| v.fract() == 0.0 && (0.0..=65535.0).contains(&v);
-        let signed = |v: f64| if v > MOST_SIGNED { v - 65536.0 } else { v };
-        let lost = match self {
-            Numbers::Real(values) => values.iter().all(|v| is_word(*v)) && values.iter().any(|v| *v > MOST_SIGNED),
-            Numbers::Complex(values) => {
-                values.iter().all(|v| is_word(v.re) && is_word(v.im))
-                    && values.iter().any(|v| v.re > MOST_SIGNED || v.im > MOST_SIGNED)
-            }
-        };
-        if !lost {
+        let are_words = self.parts().all(|v| is_word(*v));
+        if !are_words || self.parts().all(|v| *v <= MOST_SIGNED) {
             return None;
         }
-        match self {
-            Numbers::Real(values) => values.mapv_inplace(signed),
-            Numbers::Complex(values) => values.mapv_inplace(|v| Complex64::new(signed(v.re), signed(v.im))),
-        }
+        self.parts().filter(|v| **v > MOST_SIGNED).for_each(|v| *v -= 65536.0);
         Some("The array's integers have lost their sign: those beyond 32767 are taken less 65536, as int16 would have them.".to_owned())
     }
 
@@ -56,6 +52,7 @@ pub(super) fn too_large(what: &str, shape: &[usize]) -> Fault {
 mod tests {
     use super::*;
     use ndarray::array;
+    use num_complex::Complex64;
 
     #[test]
     fn integers_that_lost_their_sign_get_it_back() {

@@ -2,112 +2,37 @@
 
 use super::Fault;
 use super::numbers::{Numbers, bounded_count, too_large};
-use crate::files::hdf5::half_value;
-use crate::files::npy::header_bytes;
+use crate::files::npy::NpyHeader;
 use crate::files::npz::Npz;
-use ndarray::{ArrayD, IxDyn, ShapeBuilder};
-use ndarray_npy::npy::header::Header;
-use ndarray_npy::{ReadNpyError, ReadNpyExt, ReadableElement};
-use num_complex::{Complex32, Complex64};
-use std::io::{Cursor, Read, Seek};
+use std::io::{self, Read, Seek};
 
 /// Reads the array `key` of an archive.
-///
-/// # Errors
-/// [`Fault`] names the key, and what was expected of it.
 pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     read_array(Npz::of(file)?.entry(key)?, &format!("array \"{key}\""))
 }
 
 /// Names and shapes of the arrays of an archive, without their numbers; those that can't be read are left out.
-///
-/// # Errors
-/// [`Fault`].
 pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut archive = Npz::of(file)?;
     let keys = archive.keys().to_vec();
-    let shape = |key: String| {
-        let bytes = header_bytes(&mut archive.entry(&key).ok()?).ok()?;
-        let header = Header::from_reader(&mut bytes.as_slice()).ok()?;
-        Some((key, header.shape))
-    };
+    let shape = |key: String| Some((key.clone(), NpyHeader::read(&mut archive.entry(&key).ok()?).ok()?.shape));
     Ok(keys.into_iter().filter_map(shape).collect())
 }
 
 /// Reads the one array of an `.npy` file.
-///
-/// # Errors
-/// [`Fault`].
 pub(super) fn read_npy(file: impl Read) -> Result<Numbers, Fault> {
     read_array(file, "the array")
 }
 
 fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, Fault> {
-    let damaged =
-        |reason: String| Fault::Data(format!("{what} can't be read: {reason}; expected what numpy.save writes"));
-    let header_bytes = header_bytes(&mut file).map_err(|e| damaged(e.to_string()))?;
-    let header = Header::from_reader(&mut header_bytes.as_slice()).map_err(|e| damaged(e.to_string()))?;
+    let damaged = |e: io::Error| Fault::Data(format!("{what} can't be read: {e}; expected what numpy.save writes"));
+    let header = NpyHeader::read(&mut file).map_err(damaged)?;
     bounded_count(&header.shape).ok_or_else(|| too_large(what, &header.shape))?;
-    let found = header.type_descriptor.to_string();
-    let header_length = header_bytes.len();
-    let whole = Cursor::new(header_bytes).chain(file);
-    let numbers = match found.trim_matches(['\'', '"']) {
-        "<c16" | ">c16" => Numbers::Complex(array::<Complex64>(whole).map_err(|e| damaged(e.to_string()))?),
-        "<c8" | ">c8" => {
-            let values = array::<Complex32>(whole).map_err(|e| damaged(e.to_string()))?;
-            Numbers::Complex(values.mapv(|v| Complex64::new(v.re.into(), v.im.into())))
-        }
-        "<f8" | ">f8" => Numbers::Real(array::<f64>(whole).map_err(|e| damaged(e.to_string()))?),
-        "<f4" | ">f4" => Numbers::Real(array::<f32>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<i2" | ">i2" => Numbers::Real(array::<i16>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<i4" | ">i4" => Numbers::Real(array::<i32>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<i8" | ">i8" => Numbers::Real(array::<i64>(whole).map_err(|e| damaged(e.to_string()))?.mapv(|v| v as f64)),
-        "<u2" | ">u2" => Numbers::Real(array::<u16>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "|i1" => Numbers::Real(array::<i8>(whole).map_err(|e| damaged(e.to_string()))?.mapv(f64::from)),
-        "<f2" => Numbers::Real(words(whole, header_length, &header, 1, half_value).map_err(damaged)?.remove(0)),
-        _ if is_pair(&found) => {
-            let mut parts = words(whole, header_length, &header, 2, |word| f64::from(word as i16)).map_err(damaged)?;
-            let (second, first) = (parts.remove(1), parts.remove(0));
-            Numbers::Complex(ndarray::Zip::from(&first).and(&second).map_collect(|re, im| Complex64::new(*re, *im)))
-        }
-        _ => {
-            let expected = "complex or real numbers, integers of 16 or more bits or int8, or pairs of int16";
-            return Err(Fault::Data(format!("{what} holds {found}; expected {expected}")));
-        }
+    let unread = || {
+        let expected = "complex or real numbers, integers of 16 or more bits or int8, or pairs of int16";
+        Fault::Data(format!("{what} holds {}; expected {expected}", header.descriptor))
     };
-    Ok(numbers)
-}
-
-/// Whether a structure of two 16-bit integers, low byte first, is meant: real and imaginary part.
-fn is_pair(found: &str) -> bool {
-    found.starts_with('[') && found.matches("'<i2'").count() == 2 && found.matches('\'').count() == 8
-}
-
-/// `parts` arrays of the header's shape, of 16-bit words that stand in turn.
-fn words(
-    mut file: impl Read,
-    header_length: usize,
-    header: &Header,
-    parts: usize,
-    number: fn(u16) -> f64,
-) -> Result<Vec<ArrayD<f64>>, String> {
-    let count = bounded_count(&header.shape).ok_or("too many numbers")?;
-    let mut bytes = Vec::new();
-    let length = header_length + 2 * parts * count;
-    file.by_ref().take(length as u64).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
-    let data = bytes.get(header_length..).filter(|data| data.len() == 2 * parts * count).ok_or("it ends too early")?;
-    let words: Vec<f64> = data.chunks_exact(2).map(|b| number(u16::from_le_bytes([b[0], b[1]]))).collect();
-    let in_columns = matches!(header.layout, ndarray_npy::npy::header::Layout::Fortran);
-    let shape = IxDyn(&header.shape).set_f(in_columns);
-    let part = |n: usize| {
-        let values = words.iter().skip(n).step_by(parts).copied().collect();
-        ArrayD::from_shape_vec(shape.clone(), values).map_err(|e| e.to_string())
-    };
-    (0..parts).map(part).collect()
-}
-
-fn array<T: ReadableElement>(file: impl Read) -> Result<ArrayD<T>, ReadNpyError> {
-    ArrayD::<T>::read_npy(file)
+    header.numbers(file).ok_or_else(unread)?.map_err(damaged)
 }
 
 #[cfg(test)]
@@ -115,6 +40,8 @@ mod tests {
     use super::*;
     use ndarray::{Array, Dimension, array};
     use ndarray_npy::{NpzWriter, WritableElement, WriteNpyExt};
+    use num_complex::{Complex32, Complex64};
+    use std::io::Cursor;
 
     fn npy<T: WritableElement, D: Dimension>(values: &Array<T, D>) -> Vec<u8> {
         let mut bytes = Vec::new();

@@ -1,6 +1,11 @@
 //! The source of a recording that was opened without a text, and other ways to read its bytes.
 
-use std::path::PathBuf;
+use super::described::{Described, FrameLoops, beside};
+use super::samples::Open;
+use super::{Recording, RecordingError};
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// One way to read a file: a layout of a raw capture, or kinds of an array's axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,5 +47,56 @@ impl Origin {
     /// The text of the way that was taken.
     pub fn toml(&self) -> &str {
         self.offers.get(self.taken).map_or("", |offer| offer.toml.as_str())
+    }
+
+    /// The same file read another way, or another frame of it.
+    ///
+    /// # Errors
+    /// As [`Origin::recording`].
+    pub fn with(&self, taken: usize, frame: u64) -> Result<Recording, RecordingError> {
+        Origin { taken, frame, ..self.clone() }.recording()
+    }
+
+    /// The recording as the text of the way that was taken describes it.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the file, the key or the array.
+    pub fn recording(&self) -> Result<Recording, RecordingError> {
+        self.read(&beside(self.folder()))
+    }
+
+    /// The recording of a frame whose bytes are given in place of the file.
+    ///
+    /// # Errors
+    /// As [`Origin::recording`].
+    pub fn recording_of(&self, bytes: &[u8]) -> Result<Recording, RecordingError> {
+        let other = beside(self.folder());
+        let own = self.data.file_name().map(|name| name.to_string_lossy().into_owned());
+        self.read(&|name| match own.as_deref() == Some(name) {
+            true => Ok(Box::new(Cursor::new(bytes.to_vec()))),
+            false => other(name),
+        })
+    }
+
+    /// Every loop of the frame, for a range-Doppler map.
+    ///
+    /// # Errors
+    /// As [`Origin::recording`], and where the file holds no loops.
+    pub fn loops(&self) -> Result<FrameLoops, RecordingError> {
+        let (path, open) = (self.data.with_extension("toml"), beside(self.folder()));
+        Described::by(self.toml(), &path, &open, Some(self.frame))?.loops()
+    }
+
+    fn folder(&self) -> &Path {
+        self.data.parent().unwrap_or(Path::new(""))
+    }
+
+    fn read(&self, open: Open<'_>) -> Result<Recording, RecordingError> {
+        let path = self.data.with_extension("toml");
+        let mut recording = Described::by(self.toml(), &path, open, Some(self.frame))?.recording()?;
+        let known = recording.doubts.clone();
+        recording.doubts.splice(0..0, self.doubts.iter().filter(|d| !known.contains(d)).cloned());
+        recording.origin = Some(Arc::new(self.clone()));
+        Ok(recording)
     }
 }

@@ -1,6 +1,6 @@
 //! Recordings that come with the program: the files of `assets/recordings`, embedded in it.
 
-use super::described::from_parts;
+use super::described::Described;
 use super::samples::Open;
 use super::{Recording, RecordingError};
 use std::io::{self, Cursor};
@@ -50,7 +50,7 @@ impl Preset {
                 Err(io::Error::new(io::ErrorKind::NotFound, format!("expected {}", self.data_name)))
             }
         };
-        from_parts(self.toml, Path::new(&path), open, None)
+        Described::by(self.toml, Path::new(&path), open, None)?.recording()
     }
 
     /// The preset called `id`.

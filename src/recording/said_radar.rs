@@ -2,6 +2,7 @@
 
 use super::{Fault, RadarProfile};
 use crate::radar::Radar;
+use std::fmt::Display;
 
 /// The radar of a recording, whose text must give its constants.
 pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>) -> Result<Radar, Fault> {
@@ -10,22 +11,14 @@ pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>)
             let said = table.entry(key).or_insert(value.into());
             let number = said.as_float().or(said.as_integer().map(|v| v as f64));
             if number.is_none_or(|n| ((n - value) / value).abs() > 1e-4) {
-                return Err(Fault::key(
-                    &format!("radar.{key}"),
-                    format!("is {said}"),
-                    format!("{value}, as the .cfg says, or no such key"),
-                ));
+                return Err(unlike(key, said, value));
             }
         }
         table.entry("chirp_seconds").or_insert(profile.chirp_seconds().into());
         let samples = profile.complex_samples();
         let said = table.entry("samples").or_insert((samples as i64).into());
         if said.as_integer() != Some(samples as i64) {
-            return Err(Fault::key(
-                "radar.samples",
-                format!("is {said}"),
-                format!("{samples}, as the .cfg says, or no such key"),
-            ));
+            return Err(unlike("samples", said, samples));
         }
     }
     let snapshot = table.get("samples").and_then(toml::Value::as_integer) == Some(1);
@@ -44,4 +37,9 @@ pub(super) fn said_radar(mut table: toml::Table, profile: Option<&RadarProfile>)
     })?;
     radar.validate()?;
     Ok(radar)
+}
+
+/// The error of a key that says another `value` than the `.cfg`.
+fn unlike(key: &str, said: &toml::Value, value: impl Display) -> Fault {
+    Fault::key(&format!("radar.{key}"), format!("is {said}"), format!("{value}, as the .cfg says, or no such key"))
 }

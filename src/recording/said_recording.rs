@@ -1,6 +1,6 @@
 //! The table `[recording]` of a recording's TOML.
 
-use super::signs::{BeatSign, CarrierAt, Said, Signs, Sweep, oldest};
+use super::signs::{BeatSign, CarrierAt, Sweep};
 use super::{AxisKind, Calibration, Capture, Chirp, Fault};
 use crate::radar::{End, Radar};
 use serde::Deserialize;
@@ -27,10 +27,11 @@ pub(super) struct Table {
     #[serde(default)]
     pub missing: Vec<usize>,
     pub range_metres: Option<f64>,
-    conjugate: Option<bool>,
-    carrier_at: Option<CarrierAt>,
-    beat_sign: Option<BeatSign>,
-    sweep: Option<Sweep>,
+    /// Whether the samples are conjugated: format 1 alone.
+    pub conjugate: Option<bool>,
+    pub carrier_at: Option<CarrierAt>,
+    pub beat_sign: Option<BeatSign>,
+    pub sweep: Option<Sweep>,
     #[serde(default)]
     pub reverse_elements: bool,
     #[serde(default)]
@@ -41,7 +42,6 @@ pub(super) struct Table {
     pub has_places: bool,
 }
 
-/// The elements whose samples a file holds.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Covers {
@@ -53,20 +53,20 @@ pub(super) enum Covers {
 impl Table {
     /// Checks that the keys of the TOML agree with each other and with `radar`.
     pub fn check(&self, radar: &Radar) -> Result<(), Fault> {
-        match (radar.samples, self.range_metres) {
-            (1, Some(range)) if range.is_finite() && range > 0.0 => {}
-            (1, Some(range)) => {
-                return Err(Fault::key("recording.range_metres", format!("is {range}"), "a number above 0"));
-            }
+        let unfit = match (radar.samples, self.range_metres) {
             (1, None) => {
-                let why = "the range of the snapshot in metres: one sample cannot tell it";
-                return Err(Fault::key("recording.range_metres", "is missing", why));
+                Some(("is missing".to_owned(), "the range of the snapshot in metres: one sample cannot tell it"))
             }
-            (_, None) => {}
-            (_, Some(_)) => {
-                let why = "it only where radar.samples is 1: several samples tell ranges";
-                return Err(Fault::key("recording.range_metres", "is there", why));
+            (1, Some(range)) if !(range.is_finite() && range > 0.0) => {
+                Some((format!("is {range}"), "a number above 0"))
             }
+            (2.., Some(_)) => {
+                Some(("is there".to_owned(), "it only where radar.samples is 1: several samples tell ranges"))
+            }
+            _ => None,
+        };
+        if let Some((found, expected)) = unfit {
+            return Err(Fault::key("recording.range_metres", found, expected));
         }
         let mut may_miss = vec![false; radar.elements];
         self.covered(radar).into_iter().for_each(|n| may_miss[n] = true);
@@ -77,20 +77,6 @@ impl Table {
             }
         }
         Ok(())
-    }
-
-    /// The changes that signs and carrier ask of the samples. The carrier of a `.cfg` is that in the middle of the samples.
-    pub fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
-        let Table { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
-        let carrier_at = match carrier_at {
-            Some(CarrierAt::FirstSample) if has_profile => {
-                let expected = "\"middle\", as the .cfg says, or no such key";
-                return Err(Fault::key("recording.carrier_at", "is \"first-sample\"", expected));
-            }
-            None if has_profile && format > oldest() && radar.samples > 1 => Some(CarrierAt::Middle),
-            said => said,
-        };
-        Said { format, carrier_at, beat_sign, sweep, conjugate }.signs(radar)
     }
 
     /// Chooses another frame than the text's.

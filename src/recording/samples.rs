@@ -1,156 +1,262 @@
 //! Samples in the data files of a recording, brought into the order of the array's elements.
 
 use super::axes::{Join, arrange, in_turn, loops, one_frame};
-use super::capture::{Meaning, strongest_of};
+use super::capture::strongest_of;
 use super::chain::{Source, opened};
+use super::described::Described;
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
 use super::said_recording::{Covers, Table};
-use super::signs::Signs;
-use super::{AxisKind, Capture, Chirp, Fault, RadarProfile, Recorded, hdf5};
+use super::{AxisKind, Capture, Chirp, Fault, Recorded, hdf5};
 use crate::radar::Radar;
 use crate::signal::BeatSignal;
-use ndarray::{Array2, Array3, Axis, concatenate};
+use ndarray::{Array2, Array3, Axis, ShapeError, concatenate};
 use num_complex::Complex64;
-use std::cell::RefCell;
 use std::collections::HashSet;
 use std::io;
 
 /// Opens a data file by the name that the TOML gives it.
 pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
 
-/// Reads the samples that the table names, with all its corrections, and sentences on doubts about a capture. The radar gives the numbers of elements
-/// and samples expected.
-///
-/// # Errors
-/// [`Fault`] names the key or the array, and what was expected of it.
-pub(super) fn read_samples(
-    table: &Table,
-    radar: &Radar,
-    open: Open<'_>,
-    profile: Option<&RadarProfile>,
-    signs: Signs,
-) -> Result<(Recorded, Vec<String>), Fault> {
-    let (rows, notes) = read(table, radar, open, profile, signs)?;
-    let rows = in_element_order(table, radar, rows)?;
-    Ok((sorted(table, radar, rows)?, notes))
-}
+impl Described<'_> {
+    /// Reads the samples that the table names, with all its corrections, and sentences on doubts about them. The radar gives the numbers of elements
+    /// and samples expected.
+    ///
+    /// # Errors
+    /// [`Fault`] names the key or the array, and what was expected of it.
+    pub fn samples(&self) -> Result<(Recorded, Vec<String>), Fault> {
+        let table = &self.table;
+        let (mut rows, notes) = match &table.capture {
+            Some(capture) => {
+                check_capture(table)?;
+                let (file, turns) = (self.open_capture(capture)?, turns(&self.radar));
+                let (rows, notes) = capture.read(file, self.profile.as_ref(), &turns, table.beat_rises())?;
+                (of_pairs(rows)?, notes)
+            }
+            None => self.arrays()?,
+        };
+        if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
+            let message = format!("sample {sample} of element {element} is not finite; expected finite numbers only");
+            return Err(Fault::Data(message));
+        }
+        table.calibration.take_off(&mut rows)?;
+        self.signs.apply(&mut rows);
+        if table.reverse_elements && !table.counts_pairs() {
+            rows.invert_axis(Axis(0));
+        }
+        Ok((self.sorted(self.in_element_order(rows)?)?, notes))
+    }
 
-/// The file's samples as `[elements, samples]`, with all corrections of the table.
-fn read(
-    table: &Table,
-    radar: &Radar,
-    open: Open<'_>,
-    profile: Option<&RadarProfile>,
-    signs: Signs,
-) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
-    let (mut rows, notes) = match &table.capture {
-        Some(capture) => read_capture(table, radar, open, capture, profile)?,
-        None => read_arrays(table, radar, open)?,
-    };
-    if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
-        let message = format!("sample {sample} of element {element} is not finite; expected finite numbers only");
-        return Err(Fault::Data(message));
+    /// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text gives their places; zeros at
+    /// gaps.
+    fn in_element_order(&self, rows: Array2<Complex64>) -> Result<Array2<Complex64>, Fault> {
+        let antennas = self.radar.antennas.as_ref().filter(|_| self.table.counts_pairs());
+        let Some(antennas) = antennas else { return Ok(rows) };
+        let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
+        if rows.nrows() != transmitters * receivers {
+            let expected = format!("{transmitters} by {receivers}, as many as radar says places of antennas");
+            return Err(Fault::count("pairs of antennas", rows.nrows(), &expected, rows.dim()));
+        }
+        let mut ordered = Array2::zeros((self.radar.elements, rows.ncols()));
+        for (mut element, pair) in ordered.outer_iter_mut().zip(antennas.pairs()) {
+            if let Some([t, r]) = pair {
+                element.assign(&rows.row(t * receivers + r));
+            }
+        }
+        Ok(ordered)
     }
-    table.calibration.take_off(&mut rows)?;
-    signs.apply(&mut rows);
-    if table.reverse_elements && !table.counts_pairs() {
-        rows.invert_axis(Axis(0));
-    }
-    Ok((rows, notes))
-}
 
-/// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text gives their places; zeros at gaps.
-fn in_element_order(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Array2<Complex64>, Fault> {
-    let Some(antennas) = radar.antennas.as_ref().filter(|_| table.counts_pairs()) else { return Ok(rows) };
-    let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
-    if rows.nrows() != transmitters * receivers {
-        let expected = format!("{transmitters} by {receivers}, as many as radar says places of antennas");
-        return Err(Fault::count("pairs of antennas", rows.nrows(), &expected, rows.dim()));
+    /// Every loop of a frame, `[loops, elements, samples]`, with the signs of the maps' formula.
+    ///
+    /// # Errors
+    /// [`Fault`] names the key.
+    pub fn every_loop(&self) -> Result<Array3<Complex64>, Fault> {
+        let mut loops = match &self.table.capture {
+            Some(capture) => {
+                check_capture(&self.table)?;
+                capture.loops(self.open_capture(capture)?, self.profile.as_ref())?
+            }
+            None => self.array_loops()?,
+        };
+        self.signs.apply(&mut loops);
+        Ok(loops)
     }
-    let mut ordered = Array2::zeros((radar.elements, rows.ncols()));
-    for (mut element, pair) in ordered.outer_iter_mut().zip(antennas.pairs()) {
-        if let Some([t, r]) = pair {
-            element.assign(&rows.row(t * receivers + r));
+
+    /// Every loop of an array's frame, `[loops, elements, samples]`: elements are the pairs of the transmitters and receivers taken.
+    fn array_loops(&self) -> Result<Array3<Complex64>, Fault> {
+        let table = &self.table;
+        let mut kinds = table.axes.clone().unwrap_or_default();
+        if !kinds.contains(&AxisKind::Chirp) {
+            let expected = "an axis \"chirp\": one chirp tells no velocity";
+            return Err(Fault::key("recording.axes", "has no loops", expected));
+        }
+        let mut numbers = self.numbers(table.array.as_deref())?;
+        numbers.mend_signs();
+        let numbers = in_turn(one_frame(numbers, &mut kinds, table.frame)?, &mut kinds, table.transmitters_in_turn)?;
+        let loops = loops(numbers, &kinds)?;
+        let (count, transmitters, receivers, samples) = loops.dim();
+        let pairs = transmitters * receivers;
+        // The same numbers in the same order: the shape can't fail to fit.
+        let rows = loops
+            .into_shape_with_order((count, pairs, samples))
+            .map_err(|e| Fault::key("recording.axes", e.to_string(), "others"))?;
+        Ok(match taken(table, pairs, [transmitters, receivers])? {
+            Some(places) => rows.select(Axis(1), &places),
+            None => rows,
+        })
+    }
+
+    /// Number of frames in the arrays.
+    pub fn count_frames(&self) -> Result<u64, Fault> {
+        let table = &self.table;
+        let place = table.axes.iter().flatten().position(|kind| *kind == AxisKind::Frame);
+        let Some(place) = place else { return Ok(1) };
+        let numbers = self.numbers(table.array.as_deref().or(table.first.as_deref()))?;
+        Ok(numbers.shape().get(place).map_or(1, |frames| *frames as u64))
+    }
+
+    /// The file of a capture, with those that go on from it.
+    pub fn open_capture(&self, capture: &Capture) -> Result<Box<dyn Source>, Fault> {
+        let Capture { more_files, chips, .. } = capture;
+        if !(more_files.is_empty() || chips.is_empty()) {
+            return Err(Fault::key("recording.capture.chips", "stands beside more_files", "one of the two"));
+        }
+        Ok(opened(&self.table.file, more_files, chips, |name| (self.open)(name))?)
+    }
+
+    fn arrays(&self) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+        let Table { axes, array, first, last, .. } = &self.table;
+        let Some(axes) = axes else {
+            let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
+            return Err(Fault::key("recording.axes", "is missing", kinds));
+        };
+        match (array, first, last) {
+            (array, None, None) => self.array(array.as_deref(), axes.clone()),
+            (None, Some(first), Some(last)) => {
+                let (first, mut notes) = self.array(Some(first), axes.clone())?;
+                let (last, of_last) = self.array(Some(last), axes.clone())?;
+                if first.dim() != last.dim() {
+                    let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
+                    return Err(Fault::count("numbers in \"last\"", last.len(), &expected, last.dim()));
+                }
+                notes.extend(of_last);
+                notes.dedup();
+                // Equal shapes join.
+                let rows = concatenate(Axis(0), &[first.view(), last.view()]);
+                let unlike = |e: ShapeError| {
+                    Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\"")
+                };
+                Ok((rows.map_err(unlike)?, notes))
+            }
+            _ => {
+                Err(Fault::key("recording.array", "stands beside half a pair", "either array, or both first and last"))
+            }
         }
     }
-    Ok(ordered)
+
+    /// The array called `key`, `[elements, samples]`, and sentences on its samples.
+    fn array(&self, key: Option<&str>, mut kinds: Vec<AxisKind>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+        let table = &self.table;
+        let mut numbers = self.numbers(key)?;
+        let mut notes: Vec<String> = numbers.mend_signs().into_iter().collect();
+        let numbers = one_frame(numbers, &mut kinds, table.frame)?;
+        notes.extend(told_of_real(&numbers, &kinds));
+        let numbers = in_turn(numbers, &mut kinds, table.transmitters_in_turn)?;
+        let len = |kind| kinds.iter().position(|k| *k == kind).map_or(1, |place| numbers.shape()[place]);
+        let sizes = [len(AxisKind::Transmitter), len(AxisKind::Receiver)];
+        let rows = if table.chirp == Some(Chirp::Joined(Join::Strongest)) && kinds.contains(&AxisKind::Chirp) {
+            let (rows, told) = self.joined(numbers, &kinds)?;
+            notes.extend(told);
+            rows
+        } else {
+            arrange(numbers, &kinds, table.chirp)?
+        };
+        let rows = match taken(table, rows.nrows(), sizes)? {
+            Some(places) => rows.select(Axis(0), &places),
+            None => rows,
+        };
+        Ok((rows, notes))
+    }
+
+    /// The strongest Doppler cell of each range bin, `[elements, samples]`, and sentences on it.
+    fn joined(&self, numbers: Numbers, kinds: &[AxisKind]) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+        let chirps = kinds.iter().position(|kind| *kind == AxisKind::Chirp).map_or(1, |place| numbers.shape()[place]);
+        let loops = loops(numbers, kinds)?;
+        let (taken, transmitters, _, _) = loops.dim();
+        let left_out = (taken < chirps).then(|| {
+            format!(
+                "The first {taken} of {chirps} chirps are joined; the others are left out, since the frame is too large."
+            )
+        });
+        let all: Vec<usize> = (0..transmitters).collect();
+        let chosen = self.table.transmitters_taken.as_deref().unwrap_or(&all);
+        if chosen.iter().any(|t| *t >= transmitters) {
+            return Err(no_such("recording.transmitters_taken", chosen, transmitters));
+        }
+        let (rows, note) = strongest_of(loops, chosen, &turns(&self.radar));
+        let notes: Vec<String> = note.into_iter().chain(left_out).collect();
+        Ok((of_pairs(rows)?, notes))
+    }
+
+    fn numbers(&self, key: Option<&str>) -> Result<Numbers, Fault> {
+        let table = &self.table;
+        let open = || (self.open)(&table.file);
+        let extension = table.extension();
+        let named = || key.ok_or_else(|| Fault::key("recording.array", "is missing", "the array's name in the file"));
+        match extension.as_str() {
+            "npz" => read_npz(open()?, named()?),
+            "mat" => hdf5::read_mat(open()?, named()?),
+            "h5" | "hdf5" => hdf5::read_h5(open()?, named()?),
+            "npy" if key.is_some() => {
+                Err(Fault::key("recording.array", "is there", "it not beside an .npy file, which holds one array"))
+            }
+            "npy" => read_npy(open()?),
+            "bin" => Err(Fault::key("[recording.capture]", "is missing", "it beside a .bin file")),
+            _ => Err(Fault::key(
+                "recording.file",
+                format!("is \"{}\"", table.file),
+                "a name ending in .npz, .npy, .mat, .h5 or .bin",
+            )),
+        }
+    }
+
+    /// The rows of the file in their places of the array.
+    fn sorted(&self, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
+        let Described { table, radar, .. } = self;
+        if rows.ncols() != radar.samples {
+            let expected = format!("{} as radar.samples says", radar.samples);
+            return Err(Fault::count("samples", rows.ncols(), &expected, rows.dim()));
+        }
+        let covered = table.covered(radar);
+        let missing: HashSet<usize> = table.missing.iter().copied().collect();
+        let present: Vec<usize> = covered.iter().copied().filter(|n| !missing.contains(n)).collect();
+        let places = [&covered, &present].into_iter().find(|places| places.len() == rows.nrows()).ok_or_else(|| {
+            let fewer =
+                (present.len() < covered.len()).then(|| format!(", or {} without the missing ones", present.len()));
+            let whose = if table.covers() == Covers::All {
+                "radar.elements says"
+            } else {
+                "radar.end_elements says for two ends"
+            };
+            let expected = format!("{} as {whose}{}", covered.len(), fewer.unwrap_or_default());
+            Fault::count("elements", rows.nrows(), &expected, rows.dim())
+        })?;
+        let mut samples = Array2::zeros((radar.elements, radar.samples));
+        for (element, row) in places.iter().zip(rows.outer_iter()).filter(|(element, _)| !missing.contains(element)) {
+            samples.row_mut(*element).assign(&row);
+        }
+        let signal = BeatSignal { samples };
+        Ok(match table.covers() {
+            Covers::All => Recorded::All(signal),
+            Covers::Ends => Recorded::Ends(signal.two_ends(radar)),
+        })
+    }
 }
 
-fn read_capture(
-    table: &Table,
-    radar: &Radar,
-    open: Open<'_>,
-    capture: &Capture,
-    profile: Option<&RadarProfile>,
-) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
-    check_capture(table)?;
-    let turns = turns(radar);
-    let meaning = Meaning { profile, turns: &turns, beat_rises: table.beat_rises() };
-    let (rows, notes) = capture.read(open_capture(table, open, capture)?, &meaning)?;
+/// The samples of pairs, `[transmitters, receivers, samples]`, as `[elements, samples]`.
+fn of_pairs(rows: Array3<Complex64>) -> Result<Array2<Complex64>, Fault> {
     let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
-    Ok((arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)?, notes))
-}
-
-/// Every loop of a frame, `[loops, elements, samples]`, with the signs of the maps' formula.
-///
-/// # Errors
-/// [`Fault`] names the key.
-pub(super) fn read_loops(
-    table: &Table,
-    open: Open<'_>,
-    profile: Option<&RadarProfile>,
-    signs: Signs,
-) -> Result<Array3<Complex64>, Fault> {
-    let mut loops = match &table.capture {
-        Some(capture) => {
-            check_capture(table)?;
-            capture.loops(open_capture(table, open, capture)?, profile)?
-        }
-        None => array_loops(table, open)?,
-    };
-    signs.apply(&mut loops);
-    Ok(loops)
-}
-
-/// Every loop of an array's frame, `[loops, elements, samples]`: elements are the pairs of the transmitters and receivers taken.
-fn array_loops(table: &Table, open: Open<'_>) -> Result<Array3<Complex64>, Fault> {
-    let mut kinds = table.axes.clone().unwrap_or_default();
-    if !kinds.contains(&AxisKind::Chirp) {
-        let expected = "an axis \"chirp\": one chirp tells no velocity";
-        return Err(Fault::key("recording.axes", "has no loops", expected));
-    }
-    let mut numbers = numbers(table, open, table.array.as_deref())?;
-    numbers.mend_signs();
-    let numbers = in_turn(one_frame(numbers, &mut kinds, table.frame)?, &mut kinds, table.transmitters_in_turn)?;
-    let loops = loops(numbers, &kinds)?;
-    let (count, transmitters, receivers, samples) = loops.dim();
-    let pairs = transmitters * receivers;
-    // The same numbers in the same order: the shape can't fail to fit.
-    let rows = loops
-        .into_shape_with_order((count, pairs, samples))
-        .map_err(|e| Fault::key("recording.axes", e.to_string(), "others"))?;
-    Ok(match taken(table, pairs, [transmitters, receivers])? {
-        Some(places) => rows.select(Axis(1), &places),
-        None => rows,
-    })
-}
-
-/// Number of frames in the arrays of a table.
-pub(super) fn count_frames(table: &Table, open: Open<'_>) -> Result<u64, Fault> {
-    let place = table.axes.iter().flatten().position(|kind| *kind == AxisKind::Frame);
-    let Some(place) = place else { return Ok(1) };
-    let numbers = numbers(table, open, table.array.as_deref().or(table.first.as_deref()))?;
-    Ok(numbers.shape().get(place).map_or(1, |frames| *frames as u64))
-}
-
-/// The file of a capture, with those that go on from it.
-pub(super) fn open_capture(table: &Table, open: Open<'_>, capture: &Capture) -> Result<Box<dyn Source>, Fault> {
-    let Capture { more_files, chips, .. } = capture;
-    if !(more_files.is_empty() || chips.is_empty()) {
-        return Err(Fault::key("recording.capture.chips", "stands beside more_files", "one of the two"));
-    }
-    Ok(opened(&table.file, more_files, chips, |name| open(name))?)
+    arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)
 }
 
 /// Turns of phase across the array of each pair at a cosine of 1, transmitter by transmitter.
@@ -176,78 +282,6 @@ fn check_capture(table: &Table) -> Result<(), Fault> {
         ));
     }
     Ok(())
-}
-
-fn read_arrays(table: &Table, radar: &Radar, open: Open<'_>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
-    let Some(axes) = &table.axes else {
-        let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
-        return Err(Fault::key("recording.axes", "is missing", kinds));
-    };
-    let notes = RefCell::new(Vec::new());
-    let array = |key: Option<&str>| {
-        let mut numbers = numbers(table, open, key)?;
-        let mut kinds = axes.clone();
-        notes.borrow_mut().extend(numbers.mend_signs());
-        let numbers = one_frame(numbers, &mut kinds, table.frame)?;
-        notes.borrow_mut().extend(told_of_real(&numbers, &kinds));
-        let numbers = in_turn(numbers, &mut kinds, table.transmitters_in_turn)?;
-        let len = |kind| kinds.iter().position(|k| *k == kind).map_or(1, |place| numbers.shape()[place]);
-        let sizes = [len(AxisKind::Transmitter), len(AxisKind::Receiver)];
-        let rows = if table.chirp == Some(Chirp::Joined(Join::Strongest)) && kinds.contains(&AxisKind::Chirp) {
-            let (rows, note) = joined(table, radar, numbers, &kinds)?;
-            notes.borrow_mut().extend(note);
-            rows
-        } else {
-            arrange(numbers, &kinds, table.chirp)?
-        };
-        Ok(match taken(table, rows.nrows(), sizes)? {
-            Some(places) => rows.select(Axis(0), &places),
-            None => rows,
-        })
-    };
-    let rows = match (&table.array, &table.first, &table.last) {
-        (array_key, None, None) => array(array_key.as_deref()),
-        (None, Some(first), Some(last)) => {
-            let (first, last) = (array(Some(first))?, array(Some(last))?);
-            if first.dim() != last.dim() {
-                let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
-                return Err(Fault::count("numbers in \"last\"", last.len(), &expected, last.dim()));
-            }
-            // Equal shapes join.
-            concatenate(Axis(0), &[first.view(), last.view()])
-                .map_err(|e| Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\""))
-        }
-        _ => Err(Fault::key("recording.array", "stands beside half a pair", "either array, or both first and last")),
-    }?;
-    let mut notes = notes.into_inner();
-    notes.dedup();
-    Ok((rows, notes))
-}
-
-/// The strongest Doppler cell of each range bin, `[elements, samples]`, and sentences on it.
-fn joined(
-    table: &Table,
-    radar: &Radar,
-    numbers: Numbers,
-    kinds: &[AxisKind],
-) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
-    let chirps = kinds.iter().position(|kind| *kind == AxisKind::Chirp).map_or(1, |place| numbers.shape()[place]);
-    let loops = loops(numbers, kinds)?;
-    let (taken, transmitters, _, _) = loops.dim();
-    let left_out = (taken < chirps).then(|| {
-        format!(
-            "The first {taken} of {chirps} chirps are joined; the others are left out, since the frame is too large."
-        )
-    });
-    let all: Vec<usize> = (0..transmitters).collect();
-    let chosen = table.transmitters_taken.as_deref().unwrap_or(&all);
-    if chosen.iter().any(|t| *t >= transmitters) {
-        return Err(no_such("recording.transmitters_taken", chosen, transmitters));
-    }
-    let (rows, note) = strongest_of(loops, chosen, &turns(radar));
-    let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
-    let notes: Vec<String> = note.into_iter().chain(left_out).collect();
-    Ok((arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)?, notes))
 }
 
 /// Places in `rows` of the transmitters and receivers that form the line, of those that the array counts; `None` for all.
@@ -288,55 +322,4 @@ fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
         Numbers::Complex(_) => return None,
     };
     Some(told.to_owned())
-}
-
-fn numbers(table: &Table, open: Open<'_>, key: Option<&str>) -> Result<Numbers, Fault> {
-    let extension = table.extension();
-    let named = || key.ok_or_else(|| Fault::key("recording.array", "is missing", "the array's name in the file"));
-    match extension.as_str() {
-        "npz" => read_npz(open(&table.file)?, named()?),
-        "mat" => hdf5::read_mat(open(&table.file)?, named()?),
-        "h5" | "hdf5" => hdf5::read_h5(open(&table.file)?, named()?),
-        "npy" if key.is_some() => {
-            Err(Fault::key("recording.array", "is there", "it not beside an .npy file, which holds one array"))
-        }
-        "npy" => read_npy(open(&table.file)?),
-        "bin" => Err(Fault::key("[recording.capture]", "is missing", "it beside a .bin file")),
-        _ => Err(Fault::key(
-            "recording.file",
-            format!("is \"{}\"", table.file),
-            "a name ending in .npz, .npy, .mat, .h5 or .bin",
-        )),
-    }
-}
-
-/// The rows of the file in their places of the array.
-fn sorted(table: &Table, radar: &Radar, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
-    if rows.ncols() != radar.samples {
-        let expected = format!("{} as radar.samples says", radar.samples);
-        return Err(Fault::count("samples", rows.ncols(), &expected, rows.dim()));
-    }
-    let covered = table.covered(radar);
-    let missing: HashSet<usize> = table.missing.iter().copied().collect();
-    let present: Vec<usize> = covered.iter().copied().filter(|n| !missing.contains(n)).collect();
-    let places = [&covered, &present].into_iter().find(|places| places.len() == rows.nrows()).ok_or_else(|| {
-        let without = if present.len() < covered.len() {
-            format!(", or {} without the missing ones", present.len())
-        } else {
-            String::new()
-        };
-        let whose =
-            if table.covers() == Covers::All { "radar.elements says" } else { "radar.end_elements says for two ends" };
-        let expected = format!("{} as {whose}{without}", covered.len());
-        Fault::count("elements", rows.nrows(), &expected, rows.dim())
-    })?;
-    let mut samples = Array2::zeros((radar.elements, radar.samples));
-    for (element, row) in places.iter().zip(rows.outer_iter()).filter(|(element, _)| !missing.contains(element)) {
-        samples.row_mut(*element).assign(&row);
-    }
-    let signal = BeatSignal { samples };
-    Ok(match table.covers() {
-        Covers::All => Recorded::All(signal),
-        Covers::Ends => Recorded::Ends(signal.two_ends(radar)),
-    })
 }

@@ -13,6 +13,7 @@
 //!   twice as fast, so that it expects echoes to migrate through twice as many range bins along the array.
 
 use super::Fault;
+use super::said_recording::Table;
 use crate::radar::{Carrier, Radar};
 use ndarray::{Array, Axis, Dimension};
 use num_complex::Complex64;
@@ -21,7 +22,6 @@ use serde::Deserialize;
 /// The format of today's texts; texts that name none are of format 1.
 pub const FORMAT: u32 = 3;
 
-/// The format of a text that names none.
 pub(super) fn oldest() -> u32 {
     1
 }
@@ -30,9 +30,7 @@ pub(super) fn oldest() -> u32 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum CarrierAt {
-    /// At the first sample of the file.
     FirstSample,
-    /// In the middle of the samples.
     Middle,
 }
 
@@ -51,31 +49,15 @@ pub(super) enum BeatSign {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Sweep {
-    /// Upwards.
     #[default]
     Up,
-    /// Downwards.
     Down,
-}
-
-/// The keys on signs, as they stand in the text.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Said {
-    /// The text's format.
-    pub format: u32,
-    pub carrier_at: Option<CarrierAt>,
-    pub beat_sign: Option<BeatSign>,
-    pub sweep: Option<Sweep>,
-    /// Whether the samples are conjugated: format 1 alone.
-    pub conjugate: Option<bool>,
 }
 
 /// Changes of the samples and of the carrier that bring a recording to the maps' formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Signs {
-    /// Every sample is conjugated.
     pub conjugates: bool,
-    /// The last sample becomes the first.
     pub reverses_samples: bool,
     /// The carrier of the maps' formula, hertz.
     pub carrier_hz: f64,
@@ -93,48 +75,54 @@ impl Signs {
     }
 }
 
-impl Said {
-    /// The changes for the samples of `radar`, whose carrier is as the text says it.
+impl Table {
+    /// The changes that signs and carrier ask of the samples of `radar`, whose carrier is as the text says it. The carrier of a `.cfg` is that in the
+    /// middle of the samples.
     ///
     /// # Errors
     /// [`Fault::Key`] names the key that is missing, or that does not go with the others.
-    pub fn signs(self, radar: &Radar) -> Result<Signs, Fault> {
+    pub fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
+        let Table { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
         let key = |name: &str| format!("recording.{name}");
         let is_there = |name: &str, expected: &str| Err(Fault::key(&key(name), "is there", expected));
-        match self.format {
+        if has_profile && carrier_at == Some(CarrierAt::FirstSample) {
+            let expected = "\"middle\", as the .cfg says, or no such key";
+            return Err(Fault::key(&key("carrier_at"), "is \"first-sample\"", expected));
+        }
+        match format {
             1 => {
                 let named = [
-                    ("carrier_at", self.carrier_at.is_some()),
-                    ("beat_sign", self.beat_sign.is_some()),
-                    ("sweep", self.sweep.is_some()),
+                    ("carrier_at", carrier_at.is_some()),
+                    ("beat_sign", beat_sign.is_some()),
+                    ("sweep", sweep.is_some()),
                 ];
                 if let Some((name, _)) = named.into_iter().find(|(_, said)| *said) {
                     return is_there(name, "it only below format = 2, a line above [radar]");
                 }
-                let conjugates = self.conjugate.unwrap_or(false);
+                let conjugates = conjugate.unwrap_or(false);
                 return Ok(Signs { conjugates, reverses_samples: false, carrier_hz: radar.carrier_hz });
             }
             2 | FORMAT => {}
             other => return Err(Fault::key("format", format!("is {other}"), "1, 2 or 3")),
         }
-        if self.conjugate.is_some() {
+        if conjugate.is_some() {
             return is_there("conjugate", "beat_sign in its place: below format = 2 signs follow from it");
         }
-        let Some(beat) = self.beat_sign else {
+        let Some(beat) = beat_sign else {
             let expected = "\"+\" where echoes stand at positive frequencies of the beat, or \"-\"";
             return Err(Fault::key(&key("beat_sign"), "is missing", expected));
         };
-        let is_snapshot = radar.samples == 1;
-        let at = match self.carrier_at {
-            None if is_snapshot => CarrierAt::FirstSample,
-            Some(_) if is_snapshot => return is_there("carrier_at", "it only where radar.samples is above 1"),
+        let at = match carrier_at {
+            None if radar.samples == 1 => CarrierAt::FirstSample,
+            Some(_) if radar.samples == 1 => return is_there("carrier_at", "it only where radar.samples is above 1"),
             Some(at) => at,
+            None if has_profile => CarrierAt::Middle,
             None => {
                 let expected = "\"first-sample\" or \"middle\": where on the chirp radar.carrier_hz lies";
                 return Err(Fault::key(&key("carrier_at"), "is missing", expected));
             }
         };
-        Ok(physical(radar, at, beat, self.sweep.unwrap_or_default()))
+        Ok(physical(radar, at, beat, sweep.unwrap_or_default()))
     }
 }
 
@@ -171,35 +159,37 @@ mod tests {
         Radar { carrier, samples: 101, bandwidth_hz: 1.01e9, ..Radar::default() }
     }
 
-    fn said() -> Said {
-        Said {
-            format: 2,
-            carrier_at: Some(CarrierAt::FirstSample),
-            beat_sign: Some(BeatSign::Positive),
-            sweep: None,
-            conjugate: None,
-        }
+    /// The changes by a text of format 2 with these keys.
+    fn signs(radar: &Radar, keys: &str) -> Signs {
+        table(keys).signs(2, radar, false).unwrap()
     }
+
+    fn table(keys: &str) -> Table {
+        toml::from_str(&format!("file = \"a.npz\"\n{keys}")).unwrap()
+    }
+
+    const FIRST: &str = "carrier_at = \"first-sample\"\n";
+    const PLUS: &str = "beat_sign = \"+\"\n";
 
     #[test]
     fn a_two_way_sweep_upwards_is_taken_as_it_is() {
-        let signs = said().signs(&radar(Carrier::TwoWay)).unwrap();
-        assert_eq!(signs, Signs { conjugates: false, reverses_samples: false, carrier_hz: 77e9 });
-        let other = Said { beat_sign: Some(BeatSign::Negative), ..said() }.signs(&radar(Carrier::TwoWay)).unwrap();
-        assert_eq!(other, Signs { conjugates: true, ..signs });
+        let radar = radar(Carrier::TwoWay);
+        let usual = signs(&radar, &format!("{FIRST}{PLUS}"));
+        assert_eq!(usual, Signs { conjugates: false, reverses_samples: false, carrier_hz: 77e9 });
+        assert_eq!(signs(&radar, &format!("{FIRST}beat_sign = \"-\"")), Signs { conjugates: true, ..usual });
     }
 
     #[test]
     fn a_sweep_downwards_is_reversed_for_the_two_way_reading() {
         // Its last frequency is the first one taken.
-        let down = Said { sweep: Some(Sweep::Down), ..said() }.signs(&radar(Carrier::TwoWay)).unwrap();
+        let down = signs(&radar(Carrier::TwoWay), &format!("{FIRST}{PLUS}sweep = \"down\""));
         assert!(down.reverses_samples && down.conjugates && (down.carrier_hz - 76e9).abs() < 1.0, "{down:?}");
     }
 
     #[test]
     fn the_one_way_reading_hears_the_middle_of_the_chirp() {
-        for (at, middle_hz) in [(CarrierAt::FirstSample, 77.5e9), (CarrierAt::Middle, 76.995e9)] {
-            let signs = Said { carrier_at: Some(at), ..said() }.signs(&radar(Carrier::OneWay)).unwrap();
+        for (at, middle_hz) in [("first-sample", 77.5e9), ("middle", 76.995e9)] {
+            let signs = signs(&radar(Carrier::OneWay), &format!("{PLUS}carrier_at = \"{at}\""));
             assert!(signs.conjugates && signs.reverses_samples);
             // Sample 50 of 0 to 100: twice 50 steps of 10 MHz are taken off.
             assert!((signs.carrier_hz - 1e9 - middle_hz).abs() < 1.0, "{signs:?}");
@@ -208,19 +198,21 @@ mod tests {
 
     #[test]
     fn keys_that_do_not_go_together_are_told() {
-        for (said, part) in [
-            (Said { format: 1, ..said() }, "recording.carrier_at is there"),
-            (Said { format: 4, ..said() }, "format is 4; expected 1, 2 or 3"),
-            (Said { conjugate: Some(true), ..said() }, "beat_sign in its place"),
-            (Said { beat_sign: None, ..said() }, "recording.beat_sign is missing"),
-            (Said { carrier_at: None, ..said() }, "recording.carrier_at is missing"),
+        let all = &format!("{FIRST}{PLUS}");
+        for (format, keys, part) in [
+            (1, all.as_str(), "recording.carrier_at is there"),
+            (4, all, "format is 4; expected 1, 2 or 3"),
+            (2, &format!("{all}conjugate = true"), "beat_sign in its place"),
+            (2, FIRST, "recording.beat_sign is missing"),
+            (2, PLUS, "recording.carrier_at is missing"),
         ] {
-            let message = said.signs(&radar(Carrier::OneWay)).unwrap_err().to_string();
+            let message = table(keys).signs(format, &radar(Carrier::OneWay), false).unwrap_err().to_string();
             assert!(message.contains(part), "{message}");
         }
         let snapshot = Radar { samples: 1, ..Radar::default() };
-        assert!(said().signs(&snapshot).unwrap_err().to_string().contains("only where radar.samples is above 1"));
-        let signs = Said { carrier_at: None, ..said() }.signs(&snapshot).unwrap();
+        let told = table(all).signs(2, &snapshot, false).unwrap_err().to_string();
+        assert!(told.contains("only where radar.samples is above 1"), "{told}");
+        let signs = signs(&snapshot, PLUS);
         assert_eq!((signs.carrier_hz, signs.reverses_samples), (77e9, false));
     }
 }

@@ -25,7 +25,6 @@ const MAX_PLAIN_REFLECTORS: usize = 1000;
 struct Job {
     task: FrontTask,
     entrant: Entrant,
-    precision: Precision,
     plan: Plan,
 }
 
@@ -101,12 +100,7 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
                     continue;
                 }
                 let plan = Plan { algorithm, precision: *precision, ..planned };
-                jobs.extend(request.tasks.iter().map(|task| Job {
-                    task: *task,
-                    entrant: *entrant,
-                    precision: *precision,
-                    plan,
-                }));
+                jobs.extend(request.tasks.iter().map(|task| Job { task: *task, entrant: *entrant, plan }));
             }
         }
     }
@@ -116,9 +110,10 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
             && count <= MAX_PLAIN_REFLECTORS
             && request.tasks.contains(&FrontTask::Scratch)
         {
-            let plan = Plan { tolerance: 1e-12, ..Plan::cheapest(count, amplitude, BEST_TOLERANCE) };
+            let best = Plan::cheapest(count, amplitude, BEST_TOLERANCE);
+            let plan = Plan { tolerance: 1e-12, precision: Precision::F64, ..best };
             let plan = plan.with_algorithm(algorithm);
-            jobs.push(Job { task: FrontTask::Scratch, entrant: *entrant, precision: Precision::F64, plan });
+            jobs.push(Job { task: FrontTask::Scratch, entrant: *entrant, plan });
         }
     }
     jobs
@@ -143,7 +138,7 @@ fn fast_row(
             Entrant::Planned => None,
             Entrant::Forced(algorithm) => Some(algorithm),
         },
-        precision: Some(job.precision),
+        precision: Some(job.plan.precision),
         tolerance: Some(job.plan.tolerance),
     });
     let mut moved = scene.clone();
@@ -210,7 +205,7 @@ fn row(job: &Job, reference: &Reference, mut times: Vec<f64>, signal_error: f64,
         reflectors: reference.reflectors.len(),
         algorithm: job.entrant,
         chosen: job.plan.algorithm,
-        precision: job.precision,
+        precision: job.plan.precision,
         tolerance: job.plan.tolerance,
         convention,
         median_ms: quantile(&mut times, 0.5),

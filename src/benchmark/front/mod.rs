@@ -45,20 +45,15 @@ impl FrontRequest {
 
     /// A request of a second or two: few reflectors, few repeats, the fast algorithms alone, from scratch.
     pub fn short() -> Self {
-        FrontRequest {
-            entrants: [Entrant::Planned]
-                .into_iter()
-                .chain(Algorithm::ALL.into_iter().filter(|a| a.is_fast()).map(Entrant::Forced))
-                .collect(),
-            tasks: vec![FrontTask::Scratch],
-            ..FrontRequest::full(vec![1, 10, 75], 3)
-        }
+        let mut short = FrontRequest::full(vec![1, 10, 75], 3);
+        short.entrants.retain(|entrant| !matches!(entrant, Entrant::Forced(algorithm) if !algorithm.is_fast()));
+        short.tasks.truncate(1);
+        short
     }
 }
 
 /// The measured choice of algorithm: the planner's, or a forced one. Written and read as "plan" or the algorithm's name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(into = "String")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Entrant {
     Planned,
     Forced(Algorithm),
@@ -84,12 +79,6 @@ impl FromStr for Entrant {
 
     fn from_str(s: &str) -> Result<Self, Self::Err> {
         if s == "plan" { Ok(Entrant::Planned) } else { s.parse().map(Entrant::Forced) }
-    }
-}
-
-impl From<Entrant> for String {
-    fn from(entrant: Entrant) -> String {
-        entrant.name().to_owned()
     }
 }
 
@@ -144,7 +133,7 @@ impl fmt::Display for MapConvention {
     }
 }
 
-/// Serialises a floor or a normalisation as the command line writes it.
+/// Serialises a floor, a normalisation or an entrant as the command line writes it.
 fn as_text<S: Serializer>(value: &impl fmt::Display, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(value)
 }
@@ -162,6 +151,7 @@ pub struct LambdaError {
 pub struct FrontRow {
     pub task: FrontTask,
     pub reflectors: usize,
+    #[serde(serialize_with = "as_text")]
     pub algorithm: Entrant,
     /// The planner's choice for the whole scene, or the forced algorithm.
     pub chosen: Algorithm,

@@ -8,7 +8,7 @@ use std::io::{Read, Seek};
 impl<R: Read + Seek> Hdf5Bytes<R> {
     /// The bytes of all `count` numbers; a chunk has at most `most` numbers.
     pub(super) fn bytes_of(&mut self, object: &Hdf5Object, count: usize, most: usize) -> Result<Vec<u8>, Hdf5Error> {
-        let size = object.number.as_ref().map_or(0, |number| number.bytes());
+        let size = object.number.as_ref().map_or(0, |number| number.bytes);
         let all = count * size;
         match &object.place {
             Some(Storage::Here(bytes)) if bytes.len() >= all => Ok(bytes[..all].to_vec()),

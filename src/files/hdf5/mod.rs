@@ -4,22 +4,19 @@
 //! Features of newer writers (version 4 of chunks, dense groups, other filters) are refused by name. A file is read by seeking, and no
 //! memory is asked for before the size was compared with the file's or with the bound.
 //!
-//! `source` reads bytes, `object` headers of objects, `data` numbers; `number` has the types of numbers.
+//! `source` reads bytes, `object` headers of objects, `data` numbers.
 
 mod data;
-mod number;
 mod object;
 mod source;
 #[cfg(test)]
 mod tests;
 
-pub use number::half_value;
 pub use source::Hdf5Error;
 
-use super::Numbers;
+use super::{NumberKind, Numbers};
 use ndarray::ArrayD;
 use num_complex::Complex64;
-use number::Member;
 use object::{Hdf5Object, MOST_OBJECTS};
 use source::{Hdf5Bytes, HeaderBytes};
 use std::io::{Read, Seek};
@@ -78,18 +75,17 @@ impl<R: Read + Seek> Hdf5<R> {
         let number = object.number.as_ref().ok_or(Hdf5Error::Unread("an array of something other than numbers"))?;
         let bytes = self.source.bytes_of(object, count, most)?;
         let fits = |_| Hdf5Error::Damaged("an array has fewer numbers than its shape");
-        Ok(match number {
-            Member::One(kind) => {
-                let all = bytes.chunks_exact(kind.bytes).map(|b| kind.value(b)).collect();
-                Numbers::Real(ArrayD::from_shape_vec(shape, all).map_err(fits)?)
-            }
-            Member::Two { bytes: size, parts } => {
-                let part = |b: &[u8], n: usize| {
-                    let (at, kind) = &parts[n];
-                    b.get(*at..at + kind.bytes).map_or(0.0, |b| kind.value(b))
-                };
-                let all = bytes.chunks_exact(*size).map(|b| Complex64::new(part(b, 0), part(b, 1))).collect();
+        let all = bytes.chunks_exact(number.bytes);
+        let value =
+            |b: &[u8], (at, kind): &(usize, NumberKind)| b.get(*at..at + kind.bytes).map_or(0.0, |b| kind.value(b));
+        Ok(match number.parts.as_slice() {
+            [re, im] => {
+                let all = all.map(|b| Complex64::new(value(b, re), value(b, im))).collect();
                 Numbers::Complex(ArrayD::from_shape_vec(shape, all).map_err(fits)?)
+            }
+            parts => {
+                let all = all.flat_map(|b| parts.iter().map(move |part| value(b, part))).collect();
+                Numbers::Real(ArrayD::from_shape_vec(shape, all).map_err(fits)?)
             }
         })
     }

@@ -1,7 +1,7 @@
 //! Headers of objects: groups with their members, arrays with their shape, kind and place.
 
-use super::number::{Member, NumberKind};
 use super::source::{Hdf5Bytes, Hdf5Error, HeaderBytes};
+use crate::files::NumberKind;
 use std::io::{Read, Seek};
 
 /// Most objects that are looked at.
@@ -22,6 +22,14 @@ pub(super) enum ChunkFilter {
     /// A sum behind the bytes, which is not compared.
     Sum,
     Unread,
+}
+
+/// The type of an array's numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Member {
+    pub bytes: usize,
+    /// Offset and type of the number; of a compound those of real and imaginary part.
+    pub parts: Vec<(usize, NumberKind)>,
 }
 
 /// Storage of an array's numbers.
@@ -189,8 +197,10 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
             return Err(Hdf5Error::Damaged("the names of a group are too long"));
         }
         let names = self.at(place, size)?;
+        let mut leaves = Vec::new();
+        self.walk(tree, 0, length, &mut |_, leaf| leaves.push(leaf))?;
         let mut members = Vec::new();
-        for leaf in self.leaves(tree, length)? {
+        for leaf in leaves {
             let head = self.at(leaf, 8)?;
             let count = usize::from(u16::from_le_bytes([head[6], head[7]]));
             let entries = self.at(leaf + 8, (count * (2 * offset + 24)) as u64)?;
@@ -206,13 +216,6 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
             }
         }
         Ok(members)
-    }
-
-    /// The leaves of a group's tree.
-    fn leaves(&mut self, tree: u64, key_bytes: usize) -> Result<Vec<u64>, Hdf5Error> {
-        let mut leaves = Vec::new();
-        self.walk(tree, 0, key_bytes, &mut |_, leaf| leaves.push(leaf))?;
-        Ok(leaves)
     }
 
     /// Calls `leaf` with the key before each leaf of a tree, and the leaf.
@@ -248,7 +251,8 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
 fn number(message: &mut HeaderBytes<'_>) -> Result<Option<Member>, Hdf5Error> {
     let (version, class, bits, bytes) = kind_head(message)?;
     if class != 6 {
-        return Ok(kind(class, bits, bytes, message)?.map(Member::One));
+        let one = kind(class, bits, bytes, message)?;
+        return Ok(one.map(|kind| Member { bytes, parts: vec![(0, kind)] }));
     }
     if bits & 0xffff != 2 || !(1..=16).contains(&bytes) {
         return Ok(None);
@@ -271,8 +275,7 @@ fn number(message: &mut HeaderBytes<'_>) -> Result<Option<Member>, Hdf5Error> {
         parts.push((name, (at, kind)));
     }
     parts.sort_by_key(|(name, _)| name.to_ascii_lowercase().starts_with('i') || name.eq_ignore_ascii_case("q"));
-    let parts: Vec<(usize, NumberKind)> = parts.into_iter().map(|(_, part)| part).collect();
-    Ok(<[(usize, NumberKind); 2]>::try_from(parts).ok().map(|parts| Member::Two { bytes, parts }))
+    Ok(Some(Member { bytes, parts: parts.into_iter().map(|(_, part)| part).collect() }))
 }
 
 fn kind_head(message: &mut HeaderBytes<'_>) -> Result<(u8, u8, u64, usize), Hdf5Error> {

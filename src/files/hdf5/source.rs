@@ -4,11 +4,10 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 /// An error of reading an array.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // The messages name every field.
 pub enum Hdf5Error {
-    /// The system could not read.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// The file has no superblock.
     #[error("not an HDF5 file; expected one as h5py or MATLAB (-v7.3) writes it")]
     Signature,
     /// The bytes contradict themselves or end too soon.
@@ -17,51 +16,30 @@ pub enum Hdf5Error {
     /// A way of storing that is not read.
     #[error("{0} is not read; expected it as h5py writes by itself, or as an .npz")]
     Unread(&'static str),
-    /// The file lacks the array.
     #[error("has no array \"{key}\"; expected it beside what is there: {found}")]
-    Missing {
-        /// The name asked for.
-        key: String,
-        /// The names the file has.
-        found: String,
-    },
-    /// More numbers than are read.
+    Missing { key: String, found: String },
     #[error("array \"{key}\" has shape {shape:?}; expected at most {most} numbers")]
-    TooLarge {
-        /// The name.
-        key: String,
-        /// Its shape.
-        shape: Vec<usize>,
-        /// Most numbers that are read.
-        most: usize,
-    },
+    TooLarge { key: String, shape: Vec<usize>, most: usize },
 }
 
 /// The file, and the sizes of its addresses and lengths.
 #[derive(Debug)]
 pub struct Hdf5Bytes<R> {
     file: R,
-    /// Bytes of the file.
     pub bytes: u64,
     /// Byte from which addresses count.
     pub base: u64,
-    /// Bytes of an address.
     pub offset_bytes: usize,
-    /// Bytes of a length.
     pub length_bytes: usize,
 }
 
 impl<R: Read + Seek> Hdf5Bytes<R> {
     /// The bytes of a whole file, with the usual sizes of addresses and lengths.
-    ///
-    /// # Errors
-    /// [`Hdf5Error::Io`].
     pub fn new(mut file: R) -> Result<Self, Hdf5Error> {
         let bytes = file.seek(SeekFrom::End(0))?;
         Ok(Hdf5Bytes { file, bytes, base: 0, offset_bytes: 8, length_bytes: 8 })
     }
 
-    /// Bytes of the file.
     pub fn read(&mut self, place: u64, count: u64) -> Result<Vec<u8>, Hdf5Error> {
         if place.checked_add(count).is_none_or(|end| end > self.bytes) {
             return Err(Hdf5Error::Damaged("it points beyond its end"));

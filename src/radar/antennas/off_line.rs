@@ -1,7 +1,9 @@
 //! Antennas off the array's line, as on a bent bumper. An element's place along the line follows from x alone; y changes path lengths.
 
-use super::{Antennas, AntennasError, MAX_Y_METRES};
+use super::{Antennas, AntennasError};
 use crate::radar::Radar;
+
+const MAX_Y_METRES: f64 = 1.0;
 
 impl Antennas {
     /// The same antennas with these y, metres, positive towards the scene.
@@ -36,12 +38,17 @@ impl Antennas {
     }
 }
 
-fn check_off_line(list: &'static str, places: &[f64], expected: usize) -> Result<(), AntennasError> {
+fn check_off_line(list: &str, places: &[f64], expected: usize) -> Result<(), AntennasError> {
     if places.len() != expected {
-        return Err(AntennasError::Length { list, found: places.len(), expected });
+        let found = places.len();
+        return Err(AntennasError(format!("{list} has {found} numbers; expected {expected}, one for each antenna")));
     }
     match places.iter().position(|y| y.is_nan() || y.abs() > MAX_Y_METRES) {
-        Some(index) => Err(AntennasError::OffLine { list, index, found: places[index] }),
+        Some(index) => Err(AntennasError(format!(
+            "number {} of {list} is {}; expected at most {MAX_Y_METRES} m off the line, either way",
+            index + 1,
+            places[index]
+        ))),
         None => Ok(()),
     }
 }

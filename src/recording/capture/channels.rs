@@ -7,7 +7,6 @@ use ndarray::{Array3, ArrayView3, Axis};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Corrections of the channels of a loop.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Channels {
     /// The two chirps of a loop are S1 + S2 and S1 - S2.
@@ -41,30 +40,23 @@ impl Channels {
 
     /// Notes on the corrections made and on those that could not be made, a sentence each.
     pub fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        if self.both {
-            notes.push(
-                "Both transmitters send in both chirps of a loop (bpmCfg): sum and difference tell them apart."
-                    .to_owned(),
-            );
-        }
-        if self.together > 0 {
-            notes.push(format!(
+        let both = "Both transmitters send in both chirps of a loop (bpmCfg): sum and difference tell them apart.";
+        let together = (self.together > 0).then(|| {
+            format!(
                 "{} chirps of a loop are sent by several transmitters at once, and no bpmCfg says how: they are taken for one that stands in \
                  their middle.",
                 self.together
-            ));
-        }
-        if !self.factors.is_empty() {
-            notes
-                .push("Channels are multiplied with the factors of the .cfg's compRangeBiasAndRxChanPhase.".to_owned());
-        }
-        if let Some((found, expected)) = self.unfitting {
-            notes.push(format!(
+            )
+        });
+        let factors = "Channels are multiplied with the factors of the .cfg's compRangeBiasAndRxChanPhase.";
+        let unfitting = self.unfitting.map(|(found, expected)| {
+            format!(
                 "compRangeBiasAndRxChanPhase has factors of {found} channels, but {expected} are recorded: they are left out."
-            ));
-        }
-        notes
+            )
+        });
+        let both = self.both.then(|| both.to_owned());
+        let factors = (!self.factors.is_empty()).then(|| factors.to_owned());
+        [both, together, factors, unfitting].into_iter().flatten().collect()
     }
 
     /// `[chirps, receivers, samples]` of one loop, transmitters told apart and channels multiplied.

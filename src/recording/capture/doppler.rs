@@ -12,7 +12,9 @@ use super::frame::Frame;
 use crate::signal::simd::Simd;
 use ndarray::{Array2, Array3, ArrayView3, Axis, s};
 use num_complex::Complex64;
+use rustfft::Fft;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Cosines at which the spectrum over the array is looked at.
 const COSINES: usize = 129;
@@ -100,7 +102,6 @@ fn transformed(frame: &Frame) -> Array3<Complex64> {
     out
 }
 
-/// Transforms range profiles back to samples.
 fn transform_back(rows: &mut Array3<Complex64>) {
     let samples = rows.dim().2;
     let fft = Simd::chosen().forward_fft::<f64>(samples);
@@ -112,7 +113,6 @@ fn transform_back(rows: &mut Array3<Complex64>) {
     }
 }
 
-/// The Doppler cell of a bin.
 #[derive(Clone, Copy)]
 struct Cell {
     /// Turns from loop to loop, -0.5 to 0.5.
@@ -121,19 +121,15 @@ struct Cell {
     ratio: f64,
 }
 
-/// Transforms samples in place.
-type Transform = Box<dyn Fn(&mut [Complex64])>;
-
 /// The transform over loops.
 struct Cells {
-    transform: Transform,
+    transform: Arc<dyn Fft<f64>>,
     weights: Vec<f64>,
 }
 
 impl Cells {
     fn new(weights: Vec<f64>) -> Self {
-        let fft = Simd::chosen().forward_fft::<f64>(weights.len());
-        Cells { transform: Box::new(move |line| fft.process(line)), weights }
+        Cells { transform: Simd::chosen().forward_fft(weights.len()), weights }
     }
 
     /// Power of each cell, all channels together.
@@ -141,7 +137,7 @@ impl Cells {
         let mut powers = vec![0.0; self.weights.len()];
         for channel in profiles.axis_iter(Axis(1)) {
             let mut line: Vec<Complex64> = channel.iter().zip(&self.weights).map(|(v, w)| v * w).collect();
-            (self.transform)(&mut line);
+            self.transform.process(&mut line);
             powers.iter_mut().zip(line).for_each(|(p, v)| *p += v.norm_sqr());
         }
         powers
@@ -199,7 +195,6 @@ impl Cells {
     }
 }
 
-/// Power of the middle cell.
 fn middle(powers: &[f64]) -> f64 {
     let mut sorted = powers.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -11,12 +11,10 @@ use ndarray::{Array3, Array4, Axis, s};
 use num_complex::Complex64;
 use std::io::{Read, Seek};
 
-/// The samples of a frame.
 #[derive(Debug, Clone)]
 pub(in crate::recording) struct Frame {
     /// `[loops, chirps, receivers, samples]`: complex, real ones as analytic signals of half as many samples.
     pub samples: Array4<Complex64>,
-    /// Zeros of lost packets, saturation, constant part, and other faults of the samples.
     pub quality: Quality,
 }
 
@@ -39,7 +37,7 @@ impl Frame {
             take_out_constant(&mut all);
         }
         if capture.static_clutter == Part::Out && loops > 1 {
-            let mean = mean_over_loops(&all);
+            let mean = all.sum_axis(Axis(0)).mapv_into(|v| v / loops as f64);
             all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
         }
         if layout.parts == Parts::Real {
@@ -82,13 +80,6 @@ impl Frame {
         let sum: f64 = weights.iter().sum();
         weights.into_iter().map(|w| w / sum).collect()
     }
-}
-
-fn mean_over_loops(all: &Array4<Complex64>) -> Array3<Complex64> {
-    let mut mean = all.sum_axis(Axis(0));
-    let loops = all.dim().0.max(1) as f64;
-    mean.mapv_inplace(|v| v / loops);
-    mean
 }
 
 fn take_out_constant(all: &mut Array4<Complex64>) {

@@ -34,18 +34,9 @@ use num_complex::Complex64;
 use quality::Quality;
 use std::io::{Read, Seek};
 
-/// The radar and the array of a capture's samples.
-pub(super) struct Meaning<'a> {
-    /// The `.cfg`, where there is one.
-    pub profile: Option<&'a RadarProfile>,
-    /// Turns of phase across the array for each pair at a cosine of 1, transmitter by transmitter; fewer than pairs where unknown.
-    pub turns: &'a [f64],
-    /// The beat's phase rises from sample to sample.
-    pub beat_rises: bool,
-}
-
 /// The strongest Doppler cell in each range bin of the loops of an array, `[loops, transmitters, receivers, samples]`, with the chosen transmitters
-/// turned back by its velocity; and the sentence on it. `turns` are as in [`Meaning`].
+/// turned back by its velocity; and the sentence on it. `turns` are turns of phase across the array for each pair at a
+/// cosine of 1, transmitter by transmitter; fewer than pairs where unknown.
 pub(super) fn strongest_of(
     samples: Array4<Complex64>,
     chosen: &[usize],
@@ -57,22 +48,33 @@ pub(super) fn strongest_of(
 }
 
 impl Capture {
-    /// Reads the chosen loops of the frame as `[chirps, receivers, samples]`, with sentences on doubts. No other frame is read.
+    /// The chosen chirps of a loop, and the frame with its plan. No other frame is read.
+    fn frame(
+        &self,
+        file: impl Read + Seek,
+        profile: Option<&RadarProfile>,
+    ) -> Result<(Vec<usize>, Frame, Plan), Fault> {
+        let mut stream = Stream::new(file)?;
+        let plan = Plan::new(self, profile, stream.bytes())?;
+        Ok((plan.chosen_chirps(self)?, Frame::read(&mut stream, self, &plan)?, plan))
+    }
+
+    /// Reads the chosen loops of the frame as `[chirps, receivers, samples]`, with sentences on doubts. `turns` are as in [`strongest_of`], and
+    /// `beat_rises` says whether the beat's phase rises from sample to sample.
     ///
     /// # Errors
     /// [`Fault`] where the layout, the `.cfg` and the file don't fit each other.
     pub(super) fn read(
         &self,
         file: impl Read + Seek,
-        meaning: &Meaning<'_>,
+        profile: Option<&RadarProfile>,
+        turns: &[f64],
+        beat_rises: bool,
     ) -> Result<(Array3<Complex64>, Vec<String>), Fault> {
-        let mut stream = Stream::new(file)?;
-        let plan = Plan::new(self, meaning.profile, stream.bytes())?;
-        let chosen = plan.chosen_chirps(self)?;
-        let frame = Frame::read(&mut stream, self, &plan)?;
+        let (chosen, frame, plan) = self.frame(file, profile)?;
         let mut notes = plan.notes.clone();
         notes.extend(frame.quality.sentences(&plan, self.constant == Part::Out));
-        let channels = Channels::of(meaning.profile, &plan);
+        let channels = Channels::of(profile, &plan);
         notes.extend(channels.notes());
         let rows = match self.turn {
             Chirp::Number(turn) => {
@@ -80,7 +82,7 @@ impl Capture {
             }
             Chirp::Joined(Join::Mean) => channels.of_loop(&frame.mean().view()),
             Chirp::Joined(Join::Strongest) => {
-                let (rows, note) = doppler::strongest(&frame, &channels, &chosen, meaning.turns);
+                let (rows, note) = doppler::strongest(&frame, &channels, &chosen, turns);
                 notes.extend(note);
                 rows
             }
@@ -89,25 +91,20 @@ impl Capture {
         if let Some(taken) = &self.receivers_taken {
             rows = rows.select(ndarray::Axis(1), &plan.taken(taken)?);
         }
-        if let Some(profile) = meaning.profile {
-            channels::take_off_bias(&mut rows, profile, meaning.beat_rises);
+        if let Some(profile) = profile {
+            channels::take_off_bias(&mut rows, profile, beat_rises);
         }
         Ok((rows, notes))
     }
 
     /// Reads every loop of the frame, `[loops, elements, samples]`: the elements are the chosen chirps' receivers.
-    ///
-    /// # Errors
-    /// As [`Capture::read`].
     pub(super) fn loops(
         &self,
         file: impl Read + Seek,
         profile: Option<&RadarProfile>,
     ) -> Result<Array3<Complex64>, Fault> {
-        let mut stream = Stream::new(file)?;
-        let plan = Plan::new(self, profile, stream.bytes())?;
-        let chosen = plan.chosen_chirps(self)?;
-        let samples = Frame::read(&mut stream, self, &plan)?.samples.select(ndarray::Axis(1), &chosen);
+        let (chosen, frame, _) = self.frame(file, profile)?;
+        let samples = frame.samples.select(ndarray::Axis(1), &chosen);
         let (loops, chirps, receivers, len) = samples.dim();
         let whole = samples.as_standard_layout().into_owned();
         // The same numbers in the same order: the shape can't fail to fit.

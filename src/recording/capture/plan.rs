@@ -10,27 +10,21 @@ use std::fmt::Display;
 
 /// Most samples of a frame that are held at once: a frame of more is read up to there.
 const MOST_FRAME_NUMBERS: usize = 1 << 23;
-/// Largest count that a text may give.
 const MOST_COUNT: usize = 1 << 16;
 
-/// Counts and sizes of a capture.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::recording) struct Plan {
     pub layout: Layout,
     /// Samples of a chirp in the file.
     pub samples: usize,
     pub receivers: usize,
-    /// Chirps of a loop.
     pub chirps: usize,
-    /// Loops that are read.
+    /// Loops that are read, of `all_loops` in a frame.
     pub loops: usize,
     /// Byte at which the loops begin.
     pub start: u64,
-    /// Whole frames of the file.
     pub frames: u64,
-    /// Loops of a frame.
     pub all_loops: usize,
-    /// Sentences on loops and frames that the file lacks.
     pub notes: Vec<String>,
 }
 

@@ -12,7 +12,6 @@ const SATURATED: f64 = 1e-4;
 /// Power of a constant part over the rest above which it is noted, decibels.
 const CONSTANT_DB: f64 = 0.0;
 
-/// Faults that were counted in the samples of a frame.
 #[derive(Debug, Clone)]
 pub(in crate::recording) struct Quality {
     /// Whether each chirp has runs of zeros.
@@ -76,43 +75,34 @@ impl Quality {
 
     /// Doubts about the frame, a sentence each.
     pub fn sentences(&self, plan: &Plan, is_out: bool) -> Vec<String> {
-        let mut all = Vec::new();
         let spoilt: Vec<usize> = (0..self.zeros.len()).filter(|n| self.zeros[*n]).collect();
-        if let (Some(first), Some(last)) = (spoilt.first(), spoilt.last()) {
+        let lost = spoilt.first().zip(spoilt.last()).map(|(first, last)| {
             let (chirps, many) = (self.zeros.len(), spoilt.len());
-            all.push(format!(
+            format!(
                 "Runs of zeros, as lost packets leave them, spoil {many} of the frame's {chirps} chirps, from chirp {first} to {last}: where \
                  loops are joined, their loops count nothing."
-            ));
-        }
+            )
+        });
         let part = self.at_ends as f64 / self.numbers.max(1) as f64;
-        if part > SATURATED {
-            all.push(format!(
-                "The receivers are saturated: {:.1} % of the numbers are {} or {}, the ends of their type. Harmonics of strong echoes \
+        let saturated = (part > SATURATED).then(|| {
+            let (percent, most) = (100.0 * part, plan.layout.words.most());
+            format!(
+                "The receivers are saturated: {percent:.1} % of the numbers are {most} or {}, the ends of their type. Harmonics of strong echoes \
                  appear at multiples of their range.",
-                100.0 * part,
-                plan.layout.words.most(),
-                -i32::from(plan.layout.words.most()) - 1
-            ));
-        }
-        if self.is_real() {
-            all.push(
-                "Every imaginary part is zero: these are real samples, stored as complex ones. An echo's mirror image would stand in the \
-                 far half of the range axis, so the near half alone is kept (the analytic signal)."
-                    .to_owned(),
-            );
-        }
-        if plan.layout.parts == Parts::Real {
-            all.push(
-                "Samples are real: the positive half of their spectrum is taken (the analytic signal).".to_owned(),
-            );
-        }
-        if self.tells_constant() && !is_out {
-            all.push(format!(
+                -i32::from(most) - 1
+            )
+        });
+        let stored = "Every imaginary part is zero: these are real samples, stored as complex ones. An echo's mirror image would stand in the \
+                      far half of the range axis, so the near half alone is kept (the analytic signal).";
+        let real = "Samples are real: the positive half of their spectrum is taken (the analytic signal).";
+        let constant = (self.tells_constant() && !is_out).then(|| {
+            format!(
                 "A constant part (leakage or offset) stands {:.0} dB over all else: recording.capture.constant = \"out\" takes it out.",
                 self.constant_db
-            ));
-        }
-        all
+            )
+        });
+        let stored = self.is_real().then(|| stored.to_owned());
+        let real = (plan.layout.parts == Parts::Real).then(|| real.to_owned());
+        [lost, saturated, stored, real, constant].into_iter().flatten().collect()
     }
 }

@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 pub struct Capture {
     /// Name of the `.cfg`, beside the TOML; without one the counts stand in this table.
     pub config: Option<String>,
-    /// Number of the sub-frame of an advanced frame, from 0.
     pub sub_frame: Option<usize>,
     /// Names of the files that continue the first, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -18,34 +17,24 @@ pub struct Capture {
     /// Files of the other chips of a cascade, in the order of their receivers; each holds four receivers sample by sample, in pairs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub chips: Vec<String>,
-    /// Encoding of numbers in 16 bits.
     #[serde(default)]
     pub words: Words,
-    /// Order of real and imaginary parts.
     pub parts: Option<Parts>,
     /// Lanes of the radar in place of `parts`: 2 (xWR16xx, 18xx, 68xx) or 4 (xWR12xx, 14xx).
     pub lanes: Option<usize>,
-    /// Imaginary parts come first.
     #[serde(default)]
     pub q_first: bool,
-    /// Order of the receivers in a chirp.
     pub receivers: ReceiverOrder,
-    /// Bytes before each chirp that are no samples.
     #[serde(default)]
     pub header_bytes: usize,
-    /// Without a `.cfg`: samples of a chirp.
     pub samples: Option<usize>,
-    /// Without a `.cfg`: receivers.
     pub receiver_count: Option<usize>,
-    /// Without a `.cfg`: chirps of a loop, 1 where nothing is said.
     pub loop_chirps: Option<usize>,
-    /// Without a `.cfg`: loops of a frame, 1 where nothing is said.
     pub loops: Option<usize>,
     /// Chirps of a loop that form the line of elements, in this order; all where there is only one.
     pub chirps: Option<Vec<usize>>,
     /// Receivers that form the line of elements, by place among those that are on; all where nothing is said.
     pub receivers_taken: Option<Vec<usize>>,
-    /// Number of the frame, from 0.
     #[serde(default)]
     pub frame: usize,
     /// Number of the loop in the frame, or the way to join all loops.
@@ -63,9 +52,7 @@ pub struct Capture {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Part {
-    /// The part stays in the samples.
     #[default]
     Keep,
-    /// The part is subtracted from the samples.
     Out,
 }

@@ -16,7 +16,7 @@ fn capture(lanes: usize, receivers: ReceiverOrder) -> Capture {
 type Read = Result<(Array3<Complex64>, Vec<String>), Fault>;
 
 fn read(capture: &Capture, bytes: &[u8], profile: &RadarProfile) -> Read {
-    capture.read(Cursor::new(bytes), &Meaning { profile: Some(profile), turns: &[], beat_rises: true })
+    capture.read(Cursor::new(bytes), Some(profile), &[], true)
 }
 
 fn expected(turn: usize, chirp: usize, receiver: usize, sample: usize) -> Complex64 {
@@ -102,8 +102,8 @@ fn contradictions_are_told() {
     assert!(message(usual(), &odd, &whole).contains("3 receivers of 7 samples don't fill 2 lanes"));
     let three = "receivers = \"interleaved\"\nparts = \"pairs\"\nsamples = 8";
     let unsaid: Capture = toml::from_str(three).unwrap();
-    let meaning = Meaning { profile: None, turns: &[], beat_rises: true };
-    assert!(unsaid.read(Cursor::new(&whole), &meaning).unwrap_err().to_string().contains("receiver_count is missing"));
+    let told = unsaid.read(Cursor::new(&whole), None, &[], true).unwrap_err().to_string();
+    assert!(told.contains("receiver_count is missing"), "{told}");
 }
 
 #[test]

@@ -95,23 +95,23 @@ impl Breaks {
 
     /// A part of this length that may be a row by itself.
     pub fn almost_divided(&self, length: usize, lengths: &[usize]) -> Option<usize> {
+        self.most_broken(length, lengths).filter(|(ratio, _)| *ratio > ALMOST_DIVIDES).map(|(_, l)| l)
+    }
+
+    /// The part of this length at whose beginnings the residuals are largest, behind their ratio.
+    fn most_broken(&self, length: usize, lengths: &[usize]) -> Option<(f64, usize)> {
         let shorter = lengths.iter().copied().filter(|l| *l < length && length.is_multiple_of(*l));
-        let within = shorter.map(|l| (self.broken_within(l, length), l)).filter(|(ratio, _)| *ratio > ALMOST_DIVIDES);
-        within.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, l)| l)
+        shorter.map(|l| (self.broken_within(l, length), l)).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// The length of rows of which `longest` is several. Where an echo goes on almost unbroken from receiver to receiver, most large residuals stand
     /// at the beginnings of loops.
     pub fn divided(&self, longest: usize, lengths: &[usize]) -> usize {
         let mut length = longest;
-        loop {
-            let shorter = lengths.iter().copied().filter(|l| *l < length && length.is_multiple_of(*l));
-            let within = shorter.map(|l| (self.broken_within(l, length), l));
-            match within.max_by(|a, b| a.0.total_cmp(&b.0)) {
-                Some((ratio, shorter)) if ratio > DIVIDES => length = shorter,
-                _ => return length,
-            }
+        while let Some((_, shorter)) = self.most_broken(length, lengths).filter(|(ratio, _)| *ratio > DIVIDES) {
+            length = shorter;
         }
+        length
     }
 }
 

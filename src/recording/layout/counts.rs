@@ -6,7 +6,7 @@ use super::marks::{HEADER_BYTES, Marks};
 use super::period::{Period, period};
 use super::spectrum::{Spectrum, correlation};
 use super::stream::Stream;
-use super::{Counts, Layout, Parts, ReceiverOrder, Words, decode};
+use super::{Counts, Layout, Parts, ReceiverOrder, Words};
 use ndarray::Array2;
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
@@ -74,7 +74,6 @@ const ALIKE_NOTE: &str = "All rows of samples are alike, as of one receiver, or 
 pub(super) const CLIPPED_NOTE: &str = "Many samples stand at the ends of their type, so echoes have harmonics that look like receivers and rows: \
     samples and receivers may be others.";
 
-/// Likely counts.
 pub(super) struct LikelyCounts {
     /// The order of parts that they are counts of; `None` where any may be.
     pub parts: Option<Parts>,
@@ -83,13 +82,6 @@ pub(super) struct LikelyCounts {
     pub guessed: Option<&'static str>,
     /// Log-odds of the rows that repeat, and of the number of receivers.
     pub odds: [f64; 2],
-}
-
-impl LikelyCounts {
-    /// Counts that are known.
-    pub fn of(counts: Counts) -> LikelyCounts {
-        LikelyCounts { parts: None, counts, guessed: None, odds: [0.0; 2] }
-    }
 }
 
 /// One way to cut the numbers into rows.
@@ -114,7 +106,7 @@ pub(super) fn search<R: Read + Seek>(
     for parts in Parts::ALL {
         let layout = layout(words, parts);
         let count = bytes.len() / parts.bytes();
-        let numbers = decode::numbers(&layout, &bytes, count.min(JUDGED_NUMBERS));
+        let numbers = layout.numbers(&bytes, count.min(JUDGED_NUMBERS));
         if let Some(level) = level(&numbers, parts == Parts::Real) {
             all.push((level, layout, numbers));
         }
@@ -176,12 +168,6 @@ fn prior(layout: &Layout, length: usize, bytes: u64) -> f64 {
     fills + if is_usual { USUAL_LENGTH } else { 0.0 }
 }
 
-/// The level of rows of one length.
-fn row_level(numbers: &[Complex64], length: usize, is_real: bool) -> f64 {
-    let spectrum = Spectrum::of(&rows(numbers, length, 1), 1);
-    if is_real { spectrum.of_real().level } else { spectrum.level }
-}
-
 /// Sum of the levels of the spectra of rows of a few lengths. Rows of real numbers are twice as long and hold as much. `None` where there are too few
 /// numbers.
 fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
@@ -191,15 +177,28 @@ fn level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
         if numbers.len() < 2 * length {
             break;
         }
-        sum += row_level(numbers, length, is_real);
+        let spectrum = Spectrum::of(&rows(numbers, length, 1), 1);
+        sum += if is_real { spectrum.of_real().level } else { spectrum.level };
     }
     (numbers.len() >= 4 * LEVEL_LENGTHS[0]).then_some(sum)
 }
 
+/// Logarithmic spectrum of rows of one length.
+fn logs(numbers: &[Complex64], length: usize) -> Vec<f64> {
+    Spectrum::of(&rows(numbers, length, 1), 1).power.iter().map(|p| p.ln()).collect()
+}
+
+/// The middle line of a logarithmic spectrum, and the height of the strongest above it.
+fn middle_and_height(logs: &[f64]) -> (f64, f64) {
+    let mut sorted = logs.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted[logs.len() / 2];
+    (middle, sorted[logs.len() - 1] - middle)
+}
+
 /// Number of receivers that stand sample by sample in rows of this length: the spectrum repeats as often.
 fn interleaved(numbers: &[Complex64], length: usize) -> usize {
-    let power = Spectrum::of(&rows(numbers, length, 1), 1).power;
-    let logs: Vec<f64> = power.iter().map(|p| p.ln()).collect();
+    let logs = logs(numbers, length);
     let is_clipped = clipped(numbers);
     let repeats = |receivers: &usize| {
         let shift = length / receivers;
@@ -217,12 +216,9 @@ fn interleaved(numbers: &[Complex64], length: usize) -> usize {
 /// Whether receivers surely stand sample by sample: the spectrum has two echoes or more that repeat at the distances of the receivers. A single
 /// echo may repeat by chance.
 fn is_comb(numbers: &[Complex64], cut: &Cut) -> bool {
-    let power = Spectrum::of(&rows(numbers, cut.samples * cut.mixed, 1), 1).power;
-    let logs: Vec<f64> = power.iter().map(|p| p.ln()).collect();
+    let logs = logs(numbers, cut.samples * cut.mixed);
     let (bins, places) = (logs.len(), cut.mixed - 1);
-    let mut sorted = logs.clone();
-    sorted.sort_by(f64::total_cmp);
-    let (middle, height) = (sorted[bins / 2], sorted[bins - 1] - sorted[bins / 2]);
+    let (middle, height) = middle_and_height(&logs);
     let around = |bin: usize| (bin + bins - 1..=bin + bins + 1).map(|n| logs[n % bins]).fold(f64::MIN, f64::max);
     let tops = (0..bins).filter(|n| logs[*n] - middle > STRONG_LINE * height && logs[*n] >= around(*n));
     let repeats = |bin: &usize| {
@@ -249,13 +245,10 @@ fn repeats_alike(logs: &[f64], shift: usize) -> f64 {
 
 /// Whether the strongest echo stands at every shift too, over a floor that fills the rest.
 fn peaks_repeat(logs: &[f64], shift: usize, least: f64) -> bool {
-    let mut sorted = logs.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let median = sorted[sorted.len() / 2];
+    let (middle, height) = middle_and_height(logs);
     let strongest = (0..logs.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b])).unwrap_or(0);
-    let height = logs[strongest] - median;
     let places = logs.len() / shift - 1;
-    let stands = |n: &usize| logs[(strongest + n * shift) % logs.len()] - median > least * height;
+    let stands = |n: &usize| logs[(strongest + n * shift) % logs.len()] - middle > least * height;
     height > STANDS_OUT && (1..=places).filter(stands).count() * 5 >= places * 4
 }
 
@@ -308,7 +301,7 @@ pub(super) fn doubted(layout: &Layout, counts: Counts, bytes: &[u8], of_file: u6
     let stride = if layout.receivers == ReceiverOrder::Interleaved { counts.receivers } else { 1 };
     let said = counts.samples * stride;
     let most = (JUDGED_NUMBERS / 2).max(4 * said);
-    let numbers = decode::numbers(layout, bytes, (bytes.len() / layout.parts.bytes()).min(most));
+    let numbers = layout.numbers(bytes, (bytes.len() / layout.parts.bytes()).min(most));
     let longest = numbers.len() / 3;
     let breaks = Breaks::of(&numbers, stride);
     let gain = |length: &usize| breaks.gain(*length);

@@ -62,11 +62,9 @@ const OF_REAL: f64 = 40.0;
 /// Log-odds against receivers one after another on four lanes, of which each carries a receiver: at broadside both orders have one spectrum.
 const OF_LANES: f64 = 20.0;
 
-/// The `.cfg` and the size of a capture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Known<'a> {
     pub profile: Option<&'a RadarProfile>,
-    /// Bytes of data.
     pub bytes: u64,
 }
 
@@ -103,7 +101,6 @@ fn receivers(spectrum: &Spectrum) -> Evidence {
     Evidence { kind: Kind::Receivers, log_odds: OF_ALIKE * spectrum.alike, sentence }
 }
 
-/// Bytes of a frame.
 pub(super) fn frame_bytes(layout: &Layout, counts: Counts, profile: Option<&RadarProfile>) -> u64 {
     let numbers = counts.samples as u64 * counts.receivers as u64;
     let chirps = counts.chirps as u64 * counts.loops as u64;

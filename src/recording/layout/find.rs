@@ -68,7 +68,8 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     let (ways, mut hides_counts) = match profile {
         Some(p) => {
             let RadarProfile { samples, receivers, loops, .. } = *p;
-            (vec![LikelyCounts::of(Counts { samples, receivers, chirps: p.chirp_transmitters.len(), loops })], false)
+            let counts = Counts { samples, receivers, chirps: p.chirp_transmitters.len(), loops };
+            (vec![LikelyCounts { parts: None, counts, guessed: None, odds: [0.0; 2] }], false)
         }
         None => {
             notes.push(counts::NOTE.to_owned());
@@ -77,8 +78,7 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     };
     notes.extend(hides_counts.then(|| counts::CLIPPED_NOTE.to_owned()));
     let header_bytes = headers(marks, ways.first().map(|way| way.counts), profile, &mut notes);
-    let (packets, bytes) = (stream.has_packets(), stream.bytes());
-    let known = Known { profile, bytes };
+    let known = Known { profile, bytes: stream.bytes() };
     let mut candidates = Vec::new();
     judge(stream, &ways, header_bytes, known, &mut candidates)?;
     candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
@@ -104,12 +104,12 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     }
     if profile.is_some() {
         let Candidate { layout, counts, .. } = best;
-        let job = Job { counts: *counts, only: None, header_bytes, packets, known };
+        let job = Job { counts: *counts, only: None, header_bytes, known };
         let numbers = counts.samples * counts.receivers;
         let chirps = job.chirps(stream, layout.chirp_bytes(counts.samples, counts.receivers), numbers)?;
-        notes.extend(counts::doubted(layout, *counts, &chirps.concat(), bytes));
+        notes.extend(counts::doubted(layout, *counts, &chirps.concat(), known.bytes));
     }
-    notes.extend(packets.then(|| told_of_packets(stream.lost_packets())));
+    notes.extend(stream.has_packets().then(|| told_of_packets(stream.lost_packets())));
     Ok(Found { candidates, notes, hides_counts })
 }
 
@@ -130,12 +130,11 @@ fn judge<R: Read + Seek>(
     known: Known<'_>,
     candidates: &mut Vec<Candidate>,
 ) -> Result<(), Fault> {
-    let packets = stream.has_packets();
     let mut none = None;
     // Log-odds of the likeliest counts. Other counts are judged beside them.
     let mut likeliest = 0.0;
     for way in ways {
-        match (Job { counts: way.counts, only: way.parts, header_bytes, packets, known }).candidates(stream) {
+        match (Job { counts: way.counts, only: way.parts, header_bytes, known }).candidates(stream) {
             Ok(of_way) if way.odds == [0.0; 2] => {
                 likeliest = of_way[0].log_odds();
                 candidates.extend(of_way);
@@ -194,7 +193,6 @@ struct Job<'a> {
     /// The order of parts that alone is judged, where one is.
     only: Option<Parts>,
     header_bytes: usize,
-    packets: bool,
     known: Known<'a>,
 }
 
@@ -217,7 +215,9 @@ impl Job<'_> {
             for words in Words::ALL.into_iter().filter(|w| *w != Words::TwelveBits || short) {
                 for order in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
                     if order == ReceiverOrder::OneAfterAnother || receivers > 1 {
-                        self.judge(parts, words, order, &chirps, &mut all);
+                        let (header_bytes, packets) = (self.header_bytes, stream.has_packets());
+                        let layout = Layout { words, parts, q_first: false, receivers: order, header_bytes, packets };
+                        self.judge(layout, &chirps, &mut all);
                     }
                 }
             }
@@ -252,17 +252,15 @@ impl Job<'_> {
         Ok(chirps)
     }
 
-    fn judge(&self, parts: Parts, words: Words, order: ReceiverOrder, chirps: &[Vec<u8>], all: &mut Vec<Candidate>) {
+    fn judge(&self, layout: Layout, chirps: &[Vec<u8>], all: &mut Vec<Candidate>) {
         let Counts { samples, receivers, .. } = self.counts;
-        let Job { header_bytes, packets, .. } = *self;
-        let layout = Layout { words, parts, q_first: false, receivers: order, header_bytes, packets };
         let mut rows = Array2::<Complex64>::zeros((chirps.len() * receivers, samples));
         for (n, bytes) in chirps.iter().enumerate() {
             let chirp = layout.decode(bytes, samples, receivers);
             rows.slice_mut(ndarray::s![n * receivers..(n + 1) * receivers, ..]).assign(&chirp);
         }
         let spectrum = Spectrum::of(&rows, receivers);
-        if parts == Parts::Real {
+        if layout.parts == Parts::Real {
             all.push(self.candidate(layout, spectrum.of_real()));
         } else {
             all.push(self.candidate(Layout { q_first: true, ..layout }, spectrum.mirrored()));

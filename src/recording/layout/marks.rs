@@ -12,10 +12,8 @@ pub const HEADER_BYTES: usize = 64;
 /// Length of the beginning of a file in which headers are looked for, bytes.
 const LOOKED_THROUGH: u64 = 1 << 20;
 
-/// Headers that were found before chirps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Marks {
-    /// Number of headers.
     pub found: usize,
     /// Bytes from one to the next; 0 where there is one.
     pub apart: usize,

@@ -2,10 +2,7 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `words` | 16 bits to a number |
-//! | `parts` | orders of real and imaginary parts, and of receivers |
-//! | `shape` | a layout, and counts |
-//! | `decode` | bytes to samples of receivers |
+//! | `shape` | a layout: encoding, orders of parts and of receivers; counts; bytes to samples of receivers |
 //! | [`stream`] | bytes by seeking, without the headers of packets |
 //! | `marks` | headers of chirps and of packets |
 //! | `spectrum` | range profiles of the samples of a layout |
@@ -18,11 +15,9 @@
 
 mod breaks;
 mod counts;
-mod decode;
 mod evidence;
 mod find;
 mod marks;
-mod parts;
 mod period;
 mod shape;
 mod spectrum;
@@ -30,13 +25,10 @@ pub mod stream;
 #[cfg(test)]
 mod tests;
 mod verdict;
-mod words;
 
 pub(super) use evidence::said;
 pub use evidence::{Evidence, Kind};
 pub use find::{Candidate, Found, find};
-pub use parts::{Parts, ReceiverOrder};
-pub use shape::{Counts, Layout};
+pub use shape::{Counts, Layout, Parts, ReceiverOrder, Words};
 pub(in crate::recording) use spectrum::Spectrum;
 pub use verdict::Certainty;
-pub use words::Words;

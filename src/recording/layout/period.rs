@@ -21,7 +21,6 @@ const LESS_STEADY_TIMES: f64 = 60.0;
 const MIN_ALIKE_RATIO: f64 = 0.1;
 const STEADIER_TIMES: f64 = 5.0;
 
-/// The period of a file's rows.
 pub(super) struct Period {
     pub rows: usize,
     /// Another period that is almost as likely.

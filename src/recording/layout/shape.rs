@@ -1,7 +1,113 @@
-//! Layouts and counts of a capture.
+//! Layouts: encodings of numbers, orders of parts and of receivers, and the samples that bytes are by them.
 
-use super::parts::{Parts, ReceiverOrder};
-use super::words::Words;
+use ndarray::Array2;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// The encoding of a number in 16 bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+pub enum Words {
+    /// Two's complement, the low byte first.
+    #[default]
+    #[serde(rename = "int16")]
+    Int16,
+    /// Two's complement with bit 15 flipped, the low byte first.
+    #[serde(rename = "offset-binary")]
+    OffsetBinary,
+    /// Two's complement, the high byte first.
+    #[serde(rename = "big-endian")]
+    BigEndian,
+    /// Two's complement of 12 bits, the upper four zero.
+    #[serde(rename = "12-bit")]
+    TwelveBits,
+}
+
+impl Words {
+    /// All of them.
+    pub const ALL: [Words; 4] = [Words::Int16, Words::OffsetBinary, Words::BigEndian, Words::TwelveBits];
+
+    /// The number that two bytes stand for.
+    pub fn number(self, bytes: [u8; 2]) -> i16 {
+        match self {
+            Words::Int16 => i16::from_le_bytes(bytes),
+            Words::OffsetBinary => (u16::from_le_bytes(bytes) ^ 0x8000) as i16,
+            Words::BigEndian => i16::from_be_bytes(bytes),
+            Words::TwelveBits => ((u16::from_le_bytes(bytes) << 4) as i16) >> 4,
+        }
+    }
+
+    /// The largest number, where converters end.
+    pub fn most(self) -> i16 {
+        if self == Words::TwelveBits { 2047 } else { i16::MAX }
+    }
+
+    /// The encoding in a sentence's words.
+    pub fn described(self) -> &'static str {
+        match self {
+            Words::Int16 => "16-bit integers, low byte first",
+            Words::OffsetBinary => "16-bit integers with bit 15 flipped (offset binary)",
+            Words::BigEndian => "16-bit integers, high byte first",
+            Words::TwelveBits => "12-bit integers in 16 bits",
+        }
+    }
+}
+
+/// Order of real and imaginary parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Parts {
+    /// I Q, sample by sample.
+    Pairs,
+    /// I I Q Q, as two lanes send them.
+    TwoLanes,
+    /// I I I I Q Q Q Q, as four lanes send them.
+    FourLanes,
+    /// Real samples alone.
+    Real,
+}
+
+impl Parts {
+    /// All of them.
+    pub const ALL: [Parts; 4] = [Parts::Pairs, Parts::TwoLanes, Parts::FourLanes, Parts::Real];
+
+    /// Number of real or imaginary parts that stand together.
+    pub fn group(self) -> usize {
+        match self {
+            Parts::Pairs | Parts::Real => 1,
+            Parts::TwoLanes => 2,
+            Parts::FourLanes => 4,
+        }
+    }
+
+    /// Bytes of one sample.
+    pub fn bytes(self) -> usize {
+        if self == Parts::Real { 2 } else { 4 }
+    }
+
+    /// The order in a sentence.
+    pub fn described(self, q_first: bool) -> &'static str {
+        match (self, q_first) {
+            (Parts::Pairs, false) => "complex, I Q in pairs",
+            (Parts::Pairs, true) => "complex, Q I in pairs",
+            (Parts::TwoLanes, false) => "complex, I I Q Q as two lanes send them",
+            (Parts::TwoLanes, true) => "complex, Q Q I I as two lanes send them",
+            (Parts::FourLanes, false) => "complex, I I I I Q Q Q Q as four lanes send them",
+            (Parts::FourLanes, true) => "complex, Q Q Q Q I I I I as four lanes send them",
+            (Parts::Real, _) => "real",
+        }
+    }
+}
+
+/// Order of the receivers in a chirp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ReceiverOrder {
+    /// All samples of one, then all of the next.
+    #[default]
+    OneAfterAnother,
+    /// Sample by sample.
+    Interleaved,
+}
 
 /// The layout of a chirp's bytes as samples of its receivers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -37,5 +143,33 @@ impl Layout {
     /// Bytes of one chirp of all receivers, with its header.
     pub fn chirp_bytes(&self, samples: usize, receivers: usize) -> usize {
         self.header_bytes + samples * receivers * self.parts.bytes()
+    }
+
+    /// The samples of one chirp, `[receivers, samples]`: real ones where the parts are real. `bytes` begin behind the header; missing bytes are
+    /// zeros.
+    pub(crate) fn decode(&self, bytes: &[u8], samples: usize, receivers: usize) -> Array2<Complex64> {
+        let numbers = self.numbers(bytes, samples * receivers);
+        Array2::from_shape_fn((receivers, samples), |(r, s)| match self.receivers {
+            ReceiverOrder::OneAfterAnother => numbers[r * samples + s],
+            ReceiverOrder::Interleaved => numbers[s * receivers + r],
+        })
+    }
+
+    /// The first `count` samples of `bytes` in the file's order; missing ones are zeros.
+    pub(super) fn numbers(&self, bytes: &[u8], count: usize) -> Vec<Complex64> {
+        let word = |at: usize| {
+            let bytes = bytes.get(2 * at..2 * at + 2).map_or([0; 2], |b| [b[0], b[1]]);
+            f64::from(self.words.number(bytes))
+        };
+        if self.parts == Parts::Real {
+            return (0..count).map(|n| Complex64::new(word(n), 0.0)).collect();
+        }
+        let group = self.parts.group();
+        let sample = |n: usize| {
+            let at = 2 * group * (n / group) + n % group;
+            let (first, second) = (word(at), word(at + group));
+            if self.q_first { Complex64::new(second, first) } else { Complex64::new(first, second) }
+        };
+        (0..count).map(sample).collect()
     }
 }

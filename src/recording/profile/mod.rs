@@ -1,18 +1,15 @@
 //! The `.cfg` that sets a TI radar up over its command line ("mmWave SDK User Guide", configuration file format).
 //!
-//! `lines` finds the commands, `commands` keeps those that are read, `frames` reads the frames, `dialect` names other texts.
+//! `lines` finds the commands and names texts of other dialects, `commands` keeps those that are read and reads the frames.
 
 mod commands;
-mod dialect;
-mod frames;
 pub(super) mod lines;
 #[cfg(test)]
 pub(super) mod tests;
 
 use super::Fault;
-use commands::Commands;
-use frames::{Frame, frames};
-use lines::Line;
+use commands::{ChirpLine, Commands, Frame, frames};
+use lines::{Line, check_dialect};
 use num_complex::Complex64;
 
 /// The radar and the data format that a `.cfg` sets.
@@ -67,7 +64,6 @@ pub struct RadarProfile {
 /// Bytes of the header before each chirp, where `lvdsStreamCfg` asks for one.
 const CHIRP_HEADER_BYTES: usize = 64;
 
-/// Receivers of a chip.
 pub(super) const CHIP_RECEIVERS: usize = 4;
 
 /// Most chirps in a loop, samples in a chirp and loops in a frame that the hardware knows, with room to spare.
@@ -101,7 +97,7 @@ impl RadarProfile {
     /// # Errors
     /// As [`RadarProfile::parse`].
     pub fn of_sub_frame(text: &str, sub_frame: Option<usize>) -> Result<RadarProfile, Fault> {
-        dialect::check(text)?;
+        check_dialect(text)?;
         let commands = Commands::read(text)?;
         if commands.profiles.is_empty() {
             return Err(missing("profileCfg"));
@@ -111,7 +107,7 @@ impl RadarProfile {
         if mask == 0 {
             return Err(channels.fault("no receiver is on"));
         }
-        let receiver_numbers: Vec<usize> = (0..16).filter(|bit| mask >> bit & 1 == 1).collect();
+        let receiver_numbers: Vec<usize> = bits(mask as u32).collect();
         let all = frames(&commands)?;
         let found = all.len();
         let chosen = sub_frame.unwrap_or(0);
@@ -139,7 +135,7 @@ impl RadarProfile {
     /// The transmitter of each chirp of a loop, after those that send together are told apart: of several at once the first.
     pub fn senders(&self) -> Vec<usize> {
         match (self.both_transmitters, self.chirp_transmitters.first()) {
-            (true, Some(mask)) => (0..32).filter(|bit| mask >> bit & 1 == 1).collect(),
+            (true, Some(mask)) => bits(*mask).collect(),
             _ => self.chirp_transmitters.iter().map(|mask| mask.trailing_zeros() as usize).collect(),
         }
     }
@@ -217,7 +213,11 @@ impl RadarProfile {
     }
 }
 
-/// The error of a command that is missing.
+/// Numbers of the bits of a mask that are set.
+pub(super) fn bits(mask: u32) -> impl Iterator<Item = usize> {
+    (0..32).filter(move |bit| mask >> bit & 1 == 1)
+}
+
 fn missing(command: &str) -> Fault {
     Fault::Data(format!("has no line \"{command}\"; expected profileCfg, channelCfg, chirpCfg and frameCfg"))
 }
@@ -253,9 +253,10 @@ impl<'a> Part<'a> {
                 .get(&number)
                 .or_else(|| commands.profiles.values().next().filter(|_| commands.profiles.len() == 1))
         };
-        let first = line(chirps[0].profile).ok_or_else(|| missing("profileCfg"))?;
+        let line = |chirp: &ChirpLine| line(chirp.profile).ok_or_else(|| missing("profileCfg"));
+        let first = line(&chirps[0])?;
         for chirp in &chirps[1..] {
-            let other = line(chirp.profile).ok_or_else(|| missing("profileCfg"))?;
+            let other = line(chirp)?;
             // The profile's own number differs; powers, phases, the transmitter's start and gains (5, 6, 8, 11 on) may.
             // Bits are compared, since NaN equals nothing. NaN is refused where it is read.
             let same = |i: usize| other.values.get(i).map(|v| v.to_bits()) == first.values.get(i).map(|v| v.to_bits());

@@ -1,8 +1,8 @@
 //! Arrays without a text: the kinds of their axes by evidence, and the TOML that names them.
 
+use super::Imported;
 use super::axes::{Reading, readings};
 use super::boards::Board;
-use super::imported::Imported;
 use super::line::{Line, line, uniform};
 use super::text::{self, About};
 use crate::recording::described::open_file;
@@ -14,10 +14,8 @@ use crate::scene::npz::X_KEY;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Most readings that are offered.
 const OFFERED: usize = 4;
 
-/// Endings of the names of array files.
 pub(super) const ENDINGS: [&str; 5] = ["npy", "npz", "mat", "h5", "hdf5"];
 
 /// Finds out what the array in `data` holds.

@@ -35,13 +35,11 @@ const TOGETHER: [&[AxisKind]; 6] = [
 /// One way to name the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Reading {
-    /// The quantity that each axis counts.
     pub kinds: Vec<AxisKind>,
     /// Natural logarithm of its odds.
     pub log_odds: f64,
     /// Mean power of each range bin.
     pub power: Vec<f64>,
-    /// Evidence for these names, a sentence each.
     pub reasons: Vec<String>,
 }
 
@@ -97,7 +95,6 @@ pub(super) fn readings(numbers: &Numbers, profile: Option<&RadarProfile>) -> Vec
     all
 }
 
-/// Every order of the kinds.
 fn orders(kinds: &[AxisKind]) -> Vec<Vec<AxisKind>> {
     if kinds.is_empty() {
         return vec![Vec::new()];

@@ -4,9 +4,7 @@ use crate::platform::fs;
 use crate::recording::{Fault, RecordingError};
 use std::path::{Path, PathBuf};
 
-/// Most files of a folder that are looked at.
 const MOST_FILES: usize = 10_000;
-/// Most files that a capture goes on in.
 const MOST_PARTS: usize = 64;
 
 /// The capture: `path`, or where that is a `.cfg`, the data file beside it.

@@ -3,22 +3,19 @@
 use super::boards::{self, Board};
 use crate::radar::SPEED_OF_LIGHT;
 use crate::recording::layout::Counts;
-use crate::recording::profile::{CHIP_RECEIVERS, RadarProfile};
+use crate::recording::profile::{CHIP_RECEIVERS, RadarProfile, bits};
 
 /// Carrier where nothing says one, hertz.
 pub(super) const USUAL_CARRIER_HZ: f64 = 77e9;
 
-/// A line of elements.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Line {
     /// Chirps of a loop whose transmitters form the line.
     pub chirps: Vec<usize>,
     /// Receivers that form the line, where not all do.
     pub receivers: Option<Vec<usize>>,
-    /// Places along the line, metres.
     pub transmitter_x_metres: Vec<f64>,
     pub receiver_x_metres: Vec<f64>,
-    /// The board with these antennas, where one was taken.
     pub board: Option<&'static str>,
     /// Assumptions, and antennas that were left out, a sentence each.
     pub doubts: Vec<String>,
@@ -52,11 +49,17 @@ pub(super) fn uniform(counts: Counts, carrier_hz: f64) -> Line {
 fn of_board(counts: Counts, board: &'static Board) -> Option<Line> {
     let (places, receivers) = (board.transmitters.get(..counts.chirps)?, board.receivers.get(..counts.receivers)?);
     let sender = |(chirp, [across, up]): (usize, &[f64; 2])| Sender { chirp, across: *across, up: *up };
-    let (senders, note) = one_height(&places.iter().enumerate().map(sender).collect::<Vec<_>>());
+    let senders: Vec<Sender> = places.iter().enumerate().map(sender).collect();
     let doubt =
         format!("The transmitters of the {} are taken to send one after another in the order of its list.", board.name);
-    let doubts = std::iter::once(doubt).chain(note).collect();
-    Some(Line { board: Some(board.name), ..metres(&senders, receivers, None, USUAL_CARRIER_HZ, doubts) })
+    Some(on_board(board, &senders, receivers, USUAL_CARRIER_HZ, vec![doubt]))
+}
+
+/// The line of those senders of a board that stand at one height.
+fn on_board(board: &Board, senders: &[Sender], receivers: &[f64], carrier_hz: f64, mut doubts: Vec<String>) -> Line {
+    let (senders, note) = one_height(senders);
+    doubts.extend(note);
+    Line { board: Some(board.name), ..metres(&senders, receivers, None, carrier_hz, doubts) }
 }
 
 /// The line of a capture: by the places that the `.cfg` says, by `board`, or by the board that the transmitters make likely.
@@ -73,9 +76,8 @@ pub(super) fn line(counts: Counts, profile: Option<&RadarProfile>, board: Option
             "Elements stand where the .cfg's antGeometry lines say; those of the longest row form the line.".to_owned();
         return metres(&senders, &receivers, Some(taken), carrier_hz, vec![doubt]);
     }
-    let bits: Vec<usize> =
-        profile.chirp_transmitters.iter().flat_map(|mask| (0..32).filter(move |b| mask >> b & 1 == 1)).collect();
-    let taken_board = board.unwrap_or_else(|| boards::likely(&bits));
+    let transmitters: Vec<usize> = profile.chirp_transmitters.iter().flat_map(|mask| bits(*mask)).collect();
+    let taken_board = board.unwrap_or_else(|| boards::likely(&transmitters));
     let mut doubts = Vec::new();
     if board.is_none() {
         let all: Vec<&str> = boards::ALL.iter().map(|b| b.name).collect();
@@ -85,11 +87,9 @@ pub(super) fn line(counts: Counts, profile: Option<&RadarProfile>, board: Option
             all.join(", ")
         ));
     }
-    let (senders, note) = one_height(&senders(profile, taken_board));
-    doubts.extend(note);
     let place = |n: &usize| taken_board.receivers.get(*n).copied().unwrap_or(*n as f64);
     let receivers: Vec<f64> = profile.receiver_numbers.iter().map(place).collect();
-    Line { board: Some(taken_board.name), ..metres(&senders, &receivers, None, carrier_hz, doubts) }
+    on_board(taken_board, &senders(profile, taken_board), &receivers, carrier_hz, doubts)
 }
 
 fn metres(
@@ -113,7 +113,6 @@ fn metres(
 /// The sender of each chirp of a loop. Several transmitters that send at once and can't be told apart are taken for one in their middle.
 fn senders(profile: &RadarProfile, board: &Board) -> Vec<Sender> {
     let place = |bit: usize| board.transmitters.get(bit).copied().unwrap_or([4.0 * bit as f64, 0.0]);
-    let bits = |mask: u32| (0..32usize).filter(move |bit| mask >> bit & 1 == 1);
     if profile.both_transmitters {
         let all = profile.chirp_transmitters.first().map_or(0, |mask| *mask);
         return bits(all).map(place).enumerate().map(|(chirp, [across, up])| Sender { chirp, across, up }).collect();

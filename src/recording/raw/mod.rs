@@ -11,20 +11,16 @@
 //! | `text` | the TOML |
 //! | `array` | arrays without a text |
 //! | `axes` | the quantities that the axes of an array count, by evidence |
-//! | `imported` | the ways to read a file |
 
 mod array;
 mod axes;
 mod beside;
 pub mod boards;
 mod first_frame;
-mod imported;
 mod line;
 #[cfg(test)]
 pub(super) mod tests;
 mod text;
-
-pub use imported::Imported;
 
 use super::axes::{Chirp, Join};
 use super::capture::{Capture, Part};
@@ -39,8 +35,29 @@ use first_frame::FirstFrame;
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-/// Most layouts that are offered.
 const OFFERED: usize = 4;
+
+/// The ways to read a file, and the texts that describe it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// The file, and the ways to read it.
+    pub origin: Origin,
+    /// The layouts of a raw capture; nothing for an array.
+    pub found: Option<Found>,
+}
+
+impl Imported {
+    /// Certainty of the choice.
+    pub fn certainty(&self) -> Certainty {
+        self.found.as_ref().map_or_else(|| Certainty::of(self.margin()), Found::certainty)
+    }
+
+    /// Log-odds of the best above those of the next; `None` where there is no next.
+    pub fn margin(&self) -> Option<f64> {
+        let offers = &self.origin.offers;
+        Some(offers.first()?.log_odds - offers.get(1)?.log_odds)
+    }
+}
 
 /// Whether `path` names a raw capture, an array without a text, or the `.cfg` of one, by its ending. An `.npz` is one only by its arrays:
 /// [`is_raw_at`].
@@ -77,7 +94,14 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
     if is_array {
         return array::import(&data, config, profile.as_ref(), board);
     }
-    capture_of(data, config, profile.as_ref(), board)
+    let (chips, _) = beside::chips(&data);
+    let files = match <[PathBuf; 4]>::try_from(chips) {
+        Ok([data, chips @ ..]) => Files { data, more: Vec::new(), chips: chips.to_vec(), config },
+        Err(_) => Files { more: beside::more_files(&data), data, chips: Vec::new(), config },
+    };
+    let stream = files.open().and_then(Stream::new).map_err(|e| Fault::from(e).of(&files.data))?;
+    let profile = profile.map(|profile| profile.on_chips(1 + files.chips.len()));
+    described(stream, files, profile.as_ref(), board)
 }
 
 /// Finds the layout of one frame's bytes, as a capture card sends them; `config` is the `.cfg` that set the radar up.
@@ -112,34 +136,14 @@ pub fn frame_bytes(path: &Path) -> Result<usize, RecordingError> {
     })
 }
 
-fn capture_of(
-    data: PathBuf,
-    config: Option<PathBuf>,
-    profile: Option<&RadarProfile>,
-    board: Option<&'static Board>,
-) -> Result<Imported, RecordingError> {
-    let (chips, _) = beside::chips(&data);
-    let files = match <[PathBuf; 4]>::try_from(chips) {
-        Ok([data, chips @ ..]) => Files { data, more: Vec::new(), chips: chips.to_vec(), config },
-        Err(_) => Files { more: beside::more_files(&data), data, chips: Vec::new(), config },
-    };
-    let stream = files.open().and_then(Stream::new).map_err(|e| Fault::from(e).of(&files.data))?;
-    let profile = profile.map(|profile| profile.clone().on_chips(1 + files.chips.len()));
-    described(stream, files, profile.as_ref(), board)
-}
-
-/// The files of a capture.
 struct Files {
     data: PathBuf,
-    /// Files that continue the first.
     more: Vec<PathBuf>,
-    /// Files of the other chips of a cascade.
     chips: Vec<PathBuf>,
     config: Option<PathBuf>,
 }
 
 impl Files {
-    /// Opens all files as one.
     fn open(&self) -> io::Result<Box<dyn Source>> {
         opened(&self.data, &self.more, &self.chips, |path| Ok(Box::new(BufReader::new(open_file(path)?))))
     }
@@ -209,7 +213,6 @@ fn described<R: Read + io::Seek>(
     Ok(Imported { origin, found: Some(found) })
 }
 
-/// Reads a `.cfg` in any encoding.
 pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
     let read = || -> Result<RadarProfile, Fault> {
         let file = open_file(path)?;
@@ -218,7 +221,6 @@ pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
     read().map_err(|fault| fault.of(path))
 }
 
-/// Doubts about the layout, a sentence each.
 fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     let mut doubts = found.notes.clone();
     let rivals: Vec<String> = found.rivals().into_iter().map(Candidate::described).collect();

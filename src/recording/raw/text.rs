@@ -37,7 +37,6 @@ fn heading(about: &About<'_>) -> String {
     format!("format = 3\nname = {}\nnotes = {}\n", quoted(&name), quoted(&about.sentences.join("\n")))
 }
 
-/// An array whose axes were named.
 pub(super) struct Array<'a> {
     pub reading: &'a Reading,
     pub shape: &'a [usize],
@@ -47,7 +46,6 @@ pub(super) struct Array<'a> {
     pub in_turn: Option<usize>,
 }
 
-/// The text that describes an array.
 pub(super) fn of_array(array: &Array<'_>, about: &About<'_>) -> String {
     let Array { reading, shape, key, in_turn } = *array;
     let mut out = heading(about);

@@ -1,10 +1,25 @@
-//! Types of an array's numbers.
+//! Numbers of arrays, and their types in files.
 
-/// One number as it stands in the file.
+use ndarray::ArrayD;
+use num_complex::Complex64;
+
+/// Numbers of an array, in the order of its axes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Numbers {
+    /// Real numbers or integers.
+    Real(ArrayD<f64>),
+    /// Complex numbers.
+    Complex(ArrayD<Complex64>),
+}
+
+/// One number as it stands in a file: 1, 2, 4 or 8 bytes, floating-point numbers of 2 or more.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct NumberKind {
+pub struct NumberKind {
+    /// Its length.
     pub bytes: usize,
+    /// Whether it is a floating-point number (IEEE 754), not an integer.
     pub is_float: bool,
+    /// Whether an integer is one of two's complement.
     pub is_signed: bool,
     /// High byte first.
     pub is_big: bool,
@@ -31,7 +46,7 @@ impl NumberKind {
 }
 
 /// A floating-point number of 16 bits (IEEE 754).
-pub fn half_value(word: u16) -> f64 {
+fn half_value(word: u16) -> f64 {
     let sign = if word & 0x8000 == 0 { 1.0 } else { -1.0 };
     let (exponent, fraction) = (i32::from(word >> 10 & 31), f64::from(word & 1023) / 1024.0);
     match exponent {
@@ -39,25 +54,5 @@ pub fn half_value(word: u16) -> f64 {
         31 if fraction == 0.0 => sign * f64::INFINITY,
         31 => f64::NAN,
         exponent => sign * (1.0 + fraction) * 2f64.powi(exponent - 15),
-    }
-}
-
-/// The type of an array's numbers.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Member {
-    One(NumberKind),
-    /// A compound of two: the offsets and types of real and imaginary part.
-    Two {
-        bytes: usize,
-        parts: [(usize, NumberKind); 2],
-    },
-}
-
-impl Member {
-    pub fn bytes(&self) -> usize {
-        match self {
-            Member::One(kind) => kind.bytes,
-            Member::Two { bytes, .. } => *bytes,
-        }
     }
 }
