@@ -322,7 +322,7 @@ impl eframe::App for App {
             recent: state.recent.clone(),
             progress: state.progress.clone(),
             captions_seen: !state.captions,
-            recent_commands: self.memory.palette.recent().to_vec(),
+            recent_commands: self.memory.palette.recent.clone(),
             method_times: state.method_times.clone(),
             zoom: self.zoom.before(),
         };

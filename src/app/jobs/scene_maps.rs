@@ -13,7 +13,7 @@ use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, EngineFrame, MapRequest, ReadyMap};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
 use crate::maps::cfar::{Cfar, DETECTED};
-use crate::maps::{LambdaScale, Normalisation, RangeAngleMap};
+use crate::maps::{Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Radar};
 use crate::recording::Recording;
@@ -105,16 +105,6 @@ pub struct MapsResult {
     /// Pictures painted since the start.
     pub painted: u64,
     pub took: Duration,
-}
-
-/// The reference that outputs are judged by.
-#[derive(Clone, PartialEq)]
-pub struct Truth {
-    pub source: Source,
-    /// Numbers of the elements that methods use in place of the two ends.
-    pub layout: Option<Vec<usize>>,
-    pub target: Shared<RangeAngleMap>,
-    pub scale: LambdaScale,
 }
 
 impl MapsRequest {

@@ -128,12 +128,8 @@ impl Several {
         method: Option<&Arc<dyn Reconstructor>>,
         methods: &[Arc<dyn Reconstructor>],
     ) -> Vec<Variant> {
-        let like = |label: String, radar: Radar, floor: Floor| Variant {
-            label,
-            radar,
-            floor,
-            method: method.map(Shared::from),
-        };
+        let method = method.map(Shared::from);
+        let like = |label: String, radar: Radar, floor: Floor| Variant { label, radar, floor, method: method.clone() };
         let mut variants: Vec<Variant> = match self.parameter {
             Parameter::Window => WindowFunction::ALL
                 .into_iter()
