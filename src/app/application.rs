@@ -8,7 +8,7 @@ use super::contents::{Contents, Panels};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::kept::{self, KeptSettings};
-use super::state::{Arrangement, Command, DocumentCommand, LessonCommand, State, ViewCommand, WindowCommand};
+use super::state::{Arrangement, Command, State, ViewCommand, WindowCommand};
 use super::widgets::{focus_ring, theme};
 use crate::interact::Editor;
 use crate::platform::{self, Instant};
@@ -36,11 +36,9 @@ pub struct Options {
     pub methods: Vec<Arc<dyn Reconstructor>>,
     /// Folder for the autosave; where `None`, the system's usual one, or none in a test.
     pub data_folder: Option<PathBuf>,
-    /// Text of a scene shared by another copy of the program ([`crate::share`]).
-    pub shared: Option<String>,
-    pub lesson: Option<PathBuf>,
     /// Whether file dialogs are the window's own even where the system has one.
     pub own_dialogs: bool,
+    /// Commands for the first frame.
     pub commands: Vec<Command>,
     /// Problems from before the window opened, told as messages.
     pub problems: Vec<String>,
@@ -104,16 +102,13 @@ impl App {
         }
         options.problems.into_iter().chain(unread).for_each(|problem| state.notices.error(problem));
         start(&mut state, &jobs, options.scene);
-        let asked = options.lesson.map(|v| Command::Lesson(LessonCommand::OpenFile(v))).into_iter();
-        let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v))));
-        let asked = asked.chain(options.commands).collect();
         let palette = palette::PaletteMemory::remembering(kept.recent_commands);
         Ok(App {
             state,
             jobs,
             panels: Panels::start(platform::waker(ctx)),
             memory: ChromeMemory { palette, ..ChromeMemory::default() },
-            asked,
+            asked: options.commands,
             frame_log,
             title: String::new(),
             zoom: Zoom::default(),
@@ -121,11 +116,6 @@ impl App {
             in_a_field: false,
             close_refused: false,
         })
-    }
-
-    /// Shows a problem from before the window opened.
-    pub(super) fn tell(&mut self, problem: String) {
-        self.state.notices.error(problem);
     }
 
     fn apply(&mut self, ctx: &egui::Context, commands: Vec<Command>) {
@@ -190,7 +180,7 @@ impl App {
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
             let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
-            let mut panels = Contents::new(state, jobs, &mut self.panels);
+            let mut panels = Contents { state, jobs, panels: &mut self.panels, commands: Vec::new() };
             commands.extend(tiles::show(ui, &mut arrangement, &mut panels));
             commands.extend(panels.commands);
             state.arrangement = arrangement;

@@ -70,7 +70,7 @@ impl Query for DopplerQuery {
 /// The radar of the chirps, whether their interval is known, and the range-Doppler map.
 type DopplerMade = (Radar, bool, LogMap);
 
-/// The map of a scene's chirps, or of the loops of a recording's frame.
+/// The map of a scene's chirps, or of the loops of a recording's frame. There is no query of a recording without loops.
 fn source_map(source: &Source, static_clutter_out: bool, task: &Task) -> Result<DopplerMade, String> {
     if let Some(origin) = source.recording.as_ref().and_then(|r| r.origin.as_ref()) {
         let FrameLoops { radar, mut samples, knows_interval } = origin.loops().map_err(|e| e.to_string())?;
@@ -80,7 +80,7 @@ fn source_map(source: &Source, static_clutter_out: bool, task: &Task) -> Result<
         let decades = RangeDopplerMap::of(&radar, samples).log_magnitude();
         return Ok((radar, knows_interval, decades));
     }
-    let (scene, floor) = source.simulated()?;
-    let map = range_doppler_for(task, &source.radar, scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
-    Ok((source.radar.clone(), true, map.log_magnitude()))
+    let Source { radar, scene, floor, .. } = source;
+    let map = range_doppler_for(task, radar, scene, *floor, scene.noise_seed).map_err(|e| e.to_string())?;
+    Ok((radar.clone(), true, map.log_magnitude()))
 }
