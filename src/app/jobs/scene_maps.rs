@@ -154,7 +154,6 @@ impl MapsState {
         let detected = self.detector.detect(request.cfar, &frame, needs_target, outputs);
         let outputs = request.pairs.each_ref().map(|pair| pair.as_ref().map(|pair| &pair.output));
         let on_one_scale = if request.one_scale { self.one_scale.of(&frame, outputs) } else { BTreeMap::new() };
-        self.painter.draw_finely(request.fine_columns);
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
             if let Some(mut subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {
@@ -314,5 +313,5 @@ fn subject(
         ),
         MapKind::Unexplained => (lambda(&unexplained?.as_ref().ok().map(|u| u.map.clone())), None, colours),
     };
-    Some(Subject { map: map?, minus, paint, projection: request.projection })
+    Some(Subject { map: map?, minus, paint, projection: request.projection, is_fine: request.fine_columns })
 }

@@ -255,8 +255,7 @@ impl Arrangement {
         if let Some(tabs) = tabs {
             self.tree.move_tile_to_container(id, tabs, usize::MAX, false);
         }
-        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == panel));
-        self.opened = Some(panel);
+        self.set_pane_open(id, panel, true);
     }
 
     /// Swaps a map with the map in the largest tile.
