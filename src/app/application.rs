@@ -49,7 +49,9 @@ pub struct App {
     pub(super) state: State,
     pub(super) jobs: Jobs,
     pub(super) panels: Panels,
-    memory: ChromeMemory,
+    menu: menu::MenuMemory,
+    palette: palette::PaletteMemory,
+    file_dialog: file_dialog::FileDialogMemory,
     /// Commands asked for outside a frame.
     pub(super) asked: Vec<Command>,
     frame_log: Option<FrameLog>,
@@ -61,14 +63,6 @@ pub struct App {
     in_a_field: bool,
     /// Whether a request to close the window was refused once, because unsaved work could not be kept.
     close_refused: bool,
-}
-
-/// State of menu, palette and file dialog between frames.
-#[derive(Default)]
-struct ChromeMemory {
-    menu: menu::MenuMemory,
-    palette: palette::PaletteMemory,
-    file_dialog: file_dialog::FileDialogMemory,
 }
 
 impl App {
@@ -102,12 +96,13 @@ impl App {
         }
         options.problems.into_iter().chain(unread).for_each(|problem| state.notices.error(problem));
         start(&mut state, &jobs, options.scene);
-        let palette = palette::PaletteMemory::remembering(kept.recent_commands);
         Ok(App {
             state,
             jobs,
             panels: Panels::start(platform::waker(ctx)),
-            memory: ChromeMemory { palette, ..ChromeMemory::default() },
+            menu: Default::default(),
+            palette: palette::PaletteMemory::remembering(kept.recent_commands),
+            file_dialog: Default::default(),
             asked: options.commands,
             frame_log,
             title: String::new(),
@@ -124,7 +119,7 @@ impl App {
         }
         for command in commands {
             match command {
-                Command::Window(WindowCommand::Palette) => self.memory.palette.toggle(),
+                Command::Window(WindowCommand::Palette) => self.palette.toggle(),
                 command => apply::apply(ctx, &mut self.state, &mut self.jobs, command),
             }
         }
@@ -134,8 +129,8 @@ impl App {
     fn read_input(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let mut commands = std::mem::take(&mut self.asked);
         let input = input::Input {
-            keys_taken: self.memory.palette.is_open()
-                || self.memory.file_dialog.is_open()
+            keys_taken: self.palette.is_open()
+                || self.file_dialog.is_open()
                 || self.state.help.is_some()
                 || self.state.save_question.is_some(),
             in_a_field: self.in_a_field,
@@ -174,8 +169,8 @@ impl App {
 
     /// Draws the window; returns the commands of the user.
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
-        let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
-        let mut commands = menu::show(ui, state, &mut memory.menu);
+        let (state, jobs) = (&mut self.state, &self.jobs);
+        let mut commands = menu::show(ui, state, &mut self.menu);
         status_bar::show(ui, state, jobs.pipeline.maps.took);
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
@@ -185,9 +180,9 @@ impl App {
             commands.extend(panels.commands);
             state.arrangement = arrangement;
         });
-        commands.extend(palette::show(ui.ctx(), &state.methods.all, &mut memory.palette));
+        commands.extend(palette::show(ui.ctx(), &state.methods.all, &mut self.palette));
         commands.extend(help::show(ui.ctx(), state.help));
-        commands.extend(file_dialog::show(ui.ctx(), &mut memory.file_dialog));
+        commands.extend(file_dialog::show(ui.ctx(), &mut self.file_dialog));
         commands.extend(save_question::show(ui.ctx(), state.save_question.as_ref()));
         commands
     }
@@ -277,7 +272,7 @@ impl eframe::App for App {
         self.apply(&ctx, commands);
         self.check_close(&ctx);
         if let Some(question) = self.jobs.dialogs.take_unanswered() {
-            self.memory.file_dialog.ask(question);
+            self.file_dialog.ask(question);
         }
         self.let_time_go_on(&ctx);
         apply::follow_challenge(&mut self.state);
@@ -312,7 +307,7 @@ impl eframe::App for App {
             recent: state.recent.clone(),
             progress: state.progress.clone(),
             captions_seen: !state.captions,
-            recent_commands: self.memory.palette.recent.clone(),
+            recent_commands: self.palette.recent.clone(),
             method_times: state.method_times.clone(),
             zoom: self.zoom.before(),
         };

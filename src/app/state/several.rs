@@ -92,14 +92,8 @@ pub struct Several {
 impl Default for Several {
     fn default() -> Self {
         let parameter = Parameter::default();
-        Several {
-            parameter,
-            map: parameter.usual_map(),
-            low: 0.0,
-            high: 0.0,
-            count: MAX_MAPS,
-            methods: BTreeSet::new(),
-        }
+        let (map, methods) = (parameter.usual_map(), BTreeSet::new());
+        Several { parameter, map, low: 0.0, high: 0.0, count: MAX_MAPS, methods }
     }
 }
 
