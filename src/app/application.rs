@@ -8,7 +8,7 @@ use super::contents::{Contents, Panels};
 use super::input;
 use super::jobs::{Dialogs, FrameLog, Jobs};
 use super::kept::{self, KeptSettings};
-use super::state::{Arrangement, Command, DocumentCommand, LessonCommand, State, ViewCommand, WindowCommand};
+use super::state::{Arrangement, Command, State, ViewCommand, WindowCommand};
 use super::widgets::{focus_ring, theme};
 use crate::interact::Editor;
 use crate::platform::{self, Instant};
@@ -36,11 +36,9 @@ pub struct Options {
     pub methods: Vec<Arc<dyn Reconstructor>>,
     /// Folder for the autosave; where `None`, the system's usual one, or none in a test.
     pub data_folder: Option<PathBuf>,
-    /// Text of a scene shared by another copy of the program ([`crate::share`]).
-    pub shared: Option<String>,
-    pub lesson: Option<PathBuf>,
     /// Whether file dialogs are the window's own even where the system has one.
     pub own_dialogs: bool,
+    /// Commands for the first frame.
     pub commands: Vec<Command>,
     /// Problems from before the window opened, told as messages.
     pub problems: Vec<String>,
@@ -51,7 +49,9 @@ pub struct App {
     pub(super) state: State,
     pub(super) jobs: Jobs,
     pub(super) panels: Panels,
-    memory: ChromeMemory,
+    menu: menu::MenuMemory,
+    palette: palette::PaletteMemory,
+    file_dialog: file_dialog::FileDialogMemory,
     /// Commands asked for outside a frame.
     pub(super) asked: Vec<Command>,
     frame_log: Option<FrameLog>,
@@ -63,14 +63,6 @@ pub struct App {
     in_a_field: bool,
     /// Whether a request to close the window was refused once, because unsaved work could not be kept.
     close_refused: bool,
-}
-
-/// State of menu, palette and file dialog between frames.
-#[derive(Default)]
-struct ChromeMemory {
-    menu: menu::MenuMemory,
-    palette: palette::PaletteMemory,
-    file_dialog: file_dialog::FileDialogMemory,
 }
 
 impl App {
@@ -104,16 +96,14 @@ impl App {
         }
         options.problems.into_iter().chain(unread).for_each(|problem| state.notices.error(problem));
         start(&mut state, &jobs, options.scene);
-        let asked = options.lesson.map(|v| Command::Lesson(LessonCommand::OpenFile(v))).into_iter();
-        let asked = asked.chain(options.shared.map(|v| Command::Document(DocumentCommand::OpenShared(v))));
-        let asked = asked.chain(options.commands).collect();
-        let palette = palette::PaletteMemory::remembering(kept.recent_commands);
         Ok(App {
             state,
             jobs,
             panels: Panels::start(platform::waker(ctx)),
-            memory: ChromeMemory { palette, ..ChromeMemory::default() },
-            asked,
+            menu: Default::default(),
+            palette: palette::PaletteMemory::remembering(kept.recent_commands),
+            file_dialog: Default::default(),
+            asked: options.commands,
             frame_log,
             title: String::new(),
             zoom: Zoom::default(),
@@ -123,18 +113,13 @@ impl App {
         })
     }
 
-    /// Shows a problem from before the window opened.
-    pub(super) fn tell(&mut self, problem: String) {
-        self.state.notices.error(problem);
-    }
-
     fn apply(&mut self, ctx: &egui::Context, commands: Vec<Command>) {
         if commands.iter().any(|c| !matches!(c, Command::View(ViewCommand::Hover(_)))) {
             ctx.request_repaint();
         }
         for command in commands {
             match command {
-                Command::Window(WindowCommand::Palette) => self.memory.palette.toggle(),
+                Command::Window(WindowCommand::Palette) => self.palette.toggle(),
                 command => apply::apply(ctx, &mut self.state, &mut self.jobs, command),
             }
         }
@@ -144,8 +129,8 @@ impl App {
     fn read_input(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let mut commands = std::mem::take(&mut self.asked);
         let input = input::Input {
-            keys_taken: self.memory.palette.is_open()
-                || self.memory.file_dialog.is_open()
+            keys_taken: self.palette.is_open()
+                || self.file_dialog.is_open()
                 || self.state.help.is_some()
                 || self.state.save_question.is_some(),
             in_a_field: self.in_a_field,
@@ -184,20 +169,20 @@ impl App {
 
     /// Draws the window; returns the commands of the user.
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
-        let (state, jobs, memory) = (&mut self.state, &self.jobs, &mut self.memory);
-        let mut commands = menu::show(ui, state, &mut memory.menu);
+        let (state, jobs) = (&mut self.state, &self.jobs);
+        let mut commands = menu::show(ui, state, &mut self.menu);
         status_bar::show(ui, state, jobs.pipeline.maps.took);
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
             let mut arrangement = std::mem::replace(&mut state.arrangement, Arrangement::empty());
-            let mut panels = Contents::new(state, jobs, &mut self.panels);
+            let mut panels = Contents { state, jobs, panels: &mut self.panels, commands: Vec::new() };
             commands.extend(tiles::show(ui, &mut arrangement, &mut panels));
             commands.extend(panels.commands);
             state.arrangement = arrangement;
         });
-        commands.extend(palette::show(ui.ctx(), &state.methods.all, &mut memory.palette));
+        commands.extend(palette::show(ui.ctx(), &state.methods.all, &mut self.palette));
         commands.extend(help::show(ui.ctx(), state.help));
-        commands.extend(file_dialog::show(ui.ctx(), &mut memory.file_dialog));
+        commands.extend(file_dialog::show(ui.ctx(), &mut self.file_dialog));
         commands.extend(save_question::show(ui.ctx(), state.save_question.as_ref()));
         commands
     }
@@ -287,7 +272,7 @@ impl eframe::App for App {
         self.apply(&ctx, commands);
         self.check_close(&ctx);
         if let Some(question) = self.jobs.dialogs.take_unanswered() {
-            self.memory.file_dialog.ask(question);
+            self.file_dialog.ask(question);
         }
         self.let_time_go_on(&ctx);
         apply::follow_challenge(&mut self.state);
@@ -322,7 +307,7 @@ impl eframe::App for App {
             recent: state.recent.clone(),
             progress: state.progress.clone(),
             captions_seen: !state.captions,
-            recent_commands: self.memory.palette.recent().to_vec(),
+            recent_commands: self.palette.recent.clone(),
             method_times: state.method_times.clone(),
             zoom: self.zoom.before(),
         };

@@ -75,18 +75,11 @@ impl Panels {
 
 /// Draws panels and gathers the user's commands.
 pub struct Contents<'a> {
-    state: &'a mut State,
-    jobs: &'a Jobs,
-    panels: &'a mut Panels,
+    pub state: &'a mut State,
+    pub jobs: &'a Jobs,
+    pub panels: &'a mut Panels,
     /// The user's commands so far.
     pub commands: Vec<Command>,
-}
-
-impl<'a> Contents<'a> {
-    /// A drawer of `panels` for one frame.
-    pub fn new(state: &'a mut State, jobs: &'a Jobs, panels: &'a mut Panels) -> Self {
-        Contents { state, jobs, panels, commands: Vec::new() }
-    }
 }
 
 impl Draw for Contents<'_> {

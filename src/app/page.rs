@@ -15,17 +15,9 @@ pub fn open_page() {
     if address == "?measure" {
         return platform::tell(&measured());
     }
-    let (options, problem) = match options_of(&address) {
-        Ok(options) => (options, None),
-        Err(problem) => (Options::default(), Some(problem)),
-    };
-    let create: eframe::AppCreator<'static> = Box::new(|creation| {
-        let mut app = App::new(creation, options)?;
-        if let Some(problem) = problem {
-            app.tell(problem);
-        }
-        Ok(Box::new(app))
-    });
+    let options = options_of(&address);
+    let options = options.unwrap_or_else(|problem| Options { problems: vec![problem], ..Options::default() });
+    let create: eframe::AppCreator<'static> = Box::new(|creation| Ok(Box::new(App::new(creation, options)?)));
     if let Err(error) = platform::open_window(super::APP_ID, create) {
         platform::tell(&format!("The window could not be opened: {error}"));
     }
@@ -48,7 +40,7 @@ pub fn options_of(address: &str) -> Result<Options, String> {
     let (query, fragment) = address.split_once('#').unwrap_or((address, ""));
     let mut options = Options::default();
     if !fragment.is_empty() {
-        options.shared = Some(fragment.to_owned());
+        options.commands.push(DocumentCommand::OpenShared(fragment.to_owned()).into());
     }
     for (key, name) in query.trim_start_matches('?').split('&').filter_map(|part| part.split_once('=')) {
         if key == CELL {
@@ -88,8 +80,8 @@ mod tests {
         let [Command::Document(DocumentCommand::Preset(index))] = options.commands[..] else { panic!() };
         assert_eq!(scene::presets::ALL[index].id, "street");
         let options = options_of("?cell=abc#apertura:1:abc").unwrap();
-        assert!(options.commands.is_empty(), "the cell of a notebook asks for nothing");
-        assert_eq!(options.shared.as_deref(), Some("apertura:1:abc"));
+        let shared = Command::from(DocumentCommand::OpenShared("apertura:1:abc".to_owned()));
+        assert_eq!(options.commands, [shared], "the cell of a notebook asks for nothing");
     }
 
     #[test]

@@ -36,20 +36,18 @@ impl Args {
     }
 
     fn load(&self) -> Result<(Lesson, app::Options), CommandError> {
-        let usual = app::Options::default();
-        match self.lesson.to_str().filter(|name| !name.contains(['.', '/', '\\']) && !self.lesson.exists()) {
-            Some(name) => {
-                let index = shipped::by_name(name)?;
-                let lesson = shipped::ALL[index].load()?;
-                Ok((
-                    lesson,
-                    app::Options { commands: vec![app::Command::Lesson(app::LessonCommand::Begin(index))], ..usual },
-                ))
-            }
-            None => {
-                let lesson = Lesson::load(&self.lesson)?;
-                Ok((lesson, app::Options { lesson: Some(self.lesson.clone()), ..usual }))
-            }
-        }
+        let (lesson, command) =
+            match self.lesson.to_str().filter(|name| !name.contains(['.', '/', '\\']) && !self.lesson.exists()) {
+                Some(name) => {
+                    let index = shipped::by_name(name)?;
+                    let lesson = shipped::ALL[index].load()?;
+                    (lesson, app::LessonCommand::Begin(index))
+                }
+                None => {
+                    let lesson = Lesson::load(&self.lesson)?;
+                    (lesson, app::LessonCommand::OpenFile(self.lesson.clone()))
+                }
+            };
+        Ok((lesson, app::Options { commands: vec![command.into()], ..app::Options::default() }))
     }
 }

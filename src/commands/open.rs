@@ -71,10 +71,11 @@ impl Args {
     #[cfg(feature = "app")]
     fn open_window(self, started: Instant) -> Result<Option<String>, CommandError> {
         use crate::app::{self, AppError};
-        let shared = self.scene.as_deref().and_then(super::input::shared_text).map(str::to_owned);
+        let shared = self.scene.as_deref().and_then(super::input::shared_text);
+        let shared = shared.map(|text| app::DocumentCommand::OpenShared(text.to_owned()).into());
         let options = app::Options {
             scene: self.scene.filter(|_| shared.is_none()),
-            shared,
+            commands: shared.into_iter().collect(),
             method: self.method,
             frame_log: self.frame_log,
             started: Some(started),

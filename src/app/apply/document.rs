@@ -15,32 +15,33 @@ use crate::scene::{Scene, presets};
 use crate::signal::Floor;
 use std::path::{Path, PathBuf};
 
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) {
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) -> Result<(), String> {
     match command {
         DocumentCommand::New => {
             let file = SceneFile { radar: state.radar().clone(), ..SceneFile::default() };
             state.set_document("new scene", Document::shipped(file));
         }
-        DocumentCommand::OpenPath(path) => open(state, path),
+        DocumentCommand::OpenPath(path) => open(state, path)?,
         DocumentCommand::Save => saving::save_again(state, jobs),
         DocumentCommand::SaveTo(path) => saving::save(state, path),
         DocumentCommand::AnswerSave(answer) => saving::answer(state, jobs, answer),
         DocumentCommand::Recover(id) => state.scene_view.fit |= state.editor.recover(id),
         DocumentCommand::Discard(id) => state.editor.discard(id),
-        DocumentCommand::Preset(index) => preset(state, index),
-        DocumentCommand::Recording(index) => shipped_recording(state, index),
+        DocumentCommand::Preset(index) => preset(state, index)?,
+        DocumentCommand::Recording(index) => shipped_recording(state, index)?,
         DocumentCommand::ReadAnotherWay(way) => read_another_way(state, way),
         DocumentCommand::ShowFrame(frame) => show_frame(state, jobs, frame),
         DocumentCommand::RandomScene(kind) => random_scene(state, kind),
         DocumentCommand::SetNextRandom { seed, number } => {
             (state.settings.random_seed, state.settings.random_number) = (seed, number);
         }
-        DocumentCommand::OpenShared(text) => shared::open(state, &text),
+        DocumentCommand::OpenShared(text) => shared::open(state, &text)?,
     }
+    Ok(())
 }
 
 /// Opens a scene file or a recording; on any error the scene on screen stays.
-fn open(state: &mut State, path: PathBuf) {
+fn open(state: &mut State, path: PathBuf) -> Result<(), String> {
     #[cfg(feature = "live")]
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("safetensors")) {
         return open_weights(state, &path);
@@ -48,15 +49,13 @@ fn open(state: &mut State, path: PathBuf) {
     if let Some(document) = read(state, &path) {
         show(state, "open", document);
     }
+    Ok(())
 }
 
 /// Adds the live network with the weights of a file, and selects it where it takes the radar on screen.
 #[cfg(feature = "live")]
-fn open_weights(state: &mut State, path: &Path) {
-    let method = match methods::add_weights(path) {
-        Ok(method) => method,
-        Err(error) => return state.notices.error(error),
-    };
+fn open_weights(state: &mut State, path: &Path) -> Result<(), String> {
+    let method = methods::add_weights(path)?;
     let name = method.name();
     state.methods.add(method.clone());
     match method.check_array(state.radar()) {
@@ -66,6 +65,7 @@ fn open_weights(state: &mut State, path: &Path) {
         }
         Err(error) => state.notices.info(format!("{name} is one of the methods now. {error}.")),
     }
+    Ok(())
 }
 
 /// Puts a document on screen, with a method that takes its radar and the panels of a recording.
@@ -144,35 +144,31 @@ pub fn read(state: &mut State, path: &Path) -> Option<Document> {
     }
 }
 
-fn preset(state: &mut State, index: usize) {
-    let Some(preset) = presets::ALL.get(index) else { return };
-    match preset.load() {
-        Ok(file) => {
-            // A preset of failures needs its own radar: its method fails with that one.
-            let keeps_radar = !preset.has_radar() && !preset.is_failure();
-            let before = state.setup();
-            preset.failing_method().into_iter().for_each(|name| state.settings.method = name.to_owned());
-            let radar = if keeps_radar { state.radar().clone() } else { file.radar.clone() };
-            let document = Document::shipped(SceneFile { radar, ..file });
-            state.failures.wanted = preset.is_failure().then(|| document.id());
-            state.set_document("preset", document);
-            use_a_method_that_can(state);
-            if preset.is_failure() {
-                // Undo brings back the method together with the scene.
-                let after = state.setup();
-                state.guided.push(before, after);
-            }
-        }
-        Err(error) => state.notices.error(format!("Preset {}: {error}", preset.id)),
+fn preset(state: &mut State, index: usize) -> Result<(), String> {
+    let Some(preset) = presets::ALL.get(index) else { return Ok(()) };
+    let file = preset.load().map_err(|error| format!("Preset {}: {error}", preset.id))?;
+    // A preset of failures needs its own radar: its method fails with that one.
+    let keeps_radar = !preset.has_radar() && !preset.is_failure();
+    let before = state.setup();
+    preset.failing_method().into_iter().for_each(|name| state.settings.method = name.to_owned());
+    let radar = if keeps_radar { state.radar().clone() } else { file.radar.clone() };
+    let document = Document::shipped(SceneFile { radar, ..file });
+    state.failures.wanted = preset.is_failure().then(|| document.id());
+    state.set_document("preset", document);
+    use_a_method_that_can(state);
+    if preset.is_failure() {
+        // Undo brings back the method together with the scene.
+        let after = state.setup();
+        state.guided.push(before, after);
     }
+    Ok(())
 }
 
-fn shipped_recording(state: &mut State, index: usize) {
-    let Some(preset) = recording::presets::ALL.get(index) else { return };
-    match Document::shipped_recording(preset) {
-        Ok(document) => show(state, "recording", document),
-        Err(error) => state.notices.error(format!("Recording {}: {error}", preset.id)),
-    }
+fn shipped_recording(state: &mut State, index: usize) -> Result<(), String> {
+    let Some(preset) = recording::presets::ALL.get(index) else { return Ok(()) };
+    let read = Document::shipped_recording(preset);
+    show(state, "recording", read.map_err(|error| format!("Recording {}: {error}", preset.id))?);
+    Ok(())
 }
 
 /// Reads the file of the recording on screen with another layout, frame or board; on any error the recording stays as it is.

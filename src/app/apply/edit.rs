@@ -7,7 +7,7 @@ use crate::scene::{Block, GaussianCluster, Line, Object, Point, Polygon, Post, W
 use crate::share::is_shared;
 use eframe::egui::{Context, ViewportCommand};
 
-pub fn apply(ctx: &Context, state: &mut State, command: EditCommand) {
+pub fn apply(ctx: &Context, state: &mut State, command: EditCommand) -> Result<(), String> {
     let editor = &mut state.editor;
     match command {
         EditCommand::Undo => state.undo(),
@@ -19,16 +19,12 @@ pub fn apply(ctx: &Context, state: &mut State, command: EditCommand) {
         }
         EditCommand::Copy => copy(ctx, state),
         EditCommand::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
-        EditCommand::PasteText(text) if is_shared(&text) => shared::open(state, &text),
+        EditCommand::PasteText(text) if is_shared(&text) => shared::open(state, &text)?,
         EditCommand::PasteText(text) => {
-            if let Err(error) = editor.paste(&text) {
-                state.notices.error(format!("Nothing was pasted: {error}"));
-            }
+            editor.paste(&text).map_err(|error| format!("Nothing was pasted: {error}"))?;
         }
         EditCommand::Duplicate => {
-            if let Err(error) = editor.duplicate_selected() {
-                state.notices.error(format!("Nothing was duplicated: {error}"));
-            }
+            editor.duplicate_selected().map_err(|error| format!("Nothing was duplicated: {error}"))?;
         }
         EditCommand::Delete => editor.delete_selected(),
         EditCommand::SelectAll => editor.select_all(),
@@ -36,9 +32,7 @@ pub fn apply(ctx: &Context, state: &mut State, command: EditCommand) {
         EditCommand::SelectNext => editor.select_neighbour(true),
         EditCommand::SelectPrevious => editor.select_neighbour(false),
         EditCommand::SetField(field, change) => {
-            if let Err(error) = editor.set_field(field, change) {
-                state.notices.error(format!("Nothing was changed: {error}"));
-            }
+            editor.set_field(field, change).map_err(|error| format!("Nothing was changed: {error}"))?;
         }
         EditCommand::Name(name) => editor.name_selected(&name),
         // At another time the objects on screen are not where the document has them.
@@ -57,6 +51,7 @@ pub fn apply(ctx: &Context, state: &mut State, command: EditCommand) {
         EditCommand::SetSnap(snap) => state.settings.snap = snap,
         EditCommand::SetCoordinates(coordinates) => state.settings.coordinates = coordinates,
     }
+    Ok(())
 }
 
 /// Copies the selected objects as text; a message where none is selected.

@@ -9,13 +9,11 @@ use crate::scene::Scene;
 use crate::scene::file::SceneFile;
 use std::sync::Arc;
 
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) {
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) -> Result<(), String> {
     match command {
-        LessonCommand::Begin(index) => begin_shipped(state, index),
+        LessonCommand::Begin(index) => begin_shipped(state, index)?,
         LessonCommand::OpenFile(path) => {
-            if let Err(error) = jobs.lessons.open(path) {
-                state.notices.error(format!("The lesson can't be read: {error}"));
-            }
+            jobs.lessons.open(path).map_err(|error| format!("The lesson can't be read: {error}"))?;
         }
         LessonCommand::Take { id, lesson } => begin(state, id, lesson),
         LessonCommand::Step(step) => go_to(state, step),
@@ -35,15 +33,18 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: LessonCommand) {
         LessonCommand::SetLearner(name) => state.progress.set_learner(&name),
         LessonCommand::ForgetProgress => state.progress.reset(),
     }
+    Ok(())
 }
 
 /// Begins a lesson that comes with the program.
-pub fn begin_shipped(state: &mut State, index: usize) {
-    let Some(file) = shipped::ALL.get(index) else { return };
-    match file.load() {
-        Ok(lesson) => begin(state, file.id.to_owned(), Arc::new(lesson)),
-        Err(error) => state.notices.error(format!("Lesson {}: {error}", file.id)),
-    }
+///
+/// # Errors
+/// The reason why its file can't be read.
+pub fn begin_shipped(state: &mut State, index: usize) -> Result<(), String> {
+    let Some(file) = shipped::ALL.get(index) else { return Ok(()) };
+    let lesson = file.load().map_err(|error| format!("Lesson {}: {error}", file.id))?;
+    begin(state, file.id.to_owned(), Arc::new(lesson));
+    Ok(())
 }
 
 /// Goes to a step of the lesson, from 0.

@@ -23,22 +23,33 @@ use super::jobs::Jobs;
 use super::state::{Command, State};
 use eframe::egui::Context;
 
-/// Does a command by the file of its group, then makes the layout in use fit the document on screen.
+/// Does a command, or tells why it can't be done; then makes the layout in use fit the document on screen.
 pub fn apply(ctx: &Context, state: &mut State, jobs: &mut Jobs, command: Command) {
+    if let Err(error) = done(ctx, state, jobs, command) {
+        state.notices.error(error);
+    }
+    document::fit_layout(state);
+}
+
+/// Does a command by the file of its group.
+///
+/// # Errors
+/// The reason why it can't be done, as a message for the user.
+fn done(ctx: &Context, state: &mut State, jobs: &mut Jobs, command: Command) -> Result<(), String> {
     match command {
-        Command::Document(command) => document::apply(state, jobs, command),
-        Command::Edit(command) => edit::apply(ctx, state, command),
-        Command::Radar(command) => radar::apply(state, command),
+        Command::Document(command) => document::apply(state, jobs, command)?,
+        Command::Edit(command) => edit::apply(ctx, state, command)?,
+        Command::Radar(command) => radar::apply(state, command)?,
         Command::View(command) => view::apply(state, jobs, command),
-        Command::Rows(command) => rows::apply(state, jobs, command),
-        Command::Lesson(command) => lesson::apply(state, jobs, command),
+        Command::Rows(command) => rows::apply(state, jobs, command)?,
+        Command::Lesson(command) => lesson::apply(state, jobs, command)?,
         Command::Work(command) => work::apply(state, jobs, command),
         Command::Export(command) => export::apply(ctx, state, jobs, command),
         Command::Window(command) => window::apply(ctx, state, command),
         Command::AskFile(purpose) => jobs.choose_file(state, purpose),
         Command::Guided(commands) => guided(ctx, state, jobs, commands),
     }
-    document::fit_layout(state);
+    Ok(())
 }
 
 /// Does the commands of a button of the guide, which one undo takes back.

@@ -4,36 +4,36 @@ use crate::app::state::{RadarCommand, State};
 use crate::radar::{BuiltArray, Radar, presets};
 use crate::scene::Disturbances;
 
-pub fn apply(state: &mut State, command: RadarCommand) {
+pub fn apply(state: &mut State, command: RadarCommand) -> Result<(), String> {
     match command {
-        RadarCommand::SetCarrier(carrier) => edit(state, "carrier", None, |r| r.carrier = carrier),
-        RadarCommand::SetWindow(window) => edit(state, "window", None, |r| r.window = window),
+        RadarCommand::SetCarrier(carrier) => edit(state, "carrier", None, |r| r.carrier = carrier)?,
+        RadarCommand::SetWindow(window) => edit(state, "window", None, |r| r.window = window)?,
         RadarCommand::Set(radar) => {
             let field = changed_field(state.radar(), &radar);
-            edit(state, field, Some(field), |r| *r = *radar);
+            edit(state, field, Some(field), |r| *r = *radar)?;
         }
         RadarCommand::SetElements(elements) => disturb(state, "built elements", |d| {
             d.elements = if elements.is_ideal() { BuiltArray::default() } else { BuiltArray::clone(&elements) };
-        }),
-        RadarCommand::SetInterferer(interferer) => disturb(state, "interferer", |d| d.interferer = interferer),
-        RadarCommand::SetMirror(mirror) => disturb(state, "mirror", |d| d.mirror = mirror),
+        })?,
+        RadarCommand::SetInterferer(interferer) => disturb(state, "interferer", |d| d.interferer = interferer)?,
+        RadarCommand::SetMirror(mirror) => disturb(state, "mirror", |d| d.mirror = mirror)?,
         RadarCommand::Preset(index) => {
             if let Some(preset) = presets::ALL.get(index) {
-                edit(state, "radar preset", None, |r| *r = preset.radar.clone());
+                edit(state, "radar preset", None, |r| *r = preset.radar.clone())?;
                 state.scene_view.fit |= state.scene_view.fitted.is_some();
             }
         }
     }
+    Ok(())
 }
 
 /// Changes the scene's disturbances; changes under one name are one undo step until the pointer is released.
-fn disturb(state: &mut State, what: &str, change: impl FnOnce(&mut Disturbances)) {
+fn disturb(state: &mut State, what: &str, change: impl FnOnce(&mut Disturbances)) -> Result<(), String> {
     let mut changed = state.editor.scene().disturbances.clone();
     change(&mut changed);
-    match changed.validate(state.radar()) {
-        Ok(()) => _ = state.editor.edit(what, Some(what), |scene, _| scene.disturbances = changed),
-        Err(error) => state.notices.error(error.to_string()),
-    }
+    changed.validate(state.radar()).map_err(|e| e.to_string())?;
+    state.editor.edit(what, Some(what), |scene, _| scene.disturbances = changed);
+    Ok(())
 }
 
 /// Name of the first field that differs: edits of one field merge into one undo step.
@@ -64,17 +64,18 @@ fn changed_field(before: &Radar, after: &Radar) -> &'static str {
 }
 
 /// Changes the radar as one undo step.
-fn edit(state: &mut State, label: &str, merge_key: Option<&str>, change: impl FnOnce(&mut Radar)) {
+fn edit(
+    state: &mut State,
+    label: &str,
+    merge_key: Option<&str>,
+    change: impl FnOnce(&mut Radar),
+) -> Result<(), String> {
     let mut changed = state.radar().clone();
     change(&mut changed);
     let recording = state.editor.document().recording();
     if recording.is_some_and(|r| !r.fits(&changed)) {
         let advice = "Open a scene to look with another.";
-        return state
-            .notices
-            .error(format!("The radar on screen is the one that the recording was made with. {advice}"));
+        return Err(format!("The radar on screen is the one that the recording was made with. {advice}"));
     }
-    if let Err(error) = state.editor.edit_radar(label, merge_key, |r| *r = changed) {
-        state.notices.error(error.to_string());
-    }
+    state.editor.edit_radar(label, merge_key, |r| *r = changed).map(drop).map_err(|e| e.to_string())
 }

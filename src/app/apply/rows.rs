@@ -9,12 +9,9 @@ use crate::evaluate::worsen::Aim;
 use crate::platform::fs;
 use std::path::Path;
 
-pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
+pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) -> Result<(), String> {
     match command {
-        RowsCommand::Try(choice) => match plan(state, jobs, &choice) {
-            Ok(plan) => jobs.failures.begin(plan),
-            Err(error) => state.notices.error(error),
-        },
+        RowsCommand::Try(choice) => jobs.failures.begin(plan(state, jobs, &choice)?),
         RowsCommand::CancelTrying => jobs.failures.run.cancel(),
         RowsCommand::OpenTable(path) if !is_table_of_rows(&path) => work::watch(state, jobs, path),
         RowsCommand::OpenFile(path) | RowsCommand::OpenTable(path) => {
@@ -26,17 +23,18 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) {
         RowsCommand::SaveTo(path) => tell(state, jobs.exports.rows(&jobs.failures.table, path)),
         RowsCommand::Clear => jobs.failures.clear(),
         RowsCommand::BringBack => jobs.failures.bring_back(),
-        RowsCommand::Show(index) => open_row(state, jobs, index),
+        RowsCommand::Show(index) => open_row(state, jobs, index)?,
         RowsCommand::Search(choice) => jobs.failures.search.begin(state, choice),
         RowsCommand::CancelSearch => jobs.failures.search.cancel(),
         RowsCommand::TakeFinding => take_finding(state, jobs),
         RowsCommand::ForgetSearch => jobs.failures.search.forget(),
-        RowsCommand::KeepScene(note) => keep_scene(state, jobs, &note),
+        RowsCommand::KeepScene(note) => keep_scene(state, jobs, &note)?,
         RowsCommand::SetOwnScenes(path) => {
             let folder = if fs::is_dir(&path) { Some(path.as_path()) } else { path.parent() };
             state.settings.own_scenes = folder.map(Path::to_path_buf);
         }
     }
+    Ok(())
 }
 
 fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPlan, String> {
@@ -55,15 +53,12 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
 
 /// Opens a row's scene as another document, with the row's floor and method in the settings. One undo takes back all of it. It also takes back a series of
 /// opened rows, as long as none was changed in between.
-fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
+fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) -> Result<(), String> {
     let table = &jobs.failures.table;
-    let Some(row) = table.rows().get(index).cloned() else { return };
+    let Some(row) = table.rows().get(index).cloned() else { return Ok(()) };
     let generation = table.generation();
     let conditions = table.conditions();
-    let document = match conditions.document(&row) {
-        Ok(document) => document,
-        Err(error) => return state.notices.error(format!("{error}\nThe scene on screen was kept.")),
-    };
+    let document = conditions.document(&row).map_err(|error| format!("{error}\nThe scene on screen was kept."))?;
     let is_row = state.row_on_screen().is_some() && !state.editor.is_modified();
     if is_row && state.guided.can_undo(&state.setup()) {
         state.undo();
@@ -92,6 +87,7 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) {
     state.guided.push(before, after);
     state.failures.opened = Some(OpenedRow { row, index, generation, document: opened });
     jobs.failures.search.keep_to(opened);
+    Ok(())
 }
 
 fn take_finding(state: &mut State, jobs: &Jobs) {
@@ -103,13 +99,12 @@ fn take_finding(state: &mut State, jobs: &Jobs) {
     state.editor.edit(label, None, |scene, _| (scene.objects, scene.noise_seed) = (found.objects, found.noise_seed));
 }
 
-fn keep_scene(state: &mut State, jobs: &Jobs, note: &str) {
-    let Some(folder) = jobs.own_scenes(state) else {
-        return state.notices.error("There is no folder to keep scenes in: choose one first.");
-    };
-    let kept = keep(&folder, state.editor.document().to_file(), note).map(|path| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        format!("Kept as {name}. apertura evaluate --scenes \"{}\" tries methods on all kept scenes.", folder.display())
-    });
-    tell(state, kept.map_err(|error| format!("{error}\nThe scene was not kept; choose another folder.")));
+fn keep_scene(state: &mut State, jobs: &Jobs, note: &str) -> Result<(), String> {
+    let folder = jobs.own_scenes(state).ok_or("There is no folder to keep scenes in: choose one first.")?;
+    let path = keep(&folder, state.editor.document().to_file(), note)
+        .map_err(|error| format!("{error}\nThe scene was not kept; choose another folder."))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let advice = format!("apertura evaluate --scenes \"{}\" tries methods on all kept scenes.", folder.display());
+    state.notices.info(format!("Kept as {name}. {advice}"));
+    Ok(())
 }

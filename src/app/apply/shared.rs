@@ -58,18 +58,18 @@ fn by_column(radar: &Radar, part: VisiblePart) -> VisiblePart {
     if radar.columns_fall() { VisiblePart { left: 1.0 - part.right, right: 1.0 - part.left, ..part } } else { part }
 }
 
-/// Opens a shared text; on any error the scene on screen stays.
-pub fn open(state: &mut State, text: &str) {
-    let shared = match SharedScene::from_text(text) {
-        Ok(shared) => shared,
-        Err(error) => return state.notices.error(format!("{error}\nThe scene on screen was kept.")),
-    };
-    let SharedScene { file, view } = shared;
+/// Opens a shared text.
+///
+/// # Errors
+/// The reason why it can't be read; the scene on screen stays.
+pub fn open(state: &mut State, text: &str) -> Result<(), String> {
+    let shared = SharedScene::from_text(text);
+    let SharedScene { file, view } = shared.map_err(|error| format!("{error}\nThe scene on screen was kept."))?;
     if let Some(place) = &view.lesson {
         let index = shipped::ALL.iter().position(|lesson| lesson.id == place.id);
         match index {
             Some(index) => {
-                lesson::begin_shipped(state, index);
+                lesson::begin_shipped(state, index)?;
                 lesson::go_to(state, place.step.saturating_sub(1));
             }
             None => {
@@ -85,6 +85,7 @@ pub fn open(state: &mut State, text: &str) {
     if state.lesson.is_none() {
         state.guided.push(before, after);
     }
+    Ok(())
 }
 
 fn look(state: &mut State, view: SharedView) {

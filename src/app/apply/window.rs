@@ -41,9 +41,7 @@ pub fn apply(ctx: &Context, state: &mut State, command: WindowCommand) {
 fn escape(state: &mut State) {
     if state.editor.dragged().is_some() {
         state.editor.cancel_drag();
-    } else if state.arrangement.maximised().is_some() {
-        state.arrangement.restore();
-    } else if !state.stop_presenting() {
+    } else if state.arrangement.maximised.take().is_none() && !state.stop_presenting() {
         state.editor.select([], SelectionMode::Replace);
     }
     state.scene_view.box_start = None;

@@ -1,7 +1,7 @@
 //! The panels in one column, for a window as narrow as a telephone.
 
 use crate::app::state::{Arrangement, MapKind, Panel};
-use eframe::egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
+use eframe::egui::{ScrollArea, Sense, Ui, UiBuilder, Vec2, vec2};
 
 /// Width below which a window has its panels in one column, points. Beside a scene a map could not be read.
 pub const MAX_COLUMN_WIDTH_POINTS: f32 = 520.0;
@@ -31,18 +31,14 @@ pub fn show(ui: &mut Ui, panels: &[Panel], mut draw: impl FnMut(&mut Ui, Panel))
         for &panel in panels {
             let is_picture = matches!(panel, Panel::Scene | Panel::Map(_));
             let height = if is_picture { map_height } else { map_height.max(LEAST_HEIGHT) };
-            let (title, _) = ui.allocate_exact_size(vec2(ui.available_width(), TITLE), eframe::egui::Sense::hover());
+            let (title, _) = ui.allocate_exact_size(vec2(ui.available_width(), TITLE), Sense::hover());
             ui.put(title, eframe::egui::Label::new(panel.tile_title()).selectable(false));
-            let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), eframe::egui::Sense::hover());
+            let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
             if ui.clip_rect().intersects(rect) {
-                within(ui, rect, panel, &mut draw);
+                let mut inside = ui.new_child(UiBuilder::new().id_salt(panel).max_rect(rect));
+                inside.set_clip_rect(rect.intersect(ui.clip_rect()));
+                draw(&mut inside, panel);
             }
         }
     });
-}
-
-fn within(ui: &mut Ui, rect: Rect, panel: Panel, draw: &mut impl FnMut(&mut Ui, Panel)) {
-    let mut inside = ui.new_child(UiBuilder::new().id_salt(panel).max_rect(rect));
-    inside.set_clip_rect(rect.intersect(ui.clip_rect()));
-    draw(&mut inside, panel);
 }

@@ -22,7 +22,7 @@ pub enum Answer {
 
 /// The folder on screen and the text of the fields.
 pub struct Browser {
-    purpose: Purpose,
+    pub purpose: Purpose,
     folder: PathBuf,
     typed: String,
     name: String,

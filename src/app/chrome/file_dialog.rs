@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The open dialog or question, if any.
 #[derive(Default)]
 pub struct FileDialogMemory {
-    dialog: Option<(Purpose, Browser)>,
+    dialog: Option<Browser>,
     replace: Option<(Purpose, PathBuf)>,
 }
 
@@ -22,7 +22,7 @@ impl FileDialogMemory {
 
     /// Asks for a file.
     pub fn ask(&mut self, question: Question) {
-        self.dialog = Some((question.purpose, Browser::new(&question)));
+        self.dialog = Some(Browser::new(&question));
     }
 
     fn choose(&mut self, purpose: Purpose, path: PathBuf) -> Option<Command> {
@@ -37,10 +37,10 @@ impl FileDialogMemory {
 /// Draws the dialog, if it is open.
 pub fn show(ctx: &Context, memory: &mut FileDialogMemory) -> Vec<Command> {
     let mut asked = Vec::new();
-    if let Some((purpose, browser)) = &mut memory.dialog
+    if let Some(browser) = &mut memory.dialog
         && let Some(answer) = browser.show(ctx)
     {
-        let purpose = *purpose;
+        let purpose = browser.purpose;
         memory.dialog = None;
         if let Answer::Chosen(path) = answer {
             asked.extend(memory.choose(purpose, path));

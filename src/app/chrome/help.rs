@@ -67,9 +67,7 @@ pub fn show(ctx: &Context, page: Option<HelpPage>) -> Vec<Command> {
         .show(ctx, |ui| {
             ScrollArea::vertical().auto_shrink([false, true]).show(ui, |ui| match page {
                 HelpPage::Keys => keys(ui),
-                HelpPage::Figures => {
-                    rows(ui, "figures", FIGURES.iter().map(|[name, told]| [(*name).into(), (*told).into()]))
-                }
+                HelpPage::Figures => rows(ui, "figures", FIGURES.iter().map(|row| row.map(String::from))),
                 HelpPage::About => about(ui),
             });
         });
@@ -96,7 +94,7 @@ fn rows(ui: &mut Ui, name: &str, rows: impl Iterator<Item = [String; 2]>) {
 
 fn keys(ui: &mut Ui) {
     ui.heading("Pointer and arrows");
-    rows(ui, "pointer", POINTER.iter().map(|[name, told]| [(*name).into(), (*told).into()]));
+    rows(ui, "pointer", POINTER.iter().map(|row| row.map(String::from)));
     ui.add_space(8.0);
     ui.heading("Keys");
     let ctx = ui.ctx().clone();

@@ -18,7 +18,7 @@ pub struct PaletteMemory {
     chosen: usize,
     just_opened: bool,
     /// Names of the commands that were run last, the latest first.
-    recent: Vec<String>,
+    pub recent: Vec<String>,
 }
 
 const RECENT: usize = 8;
@@ -38,11 +38,6 @@ impl PaletteMemory {
     /// A palette with a list of recent commands, the latest first.
     pub fn remembering(recent: Vec<String>) -> PaletteMemory {
         PaletteMemory { recent, ..PaletteMemory::default() }
-    }
-
-    /// Names of the commands that were run last, the latest first.
-    pub fn recent(&self) -> &[String] {
-        &self.recent
     }
 
     fn remember(&mut self, name: String) {
@@ -266,9 +261,9 @@ mod tests {
         let mut memory = PaletteMemory::remembering(vec!["Redo".to_owned()]);
         memory.remember("Undo".to_owned());
         memory.remember("Redo".to_owned());
-        assert_eq!(memory.recent(), ["Redo", "Undo"]);
+        assert_eq!(memory.recent, ["Redo", "Undo"]);
         memory.toggle();
-        assert_eq!(memory.recent(), ["Redo", "Undo"], "they stay when it opens again");
+        assert_eq!(memory.recent, ["Redo", "Undo"], "they stay when it opens again");
     }
 
     #[test]

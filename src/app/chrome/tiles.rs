@@ -22,13 +22,13 @@ pub trait Draw {
 
 /// Draws the panels.
 pub fn show(ui: &mut Ui, arrangement: &mut Arrangement, panels: &mut dyn Draw) -> Vec<Command> {
-    let views = arrangement.views().clone();
+    let views = arrangement.views.clone();
     let mut behavior = Behavior { panels, views, shown: BTreeSet::new(), asked: Vec::new() };
     let is_narrow = ui.available_width() < column::MAX_COLUMN_WIDTH_POINTS;
-    match arrangement.maximised() {
+    match arrangement.maximised {
         Some(panel) => maximised(ui, panel, &mut behavior),
         None if is_narrow => column::show(ui, &column::order(arrangement), |ui, panel| behavior.draw(ui, panel)),
-        None => arrangement.tree_mut().ui(&mut behavior, ui),
+        None => arrangement.tree.ui(&mut behavior, ui),
     }
     let Behavior { shown, asked, .. } = behavior;
     if arrangement.set_shown(shown) | (!is_narrow && arrangement.make_room()) {

@@ -41,9 +41,6 @@ impl CalibrationQuery {
     }
 }
 
-/// The reason why a recording of the two ends can't calibrate.
-const ENDS_ALONE: &str = "The recording has the two ends alone; calibration looks at every element.";
-
 impl Query for CalibrationQuery {
     type Value = Calibrated;
     type State = ();
@@ -53,7 +50,7 @@ impl Query for CalibrationQuery {
 
     fn compute(&self, (): &mut (), _: &Task) -> Result<Calibrated, Failure> {
         let CalibrationQuery { source, name, reflector } = self;
-        let signal = source.signal(ENDS_ALONE)?;
+        let signal = source.signal("The recording has the two ends alone; calibration looks at every element.")?;
         let calibration = calibrate(&source.radar, &signal, reflector)
             .ok_or_else(|| format!("No element hears {name}, so that it calibrates nothing."))?;
         let left = source.scene.disturbances.elements.corrected(&calibration.array);

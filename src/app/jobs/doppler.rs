@@ -60,22 +60,17 @@ impl Query for DopplerQuery {
         let DopplerQuery { source, static_clutter_out, normalisation, colours } = self;
         let of = (source.clone(), *static_clutter_out);
         let made = kept.try_of(of, |(source, is_out)| source_map(source, *is_out, task))?;
-        let DopplerMade { radar, knows_interval, decades } = made.clone();
+        let (radar, knows_interval, decades) = made.clone();
         let map = decades.normalise(*normalisation);
         let image = picture(map.lambda.slice(s![..;-1, ..]), *colours);
         Ok(DopplerResult { radar, knows_interval, decades, image })
     }
 }
 
-/// A range-Doppler map and the radar of its chirps.
-#[derive(Clone)]
-pub struct DopplerMade {
-    radar: Radar,
-    knows_interval: bool,
-    decades: LogMap,
-}
+/// The radar of the chirps, whether their interval is known, and the range-Doppler map.
+type DopplerMade = (Radar, bool, LogMap);
 
-/// The map of a scene's chirps, or of the loops of a recording's frame.
+/// The map of a scene's chirps, or of the loops of a recording's frame. There is no query of a recording without loops.
 fn source_map(source: &Source, static_clutter_out: bool, task: &Task) -> Result<DopplerMade, String> {
     if let Some(origin) = source.recording.as_ref().and_then(|r| r.origin.as_ref()) {
         let FrameLoops { radar, mut samples, knows_interval } = origin.loops().map_err(|e| e.to_string())?;
@@ -83,9 +78,9 @@ fn source_map(source: &Source, static_clutter_out: bool, task: &Task) -> Result<
             samples.take_out_static();
         }
         let decades = RangeDopplerMap::of(&radar, samples).log_magnitude();
-        return Ok(DopplerMade { radar, knows_interval, decades });
+        return Ok((radar, knows_interval, decades));
     }
-    let (scene, floor) = source.simulated()?;
-    let map = range_doppler_for(task, &source.radar, scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
-    Ok(DopplerMade { radar: source.radar.clone(), knows_interval: true, decades: map.log_magnitude() })
+    let Source { radar, scene, floor, .. } = source;
+    let map = range_doppler_for(task, radar, scene, *floor, scene.noise_seed).map_err(|e| e.to_string())?;
+    Ok((radar.clone(), true, map.log_magnitude()))
 }

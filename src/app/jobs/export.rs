@@ -15,30 +15,21 @@ use crate::signal::{self, BeatSignal, TwoEnds};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A finished export.
-pub struct Export {
-    path: PathBuf,
-    /// A remark about a missing part, or the reason of a failure.
-    written: Result<Option<String>, String>,
-}
+/// Exports under way; each ends in a message for the user.
+pub struct Exports(pub Background<Result<String, String>>);
 
-impl Export {
-    /// The message for the user after success.
-    ///
-    /// # Errors
-    /// The message of an export that failed.
-    pub fn message(&self) -> Result<String, String> {
-        let path = self.path.display();
-        match &self.written {
-            Ok(None) => Ok(format!("Exported {path}")),
-            Ok(Some(but)) => Ok(format!("Exported {path}, {but}")),
-            Err(error) => Err(format!("{path}: {error}\nNothing was written; choose another place.")),
-        }
+/// The message after an export to `path`, with a remark about a missing part where there is one.
+///
+/// # Errors
+/// The message of an export that failed.
+fn told(path: &Path, written: Result<Option<String>, String>) -> Result<String, String> {
+    let path = path.display();
+    match written {
+        Ok(None) => Ok(format!("Exported {path}")),
+        Ok(Some(but)) => Ok(format!("Exported {path}, {but}")),
+        Err(error) => Err(format!("{path}: {error}\nNothing was written; choose another place.")),
     }
 }
-
-/// Exports under way.
-pub struct Exports(pub Background<Export>);
 
 impl Exports {
     /// Draws the panels of `apertura maps` with the method and the settings on screen, as PNG or SVG. Returns the message for the user.
@@ -112,12 +103,8 @@ impl Exports {
         write: impl FnOnce(&Path) -> Result<Option<String>, String> + Send + 'static,
     ) -> Result<String, String> {
         let (name, of) = (path.display().to_string(), path.clone());
-        let work = move || {
-            let written = write(&path);
-            Export { path, written }
-        };
-        let failed = |why| Export { path: of, written: Err(format!("failed: {why}")) };
-        match self.0.begin("export", work, failed) {
+        let failed = move |why| told(&of, Err(format!("failed: {why}")));
+        match self.0.begin("export", move || told(&path, write(&path)), failed) {
             Ok(()) => Ok(format!("Exporting {name}…")),
             Err(error) => Err(format!("{name}: the export could not be started: {error}")),
         }
@@ -164,7 +151,7 @@ mod tests {
 
     #[test]
     fn what_could_not_be_had_is_told() {
-        let export = |written| Export { path: "maps.npz".into(), written }.message();
+        let export = |written| told(Path::new("maps.npz"), written);
         assert_eq!(export(Ok(None)).unwrap(), "Exported maps.npz");
         assert!(export(Ok(Some("without the output: no".to_owned()))).unwrap().ends_with("without the output: no"));
         assert!(export(Err("disk full".to_owned())).unwrap_err().contains("Nothing was written"));

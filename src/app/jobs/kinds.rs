@@ -3,13 +3,13 @@
 use super::derived::{Derived, Failure, Query};
 use super::memo::Memo;
 use super::pipeline::Pipeline;
-use super::scene_maps::Truth;
+use super::scene_maps::MapsResult;
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{MethodSlot, Panel, State};
 use crate::evaluate::failure::{CellIndex, Failures, Footprints};
 use crate::evaluate::median_bound_metres;
-use crate::maps::RangeAngleMap;
+use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Layout;
 use crate::scene::Scene;
 use crate::task::Task;
@@ -23,10 +23,14 @@ struct Output {
     eta: f32,
 }
 
-/// A query of the fates in both outputs on screen.
+/// A query of the fates in both outputs on screen, judged by the target.
 #[derive(Clone, PartialEq)]
 pub struct KindsQuery {
-    truth: Truth,
+    source: Source,
+    /// Numbers of the elements that methods use in place of the two ends.
+    layout: Option<Vec<usize>>,
+    target: Shared<RangeAngleMap>,
+    scale: LambdaScale,
     outputs: [Option<Output>; 2],
 }
 
@@ -65,8 +69,8 @@ pub struct KeptFates {
 }
 
 impl KeptFates {
-    fn footprints(&mut self, truth: &Truth) -> &Footprints {
-        let Truth { source: Source { radar, scene, .. }, target, scale, .. } = truth;
+    fn footprints(&mut self, query: &KindsQuery) -> &Footprints {
+        let KindsQuery { source: Source { radar, scene, .. }, target, scale, .. } = query;
         self.footprints.of(target.clone(), |target| Footprints::new(radar, scene, target, *scale))
     }
 }
@@ -79,15 +83,18 @@ impl KindsQuery {
         if !(state.settings.show_kinds || told || pipeline.maps.is_settled()) || !pipeline.maps.wants_ends() {
             return None;
         }
-        let truth = pipeline.truth()?;
+        let MapsResult { request, frame, .. } = pipeline.maps.result()?;
+        let full = frame.full.as_ref().filter(|_| request.source.recording.is_none())?;
+        let target = Shared::from(&full.lambda);
         let output = |slot| {
             let pair = pipeline.method(slot).output().map(|o| &o.pair)?;
-            let of_it = pair.target.as_ref() == Some(&truth.target);
+            let of_it = pair.target.as_ref() == Some(&target);
             let (judged, eta) = pipeline.judged(state, slot).filter(|_| of_it)?;
             Some(Output { lambda: pair.output.clone(), judged: judged.into(), eta })
         };
         let outputs = MethodSlot::BOTH.map(output);
-        Some(KindsQuery { outputs, truth })
+        let (source, layout) = (request.source.clone(), request.layout.clone());
+        Some(KindsQuery { source, layout, target, scale: full.scale, outputs })
     }
 }
 
@@ -101,7 +108,7 @@ impl Query for KindsQuery {
         if self.outputs.iter().all(Option::is_none) {
             return Ok(kept.last.clone());
         }
-        let made = judge(kept.footprints(&self.truth), self);
+        let made = judge(kept.footprints(self), self);
         for (last, made) in kept.last.iter_mut().zip(made) {
             *last = made.or(last.take());
         }
@@ -122,7 +129,7 @@ pub fn fates_of<'a>(
 }
 
 fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
-    let Truth { source: Source { radar, scene, floor, .. }, target, layout, .. } = &request.truth;
+    let KindsQuery { source: Source { radar, scene, floor, .. }, target, layout, .. } = request;
     let heard = layout.as_ref().map_or_else(|| Layout::two_ends(radar), |layout| Layout::of_numbers(radar, layout));
     let fates = |output: &Output| {
         let failures = footprints.judge_cells(target, &output.lambda, &output.judged.above(output.eta));
@@ -173,25 +180,25 @@ mod tests {
         }
     }
 
-    /// The target map of two points.
-    fn truth(radar: Radar) -> Truth {
+    /// The query of no output beside the target map of two points.
+    fn query(radar: Radar) -> KindsQuery {
         let scene = Shared::new(Scene::of_points([(-4.0, 12.0), (5.0, 20.0)]));
         let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
         let target = Shared::new(full.normalise(Normalisation::MinMax));
         let source = Source { radar, scene, recording: None, floor: Floor::Thesis };
-        Truth { source, target, layout: None, scale: full.scale(Normalisation::MinMax) }
+        KindsQuery { source, target, layout: None, scale: full.scale(Normalisation::MinMax), outputs: [None, None] }
     }
 
     #[test]
     fn verdicts_are_those_of_the_evaluation() {
-        let truth = truth(Radar::default());
-        let mut output = RangeAngleMap::clone(&truth.target);
+        let mut request = query(Radar::default());
+        let mut output = RangeAngleMap::clone(&request.target);
         output.lambda.slice_mut(ndarray::s![.., 512..]).fill(0.0);
         output.lambda.slice_mut(ndarray::s![400..404, 200..210]).fill(0.95);
         output.lambda[[402, 205]] = 1.0;
         let judged = Shared::new(output.clone());
-        let request = KindsQuery { truth, outputs: [Some(Output { lambda: judged.clone(), judged, eta: 0.9 }), None] };
-        let Truth { source: Source { radar, scene, .. }, target, scale, .. } = &request.truth;
+        request.outputs[0] = Some(Output { lambda: judged.clone(), judged, eta: 0.9 });
+        let KindsQuery { source: Source { radar, scene, .. }, target, scale, .. } = &request;
         let footprints = Footprints::new(radar, scene, target, *scale);
         let [Some(fates), None] = judge(&footprints, &request) else { panic!("of the first alone") };
         let expected = footprints.judge(target, &output, 0.9);
@@ -203,10 +210,10 @@ mod tests {
 
     #[test]
     fn footprints_are_made_once_a_target() {
-        let (truth, mut kept) = (truth(Radar { elements: 64, ..Radar::default() }), KeptFates::default());
-        assert_eq!(kept.footprints(&truth).cells().len(), 2);
-        let source = Source { scene: Shared::new(Scene::default()), ..truth.source.clone() };
-        let of_the_same_target = Truth { source, ..truth };
+        let (query, mut kept) = (query(Radar { elements: 64, ..Radar::default() }), KeptFates::default());
+        assert_eq!(kept.footprints(&query).cells().len(), 2);
+        let source = Source { scene: Shared::new(Scene::default()), ..query.source.clone() };
+        let of_the_same_target = KindsQuery { source, ..query };
         assert_eq!(kept.footprints(&of_the_same_target).cells().len(), 2);
     }
 }

@@ -77,7 +77,12 @@ impl Listening {
         let (of_card, wake) = (shared.clone(), platform::waker(&self.wake));
         let card = move || match card {
             Some(card) => Ok(card),
-            None => (0..tries).fold(listen(), |card, _| card.or_else(|_| listen_later(&listen))),
+            None => (0..tries).fold(listen(), |card, _| {
+                card.or_else(|_| {
+                    std::thread::sleep(BETWEEN_TRIES);
+                    listen()
+                })
+            }),
         };
         platform::spawn("card", move || receive(card, &of_card, wake)).map_err(failed)?;
         let (of_frames, wake, read) = (shared.clone(), platform::waker(&self.wake), plan.clone());
@@ -157,12 +162,6 @@ impl Between {
         let mut held = self.changed.wait_while(held, waits).unwrap_or_else(PoisonError::into_inner);
         if held.is_over { None } else { held.newest.take() }
     }
-}
-
-/// Tries a port again after [`BETWEEN_TRIES`].
-fn listen_later(listen: &impl Fn() -> io::Result<Card>) -> io::Result<Card> {
-    std::thread::sleep(BETWEEN_TRIES);
-    listen()
 }
 
 /// Takes packets until the end. The newest frame waits; a frame that it replaces is dropped.

@@ -149,7 +149,7 @@ impl Jobs {
         }
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.0.finished() {
-            tell(state, export.message());
+            tell(state, export);
         }
         let (frame, failed) = self.listening.poll();
         failed.into_iter().for_each(|e| state.notices.error(e));

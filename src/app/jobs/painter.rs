@@ -30,7 +30,6 @@ pub struct Picture {
 pub struct Painter {
     cache: BTreeMap<MapKind, (Subject, Picture)>,
     projector: Option<cartesian::Projector>,
-    is_fine: bool,
     /// Pictures painted since the start, for tests.
     pub painted: u64,
 }
@@ -42,14 +41,6 @@ const OUTSIDE: Color32 = Color32::TRANSPARENT;
 const ON_SCREEN: [usize; 2] = [340, 128];
 
 impl Painter {
-    /// Sets whether maps of few columns are painted on more of them. Masks are not: their verdicts are per cell.
-    pub fn draw_finely(&mut self, is_fine: bool) {
-        if self.is_fine != is_fine {
-            self.is_fine = is_fine;
-            self.cache.clear();
-        }
-    }
-
     /// The picture of `subject`; the same [`Arc`] as before where nothing changed.
     pub fn paint(&mut self, radar: &Radar, kind: MapKind, subject: &Subject) -> Picture {
         if let Some((last, picture)) = self.cache.get(&kind)
@@ -64,7 +55,7 @@ impl Painter {
             Projection::RangeAngle => {
                 let minus = subject.minus.as_ref().map(|minus| radar.left_to_right(&minus.lambda));
                 let map = radar.left_to_right(&subject.map.lambda);
-                match finer(radar, map).filter(|_| self.is_fine && !is_mask) {
+                match finer(radar, map).filter(|_| subject.is_fine && !is_mask) {
                     None => {
                         let cells = Array2::from_shape_vec((rows, columns), colour(subject, map, minus, end));
                         let cells = cells.unwrap_or_default();
@@ -203,7 +194,7 @@ mod tests {
 
     fn subject(paint: Paint) -> Subject {
         let map = lambda(array![[0.0, 1.0], [0.5, 0.95]]);
-        Subject { minus: Some(map.clone()), map, paint, projection: Projection::RangeAngle }
+        Subject { minus: Some(map.clone()), map, paint, projection: Projection::RangeAngle, is_fine: false }
     }
 
     #[test]
@@ -241,6 +232,7 @@ mod tests {
                 minus: Some(lambda(array![[0.0f32, 0.95], [0.89, 0.95]])),
                 paint: Paint::Detections { eta: 0.5, dark },
                 projection: Projection::RangeAngle,
+                is_fine: false,
             };
             let painted = painter.paint(&radar, MapKind::OutputAbove, &subject).image.pixels.clone();
             let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
@@ -270,7 +262,7 @@ mod tests {
         let view = DifferenceView { absolute, whole };
         let paint = Paint::Difference { view, colours: ColourMap::Grey, beside };
         let (map, minus) = (lambda(array![[0.5, 0.5, 0.5, 0.5]]), lambda(array![[0.5, 0.53, 0.47, 0.48]]));
-        let subject = Subject { map, minus: Some(minus), paint, projection: Projection::RangeAngle };
+        let subject = Subject { map, minus: Some(minus), paint, projection: Projection::RangeAngle, is_fine: false };
         Painter::default().paint(&Radar::default(), MapKind::Difference, &subject)
     }
 

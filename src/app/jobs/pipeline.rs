@@ -12,7 +12,7 @@ use super::derived::STALE;
 use super::maps::MapsJob;
 use super::method::{Basis, MethodJob, MethodRequest, MethodResult};
 use super::recorded::Unexplained;
-use super::scene_maps::{MapsRequest, MapsResult, Origin, Scores, Truth};
+use super::scene_maps::{MapsRequest, MapsResult, Origin, Scores};
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, State};
@@ -177,14 +177,6 @@ impl Pipeline {
     /// Places of reflectors found by the first method, where they are to be drawn: over a recording always.
     pub fn shown_found(&self, state: &State) -> &[Reflector] {
         self.output_of(state).filter(|_| state.draws_found()).map_or(&[], |output| &output.reflectors)
-    }
-
-    /// Source, target and layout of the latest maps; `None` for a recording.
-    pub fn truth(&self) -> Option<Truth> {
-        let MapsResult { request, frame, .. } = self.maps.result()?;
-        let full = frame.full.as_ref().filter(|_| request.source.recording.is_none())?;
-        let layout = request.layout.clone();
-        Some(Truth { source: request.source.clone(), layout, target: (&full.lambda).into(), scale: full.scale })
     }
 
     /// The reason why the detector in use fails.

@@ -13,7 +13,7 @@ use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, EngineFrame, MapRequest, ReadyMap};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
 use crate::maps::cfar::{Cfar, DETECTED};
-use crate::maps::{LambdaScale, Normalisation, RangeAngleMap};
+use crate::maps::{Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Radar};
 use crate::recording::Recording;
@@ -107,16 +107,6 @@ pub struct MapsResult {
     pub took: Duration,
 }
 
-/// The reference that outputs are judged by.
-#[derive(Clone, PartialEq)]
-pub struct Truth {
-    pub source: Source,
-    /// Numbers of the elements that methods use in place of the two ends.
-    pub layout: Option<Vec<usize>>,
-    pub target: Shared<RangeAngleMap>,
-    pub scale: LambdaScale,
-}
-
 impl MapsRequest {
     /// The origin of an output that `method` makes of these maps' samples.
     pub fn origin(&self, method: &'static str) -> Origin {
@@ -164,7 +154,6 @@ impl MapsState {
         let detected = self.detector.detect(request.cfar, &frame, needs_target, outputs);
         let outputs = request.pairs.each_ref().map(|pair| pair.as_ref().map(|pair| &pair.output));
         let on_one_scale = if request.one_scale { self.one_scale.of(&frame, outputs) } else { BTreeMap::new() };
-        self.painter.draw_finely(request.fine_columns);
         let mut pictures = BTreeMap::new();
         for &kind in &request.pictures {
             if let Some(mut subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {
@@ -324,5 +313,5 @@ fn subject(
         ),
         MapKind::Unexplained => (lambda(&unexplained?.as_ref().ok().map(|u| u.map.clone())), None, colours),
     };
-    Some(Subject { map: map?, minus, paint, projection: request.projection })
+    Some(Subject { map: map?, minus, paint, projection: request.projection, is_fine: request.fine_columns })
 }

@@ -114,7 +114,7 @@ mod tests {
     }
 
     fn said(paint: Paint, map: Shared<RangeAngleMap>, minus: Option<Shared<RangeAngleMap>>) -> String {
-        let subject = Subject { map, minus, paint, projection: Projection::Cartesian };
+        let subject = Subject { map, minus, paint, projection: Projection::Cartesian, is_fine: false };
         sentence(&Radar::default(), &subject)
     }
 

@@ -181,7 +181,7 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
 
 fn picture(request: &Request, variant: &Variant, map: RangeAngleMap) -> Arc<ColorImage> {
     let paint = Paint::Lambda(request.colours);
-    let subject = Subject { map: Shared::new(map), minus: None, paint, projection: request.projection };
+    let subject = Subject { map: Shared::new(map), minus: None, paint, projection: request.projection, is_fine: false };
     Painter::default().paint(&variant.radar, request.map, &subject).image
 }
 

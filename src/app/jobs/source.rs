@@ -31,19 +31,6 @@ impl Source {
         }
     }
 
-    /// The scene and its floor, where they are simulated.
-    ///
-    /// # Errors
-    /// A sentence for a recording.
-    pub fn simulated(&self) -> Result<(&Scene, Floor), String> {
-        match self.recording {
-            None => Ok((&**self.scene, self.floor)),
-            Some(_) => {
-                Err("One chirp tells no velocity; a raw capture with its .cfg has the loops of a frame.".to_owned())
-            }
-        }
-    }
-
     /// The samples of every element, for panels that show every element.
     ///
     /// # Errors

@@ -41,4 +41,6 @@ pub struct Subject {
     pub minus: Option<Shared<RangeAngleMap>>,
     pub paint: Paint,
     pub projection: Projection,
+    /// Whether a map of few columns is painted on more of them. Masks are not: their verdicts are per cell.
+    pub is_fine: bool,
 }

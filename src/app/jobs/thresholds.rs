@@ -57,15 +57,11 @@ impl Plan for ThresholdPlan {
             true => "Cancelled; η stays as it is.".to_owned(),
             false => error.to_string(),
         })?;
-        let found = KeptThreshold { eta: rounded_up(found.eta), ..found };
+        // Rounded up to three decimals, as fields show it: a higher threshold has no more false alarms.
+        let found = KeptThreshold { eta: (found.eta * 1000.0).ceil() / 1000.0, ..found };
         teller.row(KeptEta { method: method.name(), eta: found.eta, told: told(search, method.name(), &found) });
         Ok(())
     }
-}
-
-/// A threshold rounded up to three decimals, as fields show it. A higher threshold has no more false alarms.
-fn rounded_up(eta: f32) -> f32 {
-    (eta * 1000.0).ceil() / 1000.0
 }
 
 /// The message about a threshold: its rates, and the scenes it was tried on.

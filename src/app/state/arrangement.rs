@@ -20,8 +20,10 @@ struct Left {
 /// Tiles of the panels, for the task on screen and for others.
 #[derive(Serialize, Deserialize)]
 pub struct Arrangement {
-    tree: Tree<Panel>,
-    maximised: Option<Panel>,
+    /// The tiles of the task on screen.
+    pub tree: Tree<Panel>,
+    /// The panel that fills the window, if any.
+    pub maximised: Option<Panel>,
     /// The task on screen.
     #[serde(default)]
     task: Task,
@@ -36,7 +38,7 @@ pub struct Arrangement {
     taken: Vec<Taken>,
     /// The view in front of each tile with several views, where it is not the first.
     #[serde(default)]
-    views: BTreeMap<Panel, Panel>,
+    pub views: BTreeMap<Panel, Panel>,
     /// A panel opened in this frame, which gets its least size once laid out.
     #[serde(skip)]
     opened: Option<Panel>,
@@ -116,11 +118,6 @@ impl Arrangement {
         self.set_open(panel, true);
     }
 
-    /// The tiles of the task on screen.
-    pub fn tree_mut(&mut self) -> &mut Tree<Panel> {
-        &mut self.tree
-    }
-
     /// Sets the panels drawn in this frame; true where they changed.
     pub fn set_shown(&mut self, shown: BTreeSet<Panel>) -> bool {
         let changed = shown != self.shown;
@@ -133,11 +130,6 @@ impl Arrangement {
         &self.shown
     }
 
-    /// The panel that fills the window, if any.
-    pub fn maximised(&self) -> Option<Panel> {
-        self.maximised
-    }
-
     /// Whether a panel fills the window.
     pub fn is_maximised(&self, panel: Panel) -> bool {
         self.maximised == Some(panel.tile()) && self.is_in_front_of_tile(panel)
@@ -148,11 +140,6 @@ impl Arrangement {
         let is_maximised = self.is_maximised(panel);
         self.bring_to_front(panel);
         self.maximised = Some(panel.tile()).filter(|_| !is_maximised);
-    }
-
-    /// The view in front of each tile with several views, where it is not the first.
-    pub fn views(&self) -> &BTreeMap<Panel, Panel> {
-        &self.views
     }
 
     pub fn view(&self, tile: Panel) -> Panel {
@@ -201,11 +188,6 @@ impl Arrangement {
             self.bring_to_front(view);
             self.maximised = Some(view.tile());
         }
-    }
-
-    /// Ends that a panel fills the window.
-    pub fn restore(&mut self) {
-        self.maximised = None;
     }
 
     /// Whether a panel has a visible tile, possibly behind another tab, and is the view in front of it.
@@ -273,8 +255,7 @@ impl Arrangement {
         if let Some(tabs) = tabs {
             self.tree.move_tile_to_container(id, tabs, usize::MAX, false);
         }
-        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == panel));
-        self.opened = Some(panel);
+        self.set_pane_open(id, panel, true);
     }
 
     /// Swaps a map with the map in the largest tile.

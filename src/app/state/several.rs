@@ -92,14 +92,8 @@ pub struct Several {
 impl Default for Several {
     fn default() -> Self {
         let parameter = Parameter::default();
-        Several {
-            parameter,
-            map: parameter.usual_map(),
-            low: 0.0,
-            high: 0.0,
-            count: MAX_MAPS,
-            methods: BTreeSet::new(),
-        }
+        let (map, methods) = (parameter.usual_map(), BTreeSet::new());
+        Several { parameter, map, low: 0.0, high: 0.0, count: MAX_MAPS, methods }
     }
 }
 
@@ -128,12 +122,8 @@ impl Several {
         method: Option<&Arc<dyn Reconstructor>>,
         methods: &[Arc<dyn Reconstructor>],
     ) -> Vec<Variant> {
-        let like = |label: String, radar: Radar, floor: Floor| Variant {
-            label,
-            radar,
-            floor,
-            method: method.map(Shared::from),
-        };
+        let method = method.map(Shared::from);
+        let like = |label: String, radar: Radar, floor: Floor| Variant { label, radar, floor, method: method.clone() };
         let mut variants: Vec<Variant> = match self.parameter {
             Parameter::Window => WindowFunction::ALL
                 .into_iter()

@@ -125,7 +125,7 @@ impl Failures {
         let conditions = Conditions { floor, normalisation, radar: radar.clone() };
         self.take_in_rows();
         let layout = plan.campaign.layout.as_deref().map(ranges).unwrap_or_default();
-        if *self.table.conditions() != conditions || !self.table.is_of_this_format() || !self.table.hears(&layout) {
+        if *self.table.conditions() != conditions || !self.table.is_alike(&layout) {
             self.replace(Vec::new(), conditions);
         }
         // The run's times are measured, so it needs the processor.

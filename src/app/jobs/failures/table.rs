@@ -86,14 +86,9 @@ impl RowTable {
         true
     }
 
-    /// Whether all rows have this program's format, so that new rows may stand beside them.
-    pub fn is_of_this_format(&self) -> bool {
-        self.rows.iter().all(|row| row.version == Some(FORMAT))
-    }
-
-    /// Whether all rows have the layout `layout`, in the format of [`Row::layout`].
-    pub fn hears(&self, layout: &str) -> bool {
-        self.rows.iter().all(|row| &*row.layout == layout)
+    /// Whether all rows have this program's format and the layout `layout`, so that new rows of it may stand beside them.
+    pub fn is_alike(&self, layout: &str) -> bool {
+        self.rows.iter().all(|row| row.version == Some(FORMAT) && &*row.layout == layout)
     }
 
     /// Whether the table has a row of the same scene and method.

@@ -106,12 +106,6 @@ impl Album {
     pub fn insert(&self, generation: u64, row: &Row, made: Made) {
         platform::lock(&self.0).insert((generation, RowKey::of(row)), made);
     }
-
-    /// Number of thumbnails.
-    #[cfg(test)]
-    fn len(&self) -> usize {
-        platform::lock(&self.0).made.len()
-    }
 }
 
 /// Rows whose thumbnails are missing.
@@ -248,7 +242,7 @@ mod tests {
         for index in 0..10_000 {
             album.insert(1, &some_row(index, "live"), Ok(thumbnail.clone()));
         }
-        assert!(album.len() <= MAX_THUMBNAILS);
+        assert!(platform::lock(&album.0).made.len() <= MAX_THUMBNAILS);
         assert!(album.get(1, &some_row(9999, "live")).is_some(), "the latest stay");
         assert!(album.get(2, &some_row(9999, "live")).is_none(), "another table's are others");
     }

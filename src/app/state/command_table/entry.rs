@@ -51,6 +51,11 @@ pub(super) const fn command_shift(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
 }
 
-pub(super) fn named(command: Command, name: String, tooltip: &'static str, key: Option<KeyboardShortcut>) -> Entry {
-    Entry { command, name: name.into(), tooltip, key }
+pub(super) fn named(
+    command: impl Into<Command>,
+    name: impl Into<Cow<'static, str>>,
+    tooltip: &'static str,
+    key: Option<KeyboardShortcut>,
+) -> Entry {
+    Entry { command: command.into(), name: name.into(), tooltip, key }
 }

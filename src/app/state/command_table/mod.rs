@@ -25,7 +25,7 @@ const TASK_KEYS: [Key; 4] = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
 
 fn arrange(task: Task, digit: Key) -> Entry {
     let name = format!("Arrange for: {}", task.name());
-    named(Command::Window(WindowCommand::ArrangeFor(task)), name, task.describe(), alt(digit))
+    named(WindowCommand::ArrangeFor(task), name, task.describe(), alt(digit))
 }
 
 fn random(kind: Kind) -> Entry {
@@ -36,25 +36,23 @@ fn random(kind: Kind) -> Entry {
         None => ("A scene of a kind that the thesis' sets leave out", None),
     };
     let name = format!("Random scene: {}", kind.description());
-    named(Command::Document(DocumentCommand::RandomScene(kind)), name, tooltip, key)
+    named(DocumentCommand::RandomScene(kind), name, tooltip, key)
 }
 
 /// Commands that show and hide each panel, open pages of help, maximise a panel, and copy a map.
 fn of_panels() -> Vec<Entry> {
     let toggle = |panel: Panel| {
         let name = format!("Show or hide: {}", panel.title());
-        named(Command::Window(WindowCommand::TogglePanel(panel)), name, panel.describe(), panel.key().and_then(key))
+        named(WindowCommand::TogglePanel(panel), name, panel.describe(), panel.key().and_then(key))
     };
     let maximise = |panel: Panel| {
         let name = format!("Maximise: {}", panel.title());
-        named(Command::Window(WindowCommand::Maximise(panel)), name, panel.describe(), None)
+        named(WindowCommand::Maximise(panel), name, panel.describe(), None)
     };
-    let help = |page: HelpPage| {
-        named(Command::Window(WindowCommand::Help(page)), page.name().to_owned(), page.describe(), None)
-    };
+    let help = |page: HelpPage| named(WindowCommand::Help(page), page.name(), page.describe(), None);
     let copy = |kind: MapKind| {
         let tooltip = "Copy the whole map to the clipboard as a picture, a pixel a cell";
-        named(Command::Export(ExportCommand::CopyMap(kind)), format!("Copy picture: {}", kind.title()), tooltip, None)
+        named(ExportCommand::CopyMap(kind), format!("Copy picture: {}", kind.title()), tooltip, None)
     };
     let panels = || Panel::all().into_iter();
     let listed = panels().map(toggle).chain(HelpPage::ALL.map(help)).chain(panels().map(maximise));
@@ -67,7 +65,7 @@ fn preset((index, preset): (usize, &presets::Preset)) -> Entry {
         true => "Open a scene on which a method fails, with the reason in its notes",
         false => "Open a scene the thesis talks about",
     };
-    named(Command::Document(DocumentCommand::Preset(index)), name, tooltip, None)
+    named(DocumentCommand::Preset(index), name, tooltip, None)
 }
 
 /// Every command of the table, of the panels, of the kinds of random scenes and of the presets, in the order of the palette. The list has those that a desktop
@@ -93,12 +91,12 @@ fn listed_where(keys: impl Fn(&Command, Option<KeyboardShortcut>) -> Option<Opti
 /// Every command of desktops and pages.
 fn everything() -> Vec<Entry> {
     let radar = |(index, preset): (usize, &RadarPreset)| {
-        named(Command::Radar(RadarCommand::Preset(index)), format!("Radar: {}", preset.name), preset.about, None)
+        named(RadarCommand::Preset(index), format!("Radar: {}", preset.name), preset.about, None)
     };
     let recording = |(index, preset): (usize, &recordings::Preset)| {
         let name = format!("Recording: {}", preset.id.replace('-', " "));
         let tooltip = "Open samples that a radar measured";
-        named(Command::Document(DocumentCommand::Recording(index)), name, tooltip, None)
+        named(DocumentCommand::Recording(index), name, tooltip, None)
     };
     let mut all = [scenes::COMMANDS, views::COMMANDS].concat();
     all.extend(Kind::all().map(random));
