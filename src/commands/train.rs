@@ -51,7 +51,7 @@ pub struct Args {
     untrained: bool,
 
     /// Backend that computes tensors
-    #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", Backend::NAMES.join(", ")))]
+    #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", Backend::names()))]
     backend: Backend,
 }
 
