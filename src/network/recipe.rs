@@ -151,7 +151,7 @@ impl Recipe {
         let momentum = if let Optimizer::Sgd { momentum, .. } = self.optimizer { momentum } else { 0.0 };
         let decay = self.decay.clone().unwrap_or(Decay { epochs: 1, factor: 1.0 });
         let total: u64 = self.scenes.iter().map(|s| u64::from(s.count)).sum();
-        let of_all: Vec<Check> = vec![
+        let of_all: [Check; 9] = [
             (rate.is_finite() && rate > 0.0, "optimizer.learning_rate", &rate, "a number above 0"),
             ((0.0..1.0).contains(&momentum), "optimizer.momentum", &momentum, "at least 0 and below 1"),
             ((1..=MAX_BATCH).contains(&self.batch), "batch", &self.batch, "1 to 1024"),
