@@ -4,7 +4,7 @@ use crate::errors::{argument, value};
 use apertura::radar::{LayoutKind, Radar};
 use apertura::scene::Reflector;
 use apertura::signal::TwoEnds;
-use ndarray::{Array, Array2, ArrayBase, Axis, Data, Dimension};
+use ndarray::{Array, Array2, ArrayBase, Axis, Data, Dimension, IntoDimension};
 use num_complex::Complex64;
 use numpy::{Element, PyArray, PyArrayDescrMethods, PyReadonlyArray, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -63,24 +63,36 @@ where
     Ok(array.as_array().to_owned())
 }
 
+/// Samples of this shape.
+pub fn samples<D: Dimension>(
+    from: &Bound<'_, PyAny>,
+    what: &str,
+    shape: impl IntoDimension<Dim = D>,
+) -> PyResult<Array<Complex64, D>> {
+    let shape = shape.into_dimension();
+    let array: Array<Complex64, D> = numbers(from, what, &format!("{:?}", shape.slice()))?;
+    if array.raw_dim() != shape {
+        let found = array.shape();
+        return Err(value(format!("{what}: their shape is {found:?}; expected {:?}", shape.slice())));
+    }
+    Ok(array)
+}
+
 /// The samples of both ends, `[2, end elements, samples]`.
 pub fn ends(from: &Bound<'_, PyAny>, radar: &Radar) -> PyResult<TwoEnds> {
-    let shape = format!("[2, {}, {}]", radar.end_elements, radar.samples);
-    let both: ndarray::Array3<Complex64> = numbers(from, "ends", &shape)?;
-    if both.dim() != (2, radar.end_elements, radar.samples) {
-        return Err(value(format!("ends: their shape is {:?}; expected {shape}", both.shape())));
-    }
+    let both = samples(from, "ends", [2, radar.end_elements, radar.samples])?;
     let end = |i: usize| both.index_axis(Axis(0), i).to_owned();
     Ok(TwoEnds { first: end(0), last: end(1) })
 }
 
+/// Two arrays of one shape as one, `[2, rows, columns]`.
+pub fn stacked<T: Clone>(both: [&Array2<T>; 2]) -> ndarray::Array3<T> {
+    ndarray::stack(Axis(0), &both.map(|one| one.view())).expect("the two have one shape")
+}
+
 /// Both ends as one array, `[2, end elements, samples]`.
 pub fn both_ends(ends: &TwoEnds) -> ndarray::Array3<Complex64> {
-    let (elements, samples) = ends.first.dim();
-    let mut both = ndarray::Array3::zeros((2, elements, samples));
-    both.index_axis_mut(Axis(0), 0).assign(&ends.first);
-    both.index_axis_mut(Axis(0), 1).assign(&ends.last);
-    both
+    stacked([&ends.first, &ends.last])
 }
 
 /// Numbers of the elements that an argument `layout` names or lists; `None` for the two ends.

@@ -122,11 +122,8 @@ impl LinkBudget {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyType>, (f64, f64, f64, Option<f64>)) {
-        let radar::LinkBudget { transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees } =
-            self.0;
-        (
-            PyType::new::<LinkBudget>(py),
-            (transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees),
-        )
+        let own = self.0;
+        let levels = (own.transmit_power_dbm, own.antenna_gain_dbi, own.noise_figure_db, own.half_power_width_degrees);
+        (PyType::new::<LinkBudget>(py), levels)
     }
 }

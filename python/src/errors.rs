@@ -7,6 +7,7 @@ use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyPermissionError, PyRunt
 use pyo3::prelude::*;
 use std::fmt::Display;
 use std::io;
+use std::path::Path;
 use std::str::FromStr;
 
 /// A ValueError with the text of `error`.
@@ -34,6 +35,11 @@ pub fn system(source: &io::Error, words: impl Display) -> PyErr {
     }
 }
 
+/// The error of the file at `path` that the system could not read or write.
+pub fn at(path: &Path) -> impl Fn(io::Error) -> PyErr {
+    move |error| system(&error, format!("{}: {error}", path.display()))
+}
+
 /// A scene file that can't be read or written.
 pub fn scene_file(error: SceneFileError) -> PyErr {
     match &error {
@@ -58,25 +64,8 @@ pub fn argument(py: Python<'_>, message: String) -> PyErr {
     made.map_or_else(|error| error, PyErr::from_value)
 }
 
-/// A whole number from 0 to the largest of `T`, as the argument of this name.
-pub fn whole<T: TryFrom<i128> + Bounded>(name: &str, number: i128) -> PyResult<T> {
-    T::try_from(number)
-        .map_err(|_| value(format!("{name} is {number}; expected a whole number from 0 to {}", T::MAX_COUNT)))
-}
-
-/// Unsigned numbers.
-pub trait Bounded {
-    const MAX_COUNT: u64;
-}
-
-impl Bounded for u64 {
-    const MAX_COUNT: u64 = u64::MAX;
-}
-
-impl Bounded for usize {
-    const MAX_COUNT: u64 = usize::MAX as u64;
-}
-
-impl Bounded for u32 {
-    const MAX_COUNT: u64 = u32::MAX as u64;
+/// A whole number from 0 to the largest of the unsigned type `T`, as the argument of this name.
+pub fn whole<T: TryFrom<i128>>(name: &str, number: i128) -> PyResult<T> {
+    let most = u64::MAX >> (64 - 8 * size_of::<T>());
+    T::try_from(number).map_err(|_| value(format!("{name} is {number}; expected a whole number from 0 to {most}")))
 }

@@ -1,7 +1,7 @@
 //! Examples to train on.
 
 use crate::arrays::{self, both_ends, owned};
-use crate::errors::{named, system, value, whole};
+use crate::errors::{at, named, value, whole};
 use crate::radar::{Radar, or_default};
 use crate::scene::{Scene, purpose_of, set_name};
 use crate::work::{self, Progress};
@@ -87,7 +87,7 @@ impl Examples {
         layout: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let radars = radars_of(radar)?;
-        let layout = arrays::layout_of(layout, &seen_by(&radars))?;
+        let layout = arrays::layout_of(layout, &radars.shape())?;
         let fields = PyDict::new(py);
         fields.set_item("mixture", mixture)?;
         fields.set_item("seed", seed)?;
@@ -242,14 +242,6 @@ fn radars_of(radar: Option<&Bound<'_, PyAny>>) -> PyResult<Radars> {
     }
 }
 
-/// A radar with the elements of all of `radars`: those that are drawn have as many as that of table 3.1.
-fn seen_by(radars: &Radars) -> apertura::radar::Radar {
-    match radars {
-        Radars::Fixed(radar) => (**radar).clone(),
-        Radars::Random => apertura::radar::Radar::default(),
-    }
-}
-
 /// Writes examples as files: `apertura dataset`. `docs/data.md` says what is in them; `apertura.data.Files` reads them.
 ///
 /// Args:
@@ -299,7 +291,7 @@ pub fn dataset(
         sets.iter().map(|set| Kind::for_training(&set_name(set)?).map_err(value)).collect();
     let kinds = kinds?;
     let radars = radars_of(radar)?;
-    let layout = arrays::layout_of(layout, &seen_by(&radars))?;
+    let layout = arrays::layout_of(layout, &radars.shape())?;
     let parts: Result<Vec<ExamplePart>, _> = match arrays {
         None => Ok(ExamplePart::usual(&radars, layout.as_deref())),
         Some(names) => names.iter().map(|name| name.parse()).collect(),
@@ -319,7 +311,7 @@ pub fn dataset(
         shard: whole("shard", shard)?,
     };
     work::run(py, progress, |task| files::write(&folder, &request, task))?.map(|_| ()).map_err(|error| match error {
-        DatasetError::File { path, source } => system(&source, format!("{}: {source}", path.display())),
+        DatasetError::File { path, source } => at(&path)(source),
         other => value(other),
     })
 }

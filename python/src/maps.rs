@@ -1,6 +1,6 @@
 //! Samples and the maps made of them.
 
-use crate::arrays::{both_ends, numbers, owned, view};
+use crate::arrays::{self, both_ends, owned, stacked, view};
 use crate::errors::{named, value};
 use crate::objects::{self, of_elements};
 use crate::radar::{Radar, or_default};
@@ -9,7 +9,6 @@ use apertura::maps::focus::map_of;
 use apertura::maps::{Aperture, LogMap, Normalisation, RangeAngleMap};
 use apertura::radar::{self, BuiltArray, End};
 use apertura::signal::BeatSignal;
-use ndarray::{Array2, Array3, Axis};
 use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
@@ -109,10 +108,7 @@ impl Maps {
             let map = |end| map_of(radar, elements, signal, Aperture::End(end)).log_magnitude();
             End::BOTH.map(|end| map(end).normalise(normalisation).lambda)
         })?;
-        let mut both = Array3::zeros((2, radar.samples, radar.elements));
-        both.index_axis_mut(Axis(0), 0).assign(&first);
-        both.index_axis_mut(Axis(0), 1).assign(&last);
-        Ok(owned(py, both))
+        Ok(owned(py, stacked([&first, &last])))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyDict>,))> {
@@ -143,11 +139,7 @@ impl Maps {
 #[pyo3(signature = (samples, radar=None, *, normalisation="min-max"))]
 pub fn maps(samples: &Bound<'_, PyAny>, radar: Option<&Radar>, normalisation: &str) -> PyResult<Maps> {
     let radar = or_default(radar);
-    let shape = format!("[{}, {}]", radar.elements, radar.samples);
-    let samples: Array2<Complex64> = numbers(samples, "samples", &shape)?;
-    if samples.dim() != (radar.elements, radar.samples) {
-        return Err(value(format!("samples: their shape is {:?}; expected {shape}", samples.shape())));
-    }
+    let samples = arrays::samples(samples, "samples", [radar.elements, radar.samples])?;
     if let Some(((element, sample), _)) = samples.indexed_iter().find(|(_, v)| !(v.re.is_finite() && v.im.is_finite()))
     {
         return Err(value(format!("sample {sample} of element {element} is not finite")));

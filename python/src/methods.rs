@@ -1,7 +1,7 @@
 //! Reconstruction methods.
 
 use crate::arrays::{ends, layout_of, numbers};
-use crate::errors::{argument, named, system, value};
+use crate::errors::{argument, at, named, value};
 use crate::function::{Function, Said, is_name};
 use crate::radar::{Radar, or_default};
 use crate::reconstruction::Reconstruction;
@@ -74,9 +74,7 @@ fn of_weights(path: PathBuf, called: Option<&str>) -> PyResult<Method> {
             "called is \"{name}\"; expected 1 to 40 letters, digits, \"-\", \"_\" or \".\", and no name of another method"
         )));
     }
-    if let Err(error) = std::fs::File::open(&path) {
-        return Err(system(&error, format!("{}: {error}", path.display())));
-    }
+    std::fs::File::open(&path).map_err(at(&path))?;
     let live = apertura::network::live_from_file(&path, &name).map_err(value)?;
     Ok(Method { inner: Arc::new(live), made_of: MadeOf::Weights(path) })
 }

@@ -2,7 +2,7 @@
 
 use crate::arrays::owned;
 use crate::budget::{LinkBudget, budget_of, link_figures};
-use crate::errors::{scene_file, system, value, whole};
+use crate::errors::{at, scene_file, value, whole};
 use crate::radar_fields::{antennas_of, carrier_name, carrier_of, fields_of, replaced, text_of, usual_of, window_of};
 use apertura::files::read_bounded;
 use apertura::radar::presets::{ALL, RadarPreset};
@@ -157,7 +157,7 @@ impl Radar {
     ///     ValueError: It holds no radar; the message names the line.
     #[staticmethod]
     fn load(path: PathBuf) -> PyResult<Self> {
-        let bytes = read_bounded(&path, MAX_FILE_BYTES).map_err(|e| system(&e, format!("{}: {e}", path.display())))?;
+        let bytes = read_bounded(&path, MAX_FILE_BYTES).map_err(at(&path))?;
         let told = |what: String| value(format!("{}: {what}", path.display()));
         let text = String::from_utf8(bytes).map_err(|_| told("is not text".to_owned()))?;
         radar_of(&text).map(|(radar, _)| Radar(radar)).map_err(told)

@@ -8,11 +8,8 @@ use pyo3::types::PyDict;
 
 /// A carrier by its name.
 pub fn carrier_of(name: &str) -> PyResult<Carrier> {
-    match name {
-        "one-way" => Ok(Carrier::OneWay),
-        "two-way" => Ok(Carrier::TwoWay),
-        _ => Err(value(format!("carrier is \"{name}\"; expected one-way or two-way"))),
-    }
+    let unknown = |_| value(format!("carrier is \"{name}\"; expected one-way or two-way"));
+    serde_json::from_value(name.into()).map_err(unknown)
 }
 
 /// Name of a carrier.

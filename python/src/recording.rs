@@ -1,6 +1,6 @@
 //! Recordings: samples that a radar measured.
 
-use crate::arrays::{self, both_ends, numbers, owned, view};
+use crate::arrays::{self, both_ends, owned, view};
 use crate::errors;
 use crate::errors::named;
 use crate::maps::Maps;
@@ -10,7 +10,6 @@ use apertura::reconstruct::NoisePrior;
 use apertura::recording::presets::{ALL, Preset};
 use apertura::recording::{self, Recorded, file::load};
 use apertura::signal::BeatSignal;
-use ndarray::Array2;
 use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
@@ -177,11 +176,7 @@ pub fn pickled(
     let radar = radar.0.clone();
     let samples = match samples {
         Some(samples) => {
-            let shape = format!("[{}, {}]", radar.elements, radar.samples);
-            let samples: Array2<Complex64> = numbers(samples, "samples", &shape)?;
-            if samples.dim() != (radar.elements, radar.samples) {
-                return Err(errors::value(format!("samples: their shape is {:?}; expected {shape}", samples.shape())));
-            }
+            let samples = arrays::samples(samples, "samples", [radar.elements, radar.samples])?;
             Recorded::All(BeatSignal { samples })
         }
         None => Recorded::Ends(arrays::ends(ends, &radar)?),

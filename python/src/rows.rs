@@ -1,6 +1,6 @@
 //! Rows of evaluations: read, written, and as dicts.
 
-use crate::errors::{runtime, system, value};
+use crate::errors::{at, runtime, value};
 use crate::work;
 use apertura::evaluate::rows::{self, Column, Row, read_rows as read, write_rows};
 use apertura::files::write_atomically;
@@ -27,7 +27,7 @@ pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>
             format!("{}: rows are written as CSV; expected a name that does not end in .parquet", path.display());
         return Err(value(told));
     }
-    write_atomically(&path, |out| write_rows(out, &rows)).map_err(|e| system(&e, format!("{}: {e}", path.display())))
+    write_atomically(&path, |out| write_rows(out, &rows)).map_err(at(&path))
 }
 
 /// Rows from dicts, read as the program reads a file of rows.
@@ -59,7 +59,7 @@ pub fn rows_of(py: Python<'_>, rows: &[Bound<'_, PyDict>]) -> PyResult<Vec<Row>>
 ///     ValueError: It is no such table; the message names the line and column.
 #[pyfunction]
 pub fn read_rows(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyList>> {
-    let file = std::fs::File::open(&path).map_err(|e| system(&e, format!("{}: {e}", path.display())))?;
+    let file = std::fs::File::open(&path).map_err(at(&path))?;
     let rows = work::run(py, None, |_| read(file))?.map_err(|e| value(format!("{}: {e}", path.display())))?;
     list_of(py, &rows)
 }

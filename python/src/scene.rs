@@ -41,20 +41,13 @@ use std::path::PathBuf;
 pub struct Scene(pub SceneFile);
 
 pub fn purpose_of(name: &str) -> PyResult<Purpose> {
-    match name {
-        "training" => Ok(Purpose::Training),
-        "validation" => Ok(Purpose::Validation),
-        "test" => Ok(Purpose::Test),
-        _ => Err(value(format!("purpose is \"{name}\"; expected training, validation or test"))),
-    }
+    let unknown = |_| value(format!("purpose is \"{name}\"; expected training, validation or test"));
+    serde_json::from_value(name.into()).map_err(unknown)
 }
 
 pub fn reading_of(name: &str) -> PyResult<Reading> {
-    match name {
-        "program" => Ok(Reading::Program),
-        "text" => Ok(Reading::Text),
-        _ => Err(value(format!("reading is \"{name}\"; expected program or text"))),
-    }
+    let unknown = |_| value(format!("reading is \"{name}\"; expected program or text"));
+    serde_json::from_value(name.into()).map_err(unknown)
 }
 
 /// A set's name, or its number.

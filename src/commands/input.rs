@@ -44,8 +44,7 @@ pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, C
     let recording = match config {
         None => recording::file::load(path),
         Some(_) if !recording::raw::is_raw_at(path) => {
-            let message = "--config is that of a raw capture or an array; expected one as input";
-            return Err(CommandError(format!("{}: {message}", path.display())));
+            return Err(CommandError::on(path)("--config is that of a raw capture or an array; expected one as input"));
         }
         Some(config) => recording::raw::open(path, Some(config)),
     }?;

@@ -112,7 +112,7 @@ impl Args {
             }
             InputArgs::Scene(_) if of_frames => {
                 let message = "a scene has no frames; expected a recording for --all-frames or a .gif";
-                return Err(CommandError(format!("{}: {message}", self.input.display())));
+                return Err(CommandError::on(&self.input)(message));
             }
             InputArgs::Scene(file) => self.of_scene(&file, format)?,
             InputArgs::Recording(recording) if of_frames => self.of_frames(&recording, format)?,
@@ -130,10 +130,8 @@ impl Args {
             .map_err(CommandError::on(&self.input))?;
         if let Some(format) = format {
             let style = Style { floor: self.floor.floor, ..self.style() };
-            return write_file(
-                &self.output,
-                &compose(radar, scene, &signal, self.method(radar)?.as_ref(), &style, format)?,
-            );
+            let bytes = compose(radar, scene, &signal, self.method(radar)?.as_ref(), &style, format)?;
+            return write_file(&self.output, &bytes);
         }
         let heard = self.heard(radar, Some(&signal))?;
         let (noise, normalisation) = (self.floor.floor.into(), self.normalisation);
@@ -151,7 +149,7 @@ impl Args {
         }
         if format.is_some() {
             let message = "a picture shows one frame; expected .gif or .npz beside --all-frames";
-            return Err(CommandError(format!("{}: {message}", self.output.display())));
+            return Err(CommandError::on(&self.output)(message));
         }
         if ends_in(&self.output, "gif") {
             let (method, style) = (self.method(radar)?, self.style());

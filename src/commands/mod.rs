@@ -1,7 +1,7 @@
 //! The command line: one subcommand a file.
 //!
-//! A subcommand is a file with `pub struct Args` (clap) and `Args::run(self) -> Result<(), CommandError>`, a variant of
-//! `Command` and a line in `Command::run`. Errors of other rooms become a [`CommandError`] by `?`.
+//! A subcommand is a file with `pub struct Args` (clap) and `Args::run(self) -> Result<(), CommandError>`, and
+//! a line in `commands!`. Errors of other rooms become a [`CommandError`] by `?`.
 
 mod arguments;
 mod bench;
@@ -67,61 +67,47 @@ const ENVIRONMENT: &str = "Environment:
                  least squares and burn choose for themselves
   APERTURA_LOG   messages on standard error, such as debug (default: warnings)";
 
-#[derive(Debug, Subcommand)]
-enum Command {
-    Bench(bench::Args),
-    Bounds(bounds::Args),
-    Budget(budget::Args),
-    #[cfg(feature = "live")]
-    Dataset(dataset::Args),
-    Evaluate(evaluate::Args),
-    #[cfg(feature = "network")]
-    Figures(figures::Args),
-    Import(import::Args),
-    Layouts(layouts::Args),
-    #[cfg(feature = "app")]
-    Lesson(lesson::Args),
-    Listen(listen::Args),
-    Maps(maps::Args),
-    Methods(methods::Args),
-    RangeDoppler(range_doppler::Args),
-    Reconstruct(reconstruct::Args),
-    Robustness(robustness::Args),
-    Scenes(scenes::Args),
-    Threshold(threshold::Args),
-    #[cfg(feature = "network")]
-    Train(train::Args),
-    Worsen(worsen::Args),
+macro_rules! commands {
+    ($($(#[$built:meta])* $name:ident of $file:ident,)+) => {
+        #[derive(Debug, Subcommand)]
+        enum Command {
+            $($(#[$built])* $name($file::Args),)+
+        }
+
+        impl Command {
+            fn run(self) -> Result<(), CommandError> {
+                match self {
+                    $($(#[$built])* Command::$name(args) => args.run(),)+
+                }
+            }
+        }
+    };
 }
 
-impl Command {
-    fn run(self) -> Result<(), CommandError> {
-        match self {
-            Command::Bench(args) => args.run(),
-            Command::Bounds(args) => args.run(),
-            Command::Budget(args) => args.run(),
-            #[cfg(feature = "live")]
-            Command::Dataset(args) => args.run(),
-            Command::Evaluate(args) => args.run(),
-            #[cfg(feature = "network")]
-            Command::Figures(args) => args.run(),
-            Command::Import(args) => args.run(),
-            Command::Layouts(args) => args.run(),
-            #[cfg(feature = "app")]
-            Command::Lesson(args) => args.run(),
-            Command::Listen(args) => args.run(),
-            Command::Maps(args) => args.run(),
-            Command::Methods(args) => args.run(),
-            Command::RangeDoppler(args) => args.run(),
-            Command::Reconstruct(args) => args.run(),
-            Command::Robustness(args) => args.run(),
-            Command::Scenes(args) => args.run(),
-            Command::Threshold(args) => args.run(),
-            #[cfg(feature = "network")]
-            Command::Train(args) => args.run(),
-            Command::Worsen(args) => args.run(),
-        }
-    }
+commands! {
+    Bench of bench,
+    Bounds of bounds,
+    Budget of budget,
+    #[cfg(feature = "live")]
+    Dataset of dataset,
+    Evaluate of evaluate,
+    #[cfg(feature = "network")]
+    Figures of figures,
+    Import of import,
+    Layouts of layouts,
+    #[cfg(feature = "app")]
+    Lesson of lesson,
+    Listen of listen,
+    Maps of maps,
+    Methods of methods,
+    RangeDoppler of range_doppler,
+    Reconstruct of reconstruct,
+    Robustness of robustness,
+    Scenes of scenes,
+    Threshold of threshold,
+    #[cfg(feature = "network")]
+    Train of train,
+    Worsen of worsen,
 }
 
 /// Runs the program; errors go to standard error and make the exit status non-zero.

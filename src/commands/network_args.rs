@@ -18,7 +18,7 @@ pub struct NetworkArgs {
 
     /// Backend of the thesis' networks (live has its own)
     #[cfg(feature = "network")]
-    #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", crate::network::backend::Backend::NAMES.join(", ")))]
+    #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", crate::network::backend::Backend::names()))]
     backend: crate::network::backend::Backend,
 
     #[command(flatten)]

@@ -80,7 +80,7 @@ impl Args {
             return self.of_recording(format);
         }
         let InputArgs::Scene(file) = InputArgs::load(&self.input)? else {
-            return Err(CommandError(format!("{}: expected a scene or a raw capture", self.input.display())));
+            return Err(CommandError::on(&self.input)("expected a scene or a raw capture"));
         };
         let SceneFile { scene, mut radar } = *file;
         if let Some(microseconds) = self.interval {
@@ -104,12 +104,11 @@ impl Args {
         ];
         if let Some((name, _)) = told.into_iter().find(|(_, said)| *said) {
             let message = format!("{name} is a scene's; a recording has chirps of its own");
-            return Err(CommandError(format!("{}: {message}", self.input.display())));
+            return Err(CommandError::on(&self.input)(message));
         }
         let recording = load_recording(&self.input, self.capture.config.as_deref())?;
         let Some(origin) = &recording.origin else {
-            let message = "counts no loops; one chirp tells no velocity";
-            return Err(CommandError(format!("{}: {message}", self.input.display())));
+            return Err(CommandError::on(&self.input)("counts no loops; one chirp tells no velocity"));
         };
         let FrameLoops { radar, mut samples, knows_interval } = origin.loops()?;
         if !knows_interval {
@@ -139,8 +138,7 @@ impl Args {
         match format {
             None => write_range_doppler(&self.output, radar, scene, map).map_err(CommandError::on(&self.output))?,
             Some(format) => {
-                let bytes = compose_range_doppler(radar, map, self.normalisation, self.colours, format);
-                let bytes = bytes?;
+                let bytes = compose_range_doppler(radar, map, self.normalisation, self.colours, format)?;
                 write_file(&self.output, &bytes)?;
             }
         }

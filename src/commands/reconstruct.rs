@@ -71,8 +71,7 @@ pub struct Args {
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         if !ends_in(&self.output, "npz") {
-            let name = self.output.display();
-            return Err(CommandError(format!("{name}: an archive is written; expected a name ending in .npz")));
+            return Err(CommandError::on(&self.output)("an archive is written; expected a name ending in .npz"));
         }
         let own = self.network.start_own()?;
         // A wrong name is reported before any file is read.
@@ -96,8 +95,7 @@ impl Args {
 
     fn of_frames(&self, asked: Option<Arc<dyn Reconstructor>>) -> Result<(), CommandError> {
         if !recording::file::is_recording_at(&self.input) {
-            let name = self.input.display();
-            return Err(CommandError(format!("{name}: expected a recording beside --all-frames")));
+            return Err(CommandError::on(&self.input)("expected a recording beside --all-frames"));
         }
         let opened = load_recording(&self.input, self.capture.config.as_deref())?;
         let (radar, count) = (&opened.radar, frames::count(&opened));
@@ -136,8 +134,7 @@ impl Args {
     fn input(&self) -> Result<Input, CommandError> {
         if recording::file::is_recording_at(&self.input) {
             if self.radar.is_given() {
-                let message = "a recording says which radar made it; leave --radar out";
-                return Err(CommandError(format!("{}: {message}", self.input.display())));
+                return Err(CommandError::on(&self.input)("a recording says which radar made it; leave --radar out"));
             }
             return self.of_recording(load_recording(&self.input, self.capture.config.as_deref())?);
         }
@@ -150,7 +147,7 @@ impl Args {
         let own = read_radar(&mut archive).map_err(CommandError::on(&self.input))?;
         if self.radar.is_given() && own.as_ref().is_some_and(|own| *own != asked) {
             let message = "the archive says which radar made it, and --radar names another; leave --radar out";
-            return Err(CommandError(format!("{}: {message}", self.input.display())));
+            return Err(CommandError::on(&self.input)(message));
         }
         let radar = own.unwrap_or(asked);
         let layout = self.layout.numbers(&radar)?;
@@ -233,7 +230,7 @@ impl Args {
             None => recording.two_ends(),
             Some(layout) => {
                 let alone = "the recording holds the samples of the two ends alone; leave --layout out";
-                let alone = || CommandError(format!("{}: {alone}", self.input.display()));
+                let alone = || CommandError::on(&self.input)(alone);
                 request.heard = Some(Arc::new(recording.signal().ok_or_else(alone)?.of_layout(&layout)));
                 silence(&recording.radar)
             }

@@ -51,7 +51,7 @@ pub struct Args {
     untrained: bool,
 
     /// Backend that computes tensors
-    #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", Backend::NAMES.join(", ")))]
+    #[arg(long, value_name = "NAME", default_value = "flex", help = format!("Backend: {}", Backend::names()))]
     backend: Backend,
 }
 
@@ -104,18 +104,13 @@ impl Args {
 }
 
 fn list() -> Result<(), CommandError> {
-    for (name, text) in SHIPPED {
-        let recipe = Recipe::parse(name, text)?;
-        print(&format!("{name:20} {}", recipe.description))?;
-    }
-    Ok(())
+    SHIPPED.iter().try_for_each(|(name, text)| print(&format!("{name:20} {}", Recipe::parse(name, text)?.description)))
 }
 
 fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &TrainingRun, resume: bool) -> Result<(), CommandError> {
     let all = recipe.training_scenes().len() / recipe.batch * recipe.epochs as usize;
     let bar = ProgressBar::new(run.max_steps.map_or(all as u64, |most| most.min(all as u64)));
-    let style = ProgressStyle::with_template("{bar:30} step {pos}/{len}, {eta} left, {msg}");
-    bar.set_style(style?);
+    bar.set_style(ProgressStyle::with_template("{bar:30} step {pos}/{len}, {eta} left, {msg}")?);
     let watch = |p: &RunProgress| {
         bar.set_position(p.step);
         bar.set_message(format!("epoch {}, loss {:.5}", p.epoch, p.loss));

@@ -17,20 +17,19 @@ pub enum Backend {
     Wgpu,
 }
 
-/// A backend that this build doesn't have.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown backend \"{0}\"; this build has: {names}", names = Backend::NAMES.join(", "))]
-pub struct UnknownBackend(String);
-
 impl Backend {
-    /// Names of this build's backends.
-    pub const NAMES: &[&str] = &[
-        "flex",
+    const NAMED: &[(&str, Backend)] = &[
+        ("flex", Backend::Flex),
         #[cfg(feature = "backend-ndarray")]
-        "ndarray",
+        ("ndarray", Backend::NdArray),
         #[cfg(feature = "backend-wgpu")]
-        "wgpu",
+        ("wgpu", Backend::Wgpu),
     ];
+
+    /// Names of this build's backends, separated by commas.
+    pub fn names() -> String {
+        Backend::NAMED.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+    }
 
     /// The backend's device.
     #[cfg_attr(feature = "backend-ndarray", expect(deprecated, reason = "burn's past backend stays for comparison"))]
@@ -46,16 +45,11 @@ impl Backend {
 }
 
 impl FromStr for Backend {
-    type Err = UnknownBackend;
+    type Err = String;
 
-    fn from_str(s: &str) -> Result<Self, UnknownBackend> {
-        match s {
-            "flex" => Ok(Backend::Flex),
-            #[cfg(feature = "backend-ndarray")]
-            "ndarray" => Ok(Backend::NdArray),
-            #[cfg(feature = "backend-wgpu")]
-            "wgpu" => Ok(Backend::Wgpu),
-            _ => Err(UnknownBackend(s.to_owned())),
-        }
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Backend::NAMED.iter().find(|(known, _)| *known == name);
+        let unknown = || format!("unknown backend \"{name}\"; this build has: {}", Backend::names());
+        found.map(|(_, backend)| *backend).ok_or_else(unknown)
     }
 }

@@ -127,13 +127,8 @@ pub struct Recipe {
 
 /// A fault of a recipe.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum RecipeError {
-    #[error("recipe {name}: {reason}")]
-    Syntax { name: String, reason: String },
-    #[error("recipe {name}: {field} is {value}; expected {expected}")]
-    Value { name: String, field: &'static str, value: String, expected: &'static str },
-}
+#[error("recipe {0}")]
+pub struct RecipeError(String);
 
 /// Whether an entry is usable, its name, its value, and what was expected.
 type Check<'a> = (bool, &'static str, &'a dyn Display, &'static str);
@@ -141,8 +136,7 @@ type Check<'a> = (bool, &'static str, &'a dyn Display, &'static str);
 impl Recipe {
     /// Reads and checks a recipe; messages call it `name`.
     pub fn parse(name: &str, text: &str) -> Result<Recipe, RecipeError> {
-        let syntax = |e: toml::de::Error| RecipeError::Syntax { name: name.to_owned(), reason: e.to_string() };
-        let recipe: Recipe = toml::from_str(text).map_err(syntax)?;
+        let recipe: Recipe = toml::from_str(text).map_err(|error| RecipeError(format!("{name}: {error}")))?;
         recipe.check(name)?;
         Ok(recipe)
     }
@@ -153,11 +147,11 @@ impl Recipe {
     }
 
     fn check(&self, name: &str) -> Result<(), RecipeError> {
-        let rate = self.optimizer.learning_rate();
+        let (rate, validation_scenes) = (self.optimizer.learning_rate(), self.validation_scenes);
         let momentum = if let Optimizer::Sgd { momentum, .. } = self.optimizer { momentum } else { 0.0 };
         let decay = self.decay.clone().unwrap_or(Decay { epochs: 1, factor: 1.0 });
         let total: u64 = self.scenes.iter().map(|s| u64::from(s.count)).sum();
-        let of_all: Vec<Check> = vec![
+        let of_all: [Check; 9] = [
             (rate.is_finite() && rate > 0.0, "optimizer.learning_rate", &rate, "a number above 0"),
             ((0.0..1.0).contains(&momentum), "optimizer.momentum", &momentum, "at least 0 and below 1"),
             ((1..=MAX_BATCH).contains(&self.batch), "batch", &self.batch, "1 to 1024"),
@@ -166,12 +160,7 @@ impl Recipe {
             (decay.factor > 0.0 && decay.factor <= 1.0, "decay.factor", &decay.factor, "above 0 and at most 1"),
             (total >= self.batch as u64, "scenes", &total, "at least one batch in all"),
             (total <= MAX_SCENES, "scenes", &total, "at most 10000000 in all"),
-            (
-                self.validation_scenes <= MAX_VALIDATION_SCENES,
-                "validation_scenes",
-                &self.validation_scenes,
-                "at most 10000",
-            ),
+            (validation_scenes <= MAX_VALIDATION_SCENES, "validation_scenes", &validation_scenes, "at most 10000"),
         ];
         let of_network: Vec<Check> = match &self.network {
             Network::Thesis(ThesisConfig { filters, levels, .. }) => vec![
@@ -191,7 +180,7 @@ impl Recipe {
         match of_all.into_iter().chain(of_network).find(|(is_usable, ..)| !is_usable) {
             None => Ok(()),
             Some((_, field, value, expected)) => {
-                Err(RecipeError::Value { name: name.to_owned(), field, value: value.to_string(), expected })
+                Err(RecipeError(format!("{name}: {field} is {value}; expected {expected}")))
             }
         }
     }

@@ -1,12 +1,9 @@
 //! Input, target and estimated map of each network that can be trained.
 
-use super::thesis::{Thesis, ThesisConfig};
-use super::unet::{Unet, UnetConfig};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::cartesian::project;
-use crate::maps::network_input::mag_phase;
-use crate::maps::{LogMaps, Normalisation, RangeAngleMap, channels_map};
-use crate::radar::{End, Radar};
+use crate::maps::{LogMaps, Normalisation, RangeAngleMap};
+use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::signal::{BeatSignal, TwoEnds};
 use burn::module::Module;
@@ -56,61 +53,8 @@ pub trait Student: Module + Clone {
     }
 }
 
-impl Student for Thesis {
-    type Config = ThesisConfig;
-    const NAME: &'static str = "thesis";
-    const CHANNELS: usize = 4;
-
-    fn fresh(config: &ThesisConfig, device: &Device) -> Self {
-        Thesis::new(config, device)
-    }
-
-    fn input(config: &ThesisConfig, radar: &Radar, ends: &TwoEnds) -> Result<Vec<f32>, ReconstructError> {
-        config.check(radar)?;
-        let [first, last] = End::BOTH.map(|end| channels_map(radar, ends.end(end).view()));
-        Ok(mag_phase(&first, &last).iter().map(|v| *v as f32).collect())
-    }
-
-    fn answer(&self, inputs: Tensor<4>) -> Tensor<4> {
-        self.forward(inputs)
-    }
-
-    fn thresholded(estimate: Array2<f32>) -> RangeAngleMap {
-        RangeAngleMap::stretched(estimate)
-    }
-}
-
 /// The map of Lambda above the target threshold on the scene's own coordinates, 1 or 0, `[rows, 2 rows]` row-major.
 pub fn thresholded_cartesian(radar: &Radar, map: &RangeAngleMap, rows: usize) -> Vec<f32> {
     let bright = RangeAngleMap { lambda: map.lambda.mapv(|v| f32::from(v > TARGET_ETA)) };
     project(radar, &bright, rows).lambda.iter().map(|v| f32::from(*v > 0.0)).collect()
-}
-
-impl Student for Unet {
-    type Config = UnetConfig;
-    const NAME: &'static str = "unet";
-    const CHANNELS: usize = 2;
-
-    fn fresh(config: &UnetConfig, device: &Device) -> Self {
-        Unet::new(config, device)
-    }
-
-    fn input(config: &UnetConfig, radar: &Radar, ends: &TwoEnds) -> Result<Vec<f32>, ReconstructError> {
-        let half = |end| {
-            let map = channels_map(radar, ends.end(end).view()).log_magnitude().normalise(Normalisation::MinMax);
-            thresholded_cartesian(radar, &map, config.rows)
-        };
-        Ok(End::BOTH.map(half).concat())
-    }
-
-    fn target(config: &UnetConfig, radar: &Radar, signal: &BeatSignal) -> RangeAngleMap {
-        let full = LogMaps::of_signal(radar, signal).full.normalise(Normalisation::MinMax);
-        let bright = thresholded_cartesian(radar, &full, config.rows);
-        let lambda = Array2::from_shape_fn((config.rows, 2 * config.rows), |(i, j)| bright[i * 2 * config.rows + j]);
-        RangeAngleMap { lambda }
-    }
-
-    fn answer(&self, inputs: Tensor<4>) -> Tensor<4> {
-        self.forward(inputs)
-    }
 }

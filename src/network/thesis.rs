@@ -3,9 +3,13 @@
 //! Five levels of 64 filters a tower in the thesis: 1.62 M parameters, 40.5 GMAC. Width and depth are configurable; two cores can
 //! train 16 filters (3.4 GMAC). Follows the author's published program: dilation 2, circular padding on both axes, no bias.
 
+use super::students::Student;
 use super::weights::{WeightFile, WeightsError};
-use crate::radar::Radar;
+use crate::maps::network_input::mag_phase;
+use crate::maps::{RangeAngleMap, channels_map};
+use crate::radar::{End, Radar};
 use crate::reconstruct::ReconstructError;
+use crate::signal::TwoEnds;
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig, ConvTranspose2d, ConvTranspose2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig};
@@ -13,6 +17,7 @@ use burn::tensor::activation::relu;
 use burn::tensor::module::max_pool2d;
 use burn::tensor::ops::MaxPoolOptions;
 use burn::tensor::{Device, Tensor};
+use ndarray::Array2;
 use serde::{Deserialize, Serialize};
 
 /// Name of the tower of 3x3 convolutions in the author's program.
@@ -93,9 +98,12 @@ pub struct Thesis {
     up: Up,
 }
 
-impl Thesis {
-    /// A network with random weights.
-    pub fn new(config: &ThesisConfig, device: &Device) -> Self {
+impl Student for Thesis {
+    type Config = ThesisConfig;
+    const NAME: &'static str = "thesis";
+    const CHANNELS: usize = 4;
+
+    fn fresh(config: &ThesisConfig, device: &Device) -> Self {
         let ThesisConfig { filters, levels, alive_output } = *config;
         let norm = |c: usize| Some(BatchNormConfig::new(c).init(device));
         let tower = |kernel: usize| {
@@ -131,6 +139,24 @@ impl Thesis {
         }
     }
 
+    fn input(config: &ThesisConfig, radar: &Radar, ends: &TwoEnds) -> Result<Vec<f32>, ReconstructError> {
+        config.check(radar)?;
+        let [first, last] = End::BOTH.map(|end| channels_map(radar, ends.end(end).view()));
+        Ok(mag_phase(&first, &last).iter().map(|v| *v as f32).collect())
+    }
+
+    fn answer(&self, x: Tensor<4>) -> Tensor<4> {
+        let tower = |stages: &[DownStage]| stages.iter().fold(x.clone(), |x, stage| stage.forward(x));
+        let joined = Tensor::cat(vec![tower(&self.down.layer3x3), tower(&self.down.layer5x5)], 1);
+        self.up.upconv.iter().fold(joined, |x, stage| stage.forward(x))
+    }
+
+    fn thresholded(estimate: Array2<f32>) -> RangeAngleMap {
+        RangeAngleMap::stretched(estimate)
+    }
+}
+
+impl Thesis {
     /// Width and depth of the network whose weights `file` holds.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
         let stage = |level: usize| {
@@ -150,7 +176,7 @@ impl Thesis {
 
     /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()`.
     pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
-        let mut network = Thesis::new(config, device);
+        let mut network = Thesis::fresh(config, device);
         let renamed = Thesis::in_our_names(file)?;
         WeightFile::parse(file.name(), &renamed)?.load_into(&mut network, Thesis::ignores)?;
         Ok(network)
@@ -163,13 +189,6 @@ impl Thesis {
 
     pub(super) fn ignores(name: &str) -> bool {
         name.ends_with("num_batches_tracked")
-    }
-
-    /// Estimates Lambda of a batch.
-    pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let tower = |stages: &[DownStage]| stages.iter().fold(x.clone(), |x, stage| stage.forward(x));
-        let joined = Tensor::cat(vec![tower(&self.down.layer3x3), tower(&self.down.layer5x5)], 1);
-        self.up.upconv.iter().fold(joined, |x, stage| stage.forward(x))
     }
 
     /// The same function with every batch norm folded into its convolution, for inference.
@@ -222,17 +241,10 @@ impl UpStage {
 fn wrap(x: Tensor<4>, dim: usize, n: usize) -> Tensor<4> {
     let size = x.dims()[dim];
     let n = n.min(size * 8);
-    let mut parts = Vec::new();
-    let mut left = n % size;
-    if left > 0 {
-        parts.push(x.clone().narrow(dim, size - left, left));
-    }
-    left = n / size;
-    (0..2 * left + 1).for_each(|_| parts.push(x.clone()));
-    if !n.is_multiple_of(size) {
-        parts.push(x.narrow(dim, 0, n % size));
-    }
-    Tensor::cat(parts, dim)
+    let part = n % size;
+    let edge = |from: usize| (part > 0).then(|| x.clone().narrow(dim, from, part));
+    let whole = std::iter::repeat_n(x.clone(), 2 * (n / size) + 1);
+    Tensor::cat(edge(size - part).into_iter().chain(whole).chain(edge(0)).collect(), dim)
 }
 
 /// Our name of one of the author's tensors: the convolution and the batch norm of a stage are its items 0 and 1.
@@ -268,7 +280,7 @@ mod tests {
         let expected = reference.tensor("output", &[1, 1, 16, 32]).unwrap();
         let input = Tensor::<4>::from_data(burn::tensor::TensorData::new(input, vec![1, 4, 16, 32]), &device);
         for (name, network) in [("as loaded", network.clone()), ("folded", network.folded())] {
-            let found = network.forward(input.clone()).into_data().try_into_vec::<f32>().unwrap();
+            let found = network.answer(input.clone()).into_data().try_into_vec::<f32>().unwrap();
             let worst = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             assert!(worst < 1e-4, "{name}: {worst}");
         }
@@ -281,9 +293,9 @@ mod tests {
         let device = Device::flex().autodiff();
         device.seed(1);
         let positive = |alive_output: bool| {
-            let network = Thesis::new(&ThesisConfig { filters: 2, levels: 2, alive_output }, &device);
+            let network = Thesis::fresh(&ThesisConfig { filters: 2, levels: 2, alive_output }, &device);
             let input = Tensor::<4>::random([1, 4, 32, 32], burn::tensor::Distribution::Normal(0.0, 1.0), &device);
-            let output = network.forward(input).into_data().try_into_vec::<f32>().unwrap();
+            let output = network.answer(input).into_data().try_into_vec::<f32>().unwrap();
             output.iter().filter(|v| **v > 0.0).count() as f64 / output.len() as f64
         };
         assert!(positive(false) < 0.7, "as in the author's program, half of the cells are dead");
@@ -292,7 +304,7 @@ mod tests {
 
     #[test]
     fn the_full_width_has_the_thesis_size() {
-        let network = Thesis::new(&ThesisConfig::default(), &Device::flex());
+        let network = Thesis::fresh(&ThesisConfig::default(), &Device::flex());
         // Convolutions; scale and shift of the batch norms; their running mean and variance.
         assert_eq!(network.num_params(), 1_616_384 + 2306 + 2306);
     }

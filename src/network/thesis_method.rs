@@ -165,7 +165,7 @@ impl UnetMethod {
     pub fn new(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
         let device = backend.device();
         let config = UnetConfig::default();
-        let mut network = Unet::new(&config, &device);
+        let mut network = Unet::fresh(&config, &device);
         file.load_into(&mut network, |_| false)?;
         let trained = file.provenance.domain(file.name())?;
         Ok(UnetMethod { network, config, device, weights: file.weights(), trained })

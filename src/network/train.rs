@@ -54,10 +54,8 @@ pub fn train<S: Student>(
             if finished(&progress) {
                 break 'training;
             }
-            let lessons = scenes
-                .par_iter()
-                .map(|scene| lesson::<S>(config, run, &generator, *scene))
-                .collect::<Result<Vec<_>, _>>()?;
+            let lesson = |scene: &(Kind, u32)| lesson::<S>(config, run, &generator, *scene);
+            let lessons = scenes.par_iter().map(lesson).collect::<Result<Vec<_>, _>>()?;
             let (moved, loss) = step(network, &mut optimizer, recipe, rate, lessons, &device);
             if !loss.is_finite() {
                 return Err(TrainError::NotFinite { step: progress.step, loss, folder: run.folder.clone() });
@@ -65,9 +63,7 @@ pub fn train<S: Student>(
             network = moved;
             let now = began.elapsed().as_secs_f64();
             progress.step(scenes.len() as u64, f64::from(loss), [before + now, now]);
-            let RunProgress { step, epoch, maps, seconds, loss: smoothed, .. } = &progress;
-            writeln!(log, "{step},{epoch},{maps},{seconds:.1},{rate},{},{smoothed}", f64::from(loss))
-                .map_err(file(&log_path))?;
+            write_step(&mut log, &progress, rate, loss.into()).map_err(file(&log_path))?;
             watch(&progress);
             if saved.elapsed() >= run.checkpoint_every {
                 checkpoint::save(&at, recipe, &network, &optimizer, &progress)?;
@@ -137,6 +133,11 @@ fn epoch_order(recipe: &Recipe, epoch: u32) -> Vec<(Kind, u32)> {
 }
 
 /// The log at `path`, to which lines are added; without `goes_on` it begins anew.
+fn write_step(log: &mut fs::File, progress: &RunProgress, rate: f64, loss: f64) -> io::Result<()> {
+    let RunProgress { step, epoch, maps, seconds, loss: smoothed, .. } = progress;
+    writeln!(log, "{step},{epoch},{maps},{seconds:.1},{rate},{loss},{smoothed}")
+}
+
 fn log_at(path: &Path, goes_on: bool) -> io::Result<fs::File> {
     if goes_on && path.exists() {
         return fs::OpenOptions::new().append(true).open(path);

@@ -4,6 +4,11 @@
 //! thousand are bright, so an output of zeros has nearly no mean square error, and training ends there: the gradient of the few bright cells is
 //! small against that of the many dark ones. The program includes it to show this.
 
+use super::students::{Student, thresholded_cartesian};
+use crate::maps::{LogMaps, Normalisation, RangeAngleMap, channels_map};
+use crate::radar::{End, Radar};
+use crate::reconstruct::ReconstructError;
+use crate::signal::{BeatSignal, TwoEnds};
 use burn::module::Module;
 use burn::nn::PaddingConfig2d;
 use burn::nn::conv::{Conv2d, Conv2dConfig, ConvTranspose2d, ConvTranspose2dConfig};
@@ -11,6 +16,7 @@ use burn::tensor::activation::{relu, sigmoid};
 use burn::tensor::module::max_pool2d;
 use burn::tensor::ops::MaxPoolOptions;
 use burn::tensor::{Device, Tensor};
+use ndarray::Array2;
 use serde::{Deserialize, Serialize};
 
 /// Width and depth.
@@ -60,9 +66,12 @@ pub struct Unet {
     head: Conv2d,
 }
 
-impl Unet {
-    /// A network with random weights.
-    pub fn new(config: &UnetConfig, device: &Device) -> Self {
+impl Student for Unet {
+    type Config = UnetConfig;
+    const NAME: &'static str = "unet";
+    const CHANNELS: usize = 2;
+
+    fn fresh(config: &UnetConfig, device: &Device) -> Self {
         let width = |level: usize| config.channels << level;
         let levels = config.levels;
         let up = |level: usize| {
@@ -77,9 +86,22 @@ impl Unet {
         }
     }
 
-    /// Estimates the thresholded map of a batch.
-    pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let mut x = x;
+    fn input(config: &UnetConfig, radar: &Radar, ends: &TwoEnds) -> Result<Vec<f32>, ReconstructError> {
+        let half = |end| {
+            let map = channels_map(radar, ends.end(end).view()).log_magnitude().normalise(Normalisation::MinMax);
+            thresholded_cartesian(radar, &map, config.rows)
+        };
+        Ok(End::BOTH.map(half).concat())
+    }
+
+    fn target(config: &UnetConfig, radar: &Radar, signal: &BeatSignal) -> RangeAngleMap {
+        let full = LogMaps::of_signal(radar, signal).full.normalise(Normalisation::MinMax);
+        let bright = thresholded_cartesian(radar, &full, config.rows);
+        let lambda = Array2::from_shape_fn((config.rows, 2 * config.rows), |(i, j)| bright[i * 2 * config.rows + j]);
+        RangeAngleMap { lambda }
+    }
+
+    fn answer(&self, mut x: Tensor<4>) -> Tensor<4> {
         let mut kept = Vec::new();
         for pair in &self.down {
             let y = pair.forward(x);

@@ -130,8 +130,7 @@ fn crowds_of(
     what: &'static str,
     on_map: impl Fn(),
 ) -> Result<Vec<Crowd>, CommandError> {
-    let methods = SEARCHERS.map(methods::by_name).into_iter().collect::<Result<Vec<_>, _>>();
-    let methods = methods?;
+    let methods = SEARCHERS.map(methods::by_name).into_iter().collect::<Result<Vec<_>, _>>()?;
     let (radar, request) = (Radar::default(), Request::default());
     let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
     let scenes = (0..).map(|number| generator.scene(kind, number)).filter(|s| s.reflector_count() == reflectors);

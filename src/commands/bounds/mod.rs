@@ -8,7 +8,7 @@ use super::figure::{save, save_bitmap, save_numbers};
 use super::{CommandError, print_json};
 use crate::bounds::{Ambiguity, Gains, PositionBound, ambiguity, cramer_rao_of, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
-use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
+use crate::radar::{Decibels, Layout, LayoutError, LayoutKind, Polar, Radar};
 use crate::reconstruct::ReconstructError;
 use crate::scene::Reflector;
 use crate::task::Task;
@@ -81,11 +81,8 @@ impl Args {
         let radar = Radar::default();
         let reflector = self.at;
         let centre = radar.polar_of(reflector.x_metres, reflector.y_metres);
-        let layouts: Vec<(LayoutKind, Layout)> = self
-            .layout
-            .iter()
-            .map(|kind| Ok((kind.clone(), kind.layout(&radar)?)))
-            .collect::<Result<_, CommandError>>()?;
+        let of = |kind: &LayoutKind| Ok((kind.clone(), kind.layout(&radar)?));
+        let layouts: Vec<(LayoutKind, Layout)> = self.layout.iter().map(of).collect::<Result<_, LayoutError>>()?;
         let other = self.neighbour(&radar, centre)?;
         let report = BoundsReport {
             x_metres: reflector.x_metres,
@@ -93,7 +90,7 @@ impl Args {
             apart_columns: self.apart,
             layouts: layouts
                 .iter()
-                .map(|(kind, layout)| self.layout_report(&radar, kind, layout, reflector, other, centre))
+                .map(|layout| self.layout_report(&radar, layout, reflector, other, centre))
                 .collect(),
             monte_carlo: self.monte_carlo(&radar, reflector)?,
         };
@@ -130,8 +127,7 @@ impl Args {
     fn layout_report(
         &self,
         radar: &Radar,
-        kind: &LayoutKind,
-        layout: &Layout,
+        (kind, layout): &(LayoutKind, Layout),
         reflector: Reflector,
         other: Reflector,
         centre: Polar,

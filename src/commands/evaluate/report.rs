@@ -13,7 +13,7 @@ use crate::evaluate::tables::{
 use crate::radar::{Carrier, counted};
 use crate::scene::generate::{Kind, Reading};
 use serde::{Serialize, Serializer};
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 /// The report of an evaluation; its JSON is documented in the command's help.
 #[derive(Debug, Serialize)]
@@ -127,6 +127,17 @@ struct AtPrinted {
 const OF_A_FOLDER: &str = "scenes of a folder";
 
 const LABEL: usize = 26;
+
+/// Widths of the columns behind a label.
+const WIDTHS: [usize; 8] = [20, 16, 16, 22, 7, 7, 11, 9];
+
+fn line<const N: usize>(text: &mut String, width: usize, label: &str, cells: [impl fmt::Display; N]) {
+    let _ = write!(text, "{label:<width$}");
+    for (cell, width) in cells.iter().zip(WIDTHS) {
+        let _ = write!(text, " {cell:>width$}");
+    }
+    text.push('\n');
+}
 
 fn number_or_name<S: Serializer>(set: &str, serializer: S) -> Result<S::Ok, S::Error> {
     match set.parse::<u32>() {
@@ -244,11 +255,7 @@ impl SetReport {
         let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.false_alarm);
         let (fixed, own) = ("at the method's threshold", "at each scene's own");
         let _ = writeln!(text, "{:<width$} {:>20} {fixed:>33} {own:>22}", "", "");
-        let _ = writeln!(
-            text,
-            "{:<width$} {:>20} {:>16} {:>16} {:>22} {:>7} {:>7} {:>11} {:>9}",
-            "", "SE", "P_D %", "P_FA %", rate, "missed", "ghosts", "near best %", "ms a map"
-        );
+        line(text, width, "", ["SE", "P_D %", "P_FA %", &rate, "missed", "ghosts", "near best %", "ms a map"]);
         if let Some(printed) = &self.printed {
             printed.write(width, text);
         }
@@ -271,10 +278,10 @@ impl SetReport {
 
     fn write_cfar(&self, width: usize, text: &mut String) {
         let Some(first) = self.methods.iter().find_map(|method| method.cfar.as_ref()) else { return };
-        let _ = writeln!(text, "\n{:<width$} {:>20} {:>16}", format!("by {}", first.detector), "P_D %", "P_FA %");
+        text.push('\n');
+        line(text, width, &format!("by {}", first.detector), ["P_D %", "P_FA %"]);
         for (name, cfar) in self.methods.iter().filter_map(|m| Some((&m.name, m.cfar.as_ref()?))) {
-            let (detection, false_alarm) = (percent_of(&cfar.detection), percent_of(&cfar.false_alarm));
-            let _ = writeln!(text, "{name:<width$} {detection:>20} {false_alarm:>16}");
+            line(text, width, name, [&cfar.detection, &cfar.false_alarm].map(percent_of));
         }
     }
 }
@@ -286,9 +293,8 @@ impl PrintedColumns {
             ("printed: experiment 1", &self.experiment_1),
             ("printed: experiment 2", &self.experiment_2),
         ] {
-            let (detection, false_alarm) = (100.0 * printed.detection, 100.0 * printed.false_alarm);
-            let _ =
-                writeln!(text, "{name:<width$} {:>20.2} {detection:>16.2} {false_alarm:>16.2}", printed.squared_error);
+            let figures = [printed.squared_error, 100.0 * printed.detection, 100.0 * printed.false_alarm];
+            line(text, width, name, figures.map(|figure| format!("{figure:.2}")));
         }
     }
 }
@@ -343,21 +349,16 @@ impl MethodReport {
         let (detection, false_alarm) = (percent_of(&self.detection), percent_of(&self.false_alarm));
         let at_printed = percent(at.detection, at.standard_error);
         let near_best = self.near_best.map_or("-".to_owned(), |part| format!("{:.0}", 100.0 * part));
-        let _ = writeln!(
-            text,
-            "{:<width$} {error:>20} {detection:>16} {false_alarm:>16} {at_printed:>22} {:>7.2} {:>7.2} {near_best:>11} {median_milliseconds:>9.1}",
-            self.label(count),
-            missed.mean,
-            ghosts.mean
-        );
+        let [lost, alarms] = [missed, ghosts].map(|count| format!("{:.2}", count.mean));
+        let time = format!("{median_milliseconds:.1}");
+        let cells = [error, detection, false_alarm, at_printed, lost, alarms, near_best, time];
+        line(text, width, &self.label(count), cells);
         let median = |rate: f64| if rate.is_nan() { "-".to_owned() } else { format!("{:.2}", 100.0 * rate) };
         let [detection, false_alarm, at_printed] =
             [self.detection.median, self.false_alarm.median, at.median].map(median);
-        let _ = writeln!(
-            text,
-            "{:<width$} {:>20.1} {detection:>16} {false_alarm:>16} {at_printed:>22} {:>7} {:>7}",
-            "  median", squared_error.median, missed.median, ghosts.median
-        );
+        let [lost, alarms] = [missed, ghosts].map(|count| count.median.to_string());
+        let error = format!("{:.1}", squared_error.median);
+        line(text, width, "  median", [error, detection, false_alarm, at_printed, lost, alarms]);
     }
 
     fn write_deviation(&self, width: usize, printed: &Printed, text: &mut String) {
@@ -366,13 +367,11 @@ impl MethodReport {
             _ => format!("{:+.2} s.e.", e.deviation_from(printed, rounding)),
         };
         let rounding = printed.rate_rounding();
-        let _ = writeln!(
-            text,
-            "{:<width$} {:>20} {:>16} {:>16}",
-            "  off the printed by",
+        let cells = [
             off(self.squared_error, printed.squared_error, 0.005),
             off(self.detection, printed.detection, rounding),
-            off(self.false_alarm, printed.false_alarm, rounding)
-        );
+            off(self.false_alarm, printed.false_alarm, rounding),
+        ];
+        line(text, width, "  off the printed by", cells);
     }
 }

@@ -35,10 +35,11 @@ impl WorseningSearch {
         mut on_try: impl FnMut(u32, &[Finding]) -> bool,
     ) -> Result<WorseningOutcome, WorsenError> {
         if scene.objects.is_empty() {
-            return Err(WorsenError::Empty);
+            return Err(WorsenError("the scene is empty; expected an object to move".to_owned()));
         }
         if !(self.within_metres > 0.0 && self.within_metres <= 1000.0) {
-            return Err(WorsenError::Reach(self.within_metres));
+            let reach = self.within_metres;
+            return Err(WorsenError(format!("a reach of {reach} m; expected more than 0 and at most 1000 m")));
         }
         let request = Request {
             noise: self.floor.into(),
@@ -46,7 +47,7 @@ impl WorseningSearch {
             task: task.clone(),
             ..Request::default()
         };
-        let trial = self.trial(scene)?;
+        let trial = self.trial(scene).map_err(|error| WorsenError(error.to_string()))?;
         let start = self.finding(scene, scene, &trial, method, &request, 0)?;
         let mut state = WorseningState { step: FIRST_STEP_PART, path: vec![start], tries: 0 };
         while state.tries < self.tries && !self.is_reached(&state) && on_try(state.tries, &state.path) {
@@ -104,7 +105,7 @@ impl WorseningSearch {
         request: &Request,
         tries: u32,
     ) -> Result<Finding, WorsenError> {
-        let failed = |source| WorsenError::Method { method: method.name(), source };
+        let failed = |error| WorsenError(format!("{}: {error}", method.name()));
         let answer = trial.ask(method, request).map_err(failed)?;
         let failures = match self.measure {
             WorseningMeasure::SquaredError => Failures::default(),

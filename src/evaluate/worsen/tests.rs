@@ -66,12 +66,12 @@ fn a_repair_is_the_smallest_move_that_helps() {
 #[test]
 fn a_stopped_search_keeps_what_it_has() {
     let refuse = |search: &WorseningSearch, scene: &Scene| {
-        search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err()
+        search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err().to_string()
     };
     let worsen = search(Aim::Worsen, WorseningMeasure::SquaredError);
-    assert_eq!(refuse(&worsen, &Scene::default()), WorsenError::Empty);
+    assert!(refuse(&worsen, &Scene::default()).contains("the scene is empty"));
     let far = WorseningSearch { within_metres: f64::NAN, ..worsen.clone() };
-    assert!(matches!(refuse(&far, &Scene::of_points([(0.0, 2.0)])), WorsenError::Reach(_)));
+    assert!(refuse(&far, &Scene::of_points([(0.0, 2.0)])).contains("a reach of NaN m"));
     let scene = Scene::of_points([(0.0, 1.7)]);
     let stopped = worsen.run(&scene, &ShortSighted, &Task::default(), |tries, _| tries < 16).unwrap();
     assert_eq!(stopped.tries, 16);

@@ -4,8 +4,7 @@ use crate::evaluate::Metrics;
 use crate::evaluate::failure::{Failures, Fate};
 use crate::maps::Normalisation;
 use crate::radar::Radar;
-use crate::reconstruct::ReconstructError;
-use crate::scene::{Scene, SceneError};
+use crate::scene::Scene;
 use crate::signal::Floor;
 use std::fmt;
 use std::str::FromStr;
@@ -132,17 +131,8 @@ impl WorseningOutcome {
 
 /// The reason why a search has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum WorsenError {
-    #[error("{0}")]
-    Scene(#[from] SceneError),
-    #[error("{method}: {source}")]
-    Method { method: &'static str, source: ReconstructError },
-    #[error("the scene is empty; expected an object to move")]
-    Empty,
-    #[error("a reach of {0} m; expected more than 0 and at most 1000 m")]
-    Reach(f64),
-}
+#[error("{0}")]
+pub struct WorsenError(pub(super) String);
 
 impl WorseningMeasure {
     /// The count and SE of a finding, compared in this order: a search maximises them, a repair minimises them.

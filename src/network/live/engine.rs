@@ -1,6 +1,5 @@
-//! The live network's forward pass without a framework: channels-last, buffers kept, the same weights as [`super::module`].
-//!
-//! [`super::module`] is trained, and tests compare this engine with it; the engine runs during a drag.
+//! The live network's forward pass without a framework: channels-last, buffers kept. `python/apertura/live.py` has the same weights and is
+//! trained; tests compare this engine, which runs during a drag, with its results.
 
 use super::columns::ColumnTaps;
 use super::config::{DECODER_CHANNELS, FOLD, INPUT_CHANNELS, WIDE_COLUMNS};

@@ -113,6 +113,7 @@ impl ThesisEngine {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::network::students::Student;
     use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
     use burn::tensor::{Device, Tensor, TensorData};
 
@@ -130,7 +131,7 @@ pub(super) mod tests {
     pub(in crate::network) fn random(filters: usize, levels: usize) -> Vec<u8> {
         let device = Device::flex();
         device.seed(1);
-        let network = Thesis::new(&ThesisConfig { filters, levels, alive_output: true }, &device);
+        let network = Thesis::fresh(&ThesisConfig { filters, levels, alive_output: true }, &device);
         let mut store = SafetensorsStore::from_bytes(None).with_to_adapter(BurnToPyTorchAdapter);
         network.save_into(&mut store).unwrap();
         let mut bytes = store.get_bytes().unwrap();
@@ -157,7 +158,7 @@ pub(super) mod tests {
         let device = Device::flex();
         let input = Tensor::<4>::from_data(TensorData::new(input, vec![1, 4, rows, columns]), &device);
         let network = Thesis::load(&file, &config, &device).unwrap();
-        let expected = network.forward(input).into_data().try_into_vec::<f32>().unwrap();
+        let expected = network.answer(input).into_data().try_into_vec::<f32>().unwrap();
         assert_eq!(found.len(), expected.len());
         (found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max), expected)
     }
