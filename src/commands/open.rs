@@ -84,7 +84,7 @@ impl Args {
         match app::run(options) {
             Ok(()) => Ok(None),
             Err(error @ AppError::Window(_)) => Ok(Some(error.to_string())),
-            Err(error) => Err(CommandError::failed(error)),
+            Err(error) => Err(error.into()),
         }
     }
 
