@@ -137,12 +137,7 @@ fn floor(floor: Floor, normalisation: Normalisation) -> Vec<Command> {
 
 /// The chapters of [`TEXT`].
 fn chapters() -> impl Iterator<Item = &'static str> {
-    let starts = TEXT.match_indices("## ").filter(|(i, _)| *i == 0 || TEXT.as_bytes()[i - 1] == b'\n').map(|(i, _)| i);
-    let mut starts = starts.peekable();
-    std::iter::from_fn(move || {
-        let start = starts.next()?;
-        Some(&TEXT[start..starts.peek().copied().unwrap_or(TEXT.len())])
-    })
+    TEXT.split("\n## ")
 }
 
 fn heading(chapter: &str) -> &str {

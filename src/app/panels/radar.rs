@@ -11,8 +11,8 @@ use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::{Quantity, headings, labelled, scrolled_both};
 use crate::lesson::Step;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
+use crate::scene::Object;
 use crate::theory::Consequences;
-use budget::Selected;
 use eframe::egui::{ComboBox, Label, RichText, Ui};
 use table::{Table, number};
 
@@ -58,12 +58,12 @@ fn solved_by(step: &Step) -> Option<&'static str> {
 }
 
 /// The selected object, where it is a single one and made of points.
-fn selected(state: &State) -> Option<Selected> {
+fn selected(state: &State) -> Option<(String, Object)> {
     let index = state.editor.selection().single()?;
     let object = state.editor.scene().objects.get(index).filter(|o| o.body().is_none())?;
     let name = object.called(index);
     let name = if object.reflector_count() == 1 { name } else { format!("a reflector of {name}") };
-    Some(Selected { name, place_metres: object.centre_metres(), reflectivity: object.reflectivity() })
+    Some((name, object.clone()))
 }
 
 /// Draws the panel; `sought` is the constant or the group that is to be brought into sight.

@@ -1,7 +1,6 @@
 //! The cuts panel: range profile and angle cut of all maps through the cursor, with pinned cuts, and markers to measure between.
 
 mod markers;
-mod measure;
 mod trace;
 
 use crate::app::content::{Content, Cx, Nothing};
