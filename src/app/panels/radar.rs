@@ -244,11 +244,8 @@ fn convention(ui: &mut Ui, table: Table, radar: &mut Radar, is_free: bool) {
     let is_filled = radar.element_spacing_metres == radar.filled_spacing_metres();
     let squint = 100.0 * (radar.squint() - 1.0);
     let text = match is_filled {
-        true => format!(
-            "blobs stand {:.1} % {} broadside",
-            squint.abs(),
-            if squint < 0.0 { "nearer to" } else { "farther from" }
-        ),
+        true if squint < 0.0 => format!("blobs stand {:.1} % nearer to broadside", -squint),
+        true => format!("blobs stand {squint:.1} % farther from broadside"),
         false => format!("the spacing is another than its own, {:.3} mm", 1e3 * radar.filled_spacing_metres()),
     };
     table.row(ui, ("convention", tooltip), &text, |ui, label| {

@@ -92,10 +92,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
 fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut RunTimeMemory) {
     let counts: BTreeSet<usize> = rows.iter().map(|r| r.reflectors).collect();
     ui.horizontal_wrapped(|ui| {
-        let text = |count: &Option<usize>| match count {
-            None => "all".to_owned(),
-            Some(count) => count.to_string(),
-        };
+        let text = |count: &Option<usize>| (count.map_or("all".to_owned(), |count| count.to_string()), "");
         let offered = std::iter::once(None).chain(counts.into_iter().map(Some));
         let tooltip = "Draw the measurements of so many reflectors";
         choice(ui, "Reflectors", tooltip, &mut memory.reflectors, offered, text);

@@ -29,7 +29,7 @@ pub use colour_bar::{Bar, Texture, colour_table, picture};
 pub use entry::{button, choices, entry, entry_called, item, press, tick, ticked, tooltip};
 pub use icons::{Icon, cross, edged, icon};
 pub use inline::{LARGE_TEXT_RATIO, inline, large};
-pub use labelled::{Quantity, choice, choice_told, labelled};
+pub use labelled::{Quantity, choice, labelled};
 pub use method_menu::{
     LIST_HEIGHT, kind_boxes, kind_names, member_box, method_lines, method_list, method_menu, ticking_menu,
 };
@@ -40,7 +40,8 @@ pub use numbers::{
     significant, with_unit,
 };
 pub use padded::{
-    computed, empty_text, group, headings, padded, rarely, right_aligned, row, row_of, scrolled, scrolled_both, warning,
+    Computed, computed, empty_text, group, headings, padded, rarely, right_aligned, row, row_of, scrolled,
+    scrolled_both, warning,
 };
 pub use progress::{bar, progress, start_or_cancel};
 pub use text_entry::{entry_problem, text_entry};

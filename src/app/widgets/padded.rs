@@ -47,8 +47,11 @@ pub fn right_aligned(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> Response) -> 
     ui.with_layout(Layout::right_to_left(Align::Center), content).inner
 }
 
+/// The computed value of a panel, or the reason why there is none; `None` before the first.
+pub type Computed<'a, T> = Option<Result<&'a T, &'a str>>;
+
 /// The computed value of a panel. Without a value it draws the error, or that the value is being computed.
-pub fn computed<'a, T>(ui: &mut Ui, value: Option<Result<&'a T, &str>>) -> Option<&'a T> {
+pub fn computed<'a, T>(ui: &mut Ui, value: Computed<'a, T>) -> Option<&'a T> {
     match value {
         None => _ = ui.weak("computing…"),
         Some(Err(error)) => _ = ui.colored_label(ui.visuals().error_fg_color, error),

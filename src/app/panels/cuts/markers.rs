@@ -20,18 +20,13 @@ pub const NAMES: [&str; 2] = ["A", "B"];
 pub struct Markers {
     /// Places of A and B; `None` for one that is not placed.
     pub places: [Option<f64>; 2],
-    held: Option<usize>,
+    pub held: Option<usize>,
 }
 
 impl Markers {
     /// Whether no marker is placed.
     pub fn is_empty(&self) -> bool {
         self.places == [None, None]
-    }
-
-    /// Whether a marker is being dragged.
-    pub fn is_held(&self) -> bool {
-        self.held.is_some()
     }
 
     /// Puts a marker at a place: first A, then B, then the nearer of the two.

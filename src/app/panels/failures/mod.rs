@@ -82,7 +82,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
         }
         let tried = input.job.table.methods().iter().map(String::as_str);
         let known: BTreeSet<&str> = tried.chain(input.state.methods.all.iter().map(|m| m.name())).collect();
-        filter::show(ui, &known, &mut memory.filter);
+        filter::show(ui, &known.into_iter().collect::<Vec<_>>(), &mut memory.filter);
         update(ui, input, memory);
         head(ui, input, memory);
         if memory.charts.view != View::None {

@@ -86,7 +86,7 @@ fn search(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut
         }
     } else {
         choice(ui, "Look by", "", &mut memory.search.measure, WorseningMeasure::ALL, |measure| {
-            name(*measure).to_owned()
+            (name(*measure).to_owned(), "")
         });
         let within = NumberField::new(&mut memory.search.within_metres).range(0.01..=100.0).speed(0.02).suffix(" m");
         labelled(ui, "within", "", within);
