@@ -91,9 +91,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             Grid::new("found").num_columns(6).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
                 if !found.is_empty() {
                     let cosine = "Cosine of the angle to the array's axis, as the maps count directions";
-                    let (range, power) =
-                        ("From the centre of the array", "Power of the echo, relative to the strongest");
-                    let measured = [("angle", CONVENTION), ("cos θ", cosine), ("range", range), ("dB", power)];
+                    let power = "Power of the echo, relative to the strongest";
+                    let range = ("range", "From the centre of the array");
+                    let measured = [("angle", CONVENTION), ("cos θ", cosine), range, ("dB", power)];
                     headings(ui, [("", "")].into_iter().chain(measured).chain([("needed", NEEDED)]));
                 }
                 found.iter().take(LINES).enumerate().for_each(|(i, d)| line(ui, i + 1, d, input.has_ranges));
@@ -166,10 +166,8 @@ fn attempt_line(ui: &mut Ui, attempt: &Attempt, objects: &[Object]) -> Option<Co
     ui.monospace(plain(attempt.gain_decades, 2));
     ui.label(attempt.verdict.to_string());
     ui.end_row();
-    let selected = |place| {
-        Command::from(EditCommand::Select(nearest(objects, place).into_iter().collect(), SelectionMode::Replace))
-    };
-    place.filter(|_| clicked).map(selected)
+    let selected = |place| EditCommand::Select(nearest(objects, place).into_iter().collect(), SelectionMode::Replace);
+    place.filter(|_| clicked).map(|place| selected(place).into())
 }
 
 /// The object that has a reflector nearest to a place; `None` where none is near. Samples do not distinguish y from -y.
