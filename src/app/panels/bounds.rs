@@ -4,8 +4,8 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::{BoundsRequest, BoundsResult, Jobs};
 use crate::app::state::{BoundsSettings, Command, Elements, State, ViewCommand};
 use crate::app::widgets::{
-    Axis, Bar, Chart, Inks, MARK, NumberField, Texture, axes, choice, colour_table, computed, cross, direction, edged,
-    labelled, padded, significant, warning,
+    Axis, Bar, Chart, Computed, Inks, MARK, NumberField, Texture, axes, choice, colour_table, computed, cross,
+    direction, edged, labelled, padded, significant, warning,
 };
 use crate::bounds::PositionBound;
 use crate::picture::ColourMap;
@@ -31,13 +31,8 @@ impl Content for BoundsPanel {
     }
 }
 
-/// Draws the panel with the bounds, or with the reason why there are none; `None` before the first.
-pub fn show(
-    ui: &mut Ui,
-    state: &State,
-    result: Option<Result<&BoundsResult, &str>>,
-    texture: &mut Texture,
-) -> Vec<Command> {
+/// Draws the panel with the bounds.
+pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, BoundsResult>, texture: &mut Texture) -> Vec<Command> {
     if BoundsRequest::of(state).is_none() {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));
         return Vec::new();
@@ -68,7 +63,7 @@ fn choices(ui: &mut Ui, settings: &mut BoundsSettings, most: usize) {
     ui.horizontal_wrapped(|ui| {
         let count = if let Elements::Random(count) = settings.elements { count } else { 24 };
         let offered = [Elements::TwoEnds, Elements::OneEnd, Elements::Random(count), Elements::Mimo, Elements::All];
-        choice(ui, "Seen by", "Which elements listen", &mut settings.elements, offered, |e| e.name().to_owned());
+        choice(ui, "Seen by", "Which elements listen", &mut settings.elements, offered, |e| (e.name().to_owned(), ""));
         if let Elements::Random(count) = &mut settings.elements {
             ui.add(NumberField::new(count).range(2..=most).suffix(" of them")).on_hover_text("How many elements");
             labelled(ui, "seed", "", NumberField::new(&mut settings.seed).speed(0.05));

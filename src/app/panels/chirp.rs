@@ -4,7 +4,7 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::{ChirpQuery, ChirpResult, Jobs};
 use crate::app::state::{ChirpSettings, Command, RadarCommand, State, ViewCommand};
 use crate::app::widgets::legend::{self, Sign};
-use crate::app::widgets::{Axis, Chart, Drawn, Inks, NumberField, axes, labelled, padded};
+use crate::app::widgets::{Axis, Chart, Computed, Drawn, Inks, NumberField, axes, labelled, padded};
 use crate::radar::{Carrier, Radar};
 use crate::scene::Interferer;
 use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
@@ -60,8 +60,8 @@ impl Content for ChirpPanel {
     }
 }
 
-/// Draws the panel with the beat, or with the reason why there is none; `None` before the first. A low panel scrolls to its charts.
-pub fn show(ui: &mut Ui, state: &State, result: Option<Result<&ChirpResult, &str>>) -> Vec<Command> {
+/// Draws the panel with the beat. A low panel scrolls to its charts.
+pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>) -> Vec<Command> {
     padded(ui, |ui, asked| {
         let height = ui.available_height();
         let scroll = egui::ScrollArea::vertical().auto_shrink(false);
@@ -70,13 +70,7 @@ pub fn show(ui: &mut Ui, state: &State, result: Option<Result<&ChirpResult, &str
 }
 
 /// Draws the contents of a panel `height` points high.
-fn contents(
-    ui: &mut Ui,
-    state: &State,
-    result: Option<Result<&ChirpResult, &str>>,
-    height: f32,
-    asked: &mut Vec<Command>,
-) {
+fn contents(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>, height: f32, asked: &mut Vec<Command>) {
     let (radar, top) = (state.radar(), ui.cursor().top());
     let element = state.settings.chirp.element.min(radar.elements - 1);
     let echoes = if state.is_recorded() { Vec::new() } else { heard(radar, state.scene(), element) };

@@ -4,7 +4,7 @@ use super::map::{self, MapMemory, caption_of, is_updating, map_input, marks_of, 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, Wants};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
-use crate::app::widgets::{LIST_HEIGHT, button, choice_told, labelled, method_list, padded, percent, progress};
+use crate::app::widgets::{LIST_HEIGHT, button, choice, labelled, method_list, padded, percent, progress};
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 
 /// Height of a map's title, points.
@@ -124,7 +124,7 @@ fn choices(ui: &mut Ui, state: &State, second_progress: Option<f32>, asked: &mut
         }
         if compare.layout != Layout::Beside {
             for (label, map) in ["of", "and"].into_iter().zip(&mut compare.maps) {
-                choice_told(ui, label, "", map, Compare::OFFERED, |kind| (kind.title().to_owned(), kind.describe()));
+                choice(ui, label, "", map, Compare::OFFERED, |kind| (kind.title().to_owned(), kind.describe()));
             }
         }
         button(ui, "Flip maps", ViewCommand::Flip, true, asked);

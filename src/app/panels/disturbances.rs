@@ -47,17 +47,27 @@ fn number(ui: &mut Ui, quantity: Quantity, value: &mut f64) {
     ui.end_row();
 }
 
-fn interferer(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
-    let now = state.editor.scene().disturbances.interferer;
+/// Draws the box that switches a disturbance on or off, and the `rows` of its numbers. Returns the disturbance where it was changed.
+fn switched<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    (name, tooltip): (&str, &str),
+    now: Option<T>,
+    usual: T,
+    rows: impl FnOnce(&mut Ui, &mut T),
+) -> Option<Option<T>> {
     let mut on = now.is_some();
-    let tooltip = "Another radar whose chirps are not synchronised: received while its frequency crosses ours";
-    if ui.checkbox(&mut on, "Interferer").on_hover_text(tooltip).changed() {
-        asked.push(RadarCommand::SetInterferer(on.then(|| Interferer::before(state.radar()))).into());
-        return;
+    if ui.checkbox(&mut on, name).on_hover_text(tooltip).changed() {
+        return Some(on.then_some(usual));
     }
-    let Some(now) = now else { return };
-    let mut edited = now;
-    Grid::new("interferer").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+    let mut edited = now?;
+    Grid::new(name).num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| rows(ui, &mut edited));
+    (now != Some(edited)).then_some(Some(edited))
+}
+
+fn interferer(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
+    let tooltip = "Another radar whose chirps are not synchronised: received while its frequency crosses ours";
+    let (now, usual) = (state.editor.scene().disturbances.interferer, Interferer::before(state.radar()));
+    let changed = switched(ui, ("Interferer", tooltip), now, usual, |ui, edited| {
         number(ui, metres("interferer's x", "Position along the array's axis"), &mut edited.x_metres);
         number(ui, metres("interferer's y", "Position ahead of the array"), &mut edited.y_metres);
         let tooltip = "Its amplitude at 1 m, in units of the radar's power; a reflector of reflectivity 1 at 1 m has 1";
@@ -67,25 +77,16 @@ fn interferer(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
         let tooltip = "For which part of the chirp it is received: the steeper its chirp relative to ours, the shorter";
         number(ui, percent("duration (% of chirp)", tooltip, 0.1, 200.0), &mut edited.duration);
     });
-    if edited != now {
-        asked.push(RadarCommand::SetInterferer(Some(edited)).into());
-    }
+    asked.extend(changed.map(|interferer| Command::Radar(RadarCommand::SetInterferer(interferer))));
 }
 
 fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
-    let mut on = now.is_some();
     let tooltip = "A straight wall: every reflector on the radar's side of it gets three ghosts";
-    if ui.checkbox(&mut on, "Mirror").on_hover_text(tooltip).changed() {
-        asked.push(RadarCommand::SetMirror(on.then(Mirror::default)).into());
-        return;
-    }
-    let Some(now) = now else { return };
-    let mut edited = now;
-    Grid::new("mirror").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+    let changed = switched(ui, ("Mirror", tooltip), now, Mirror::default(), |ui, edited| {
         number(ui, metres("mirror's x", "Of a point of the wall"), &mut edited.x_metres);
         number(ui, metres("mirror's y", "Of the same point"), &mut edited.y_metres);
         let tooltip = "Where the wall leads: 0° straight ahead, 90° along the array to the right";
-        let before = 90.0 - now.direction_degrees;
+        let before = 90.0 - edited.direction_degrees;
         let mut leads = before;
         number(ui, metres("direction", tooltip).with("°", [-360.0, 360.0], 0.5, 4), &mut leads);
         if leads != before {
@@ -94,9 +95,7 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
         let tooltip = "Part of an amplitude that the wall reflects; a ghost over it both ways has the square of it";
         number(ui, percent("reflection", tooltip, 0.0, 100.0), &mut edited.reflection);
     });
-    if edited != now {
-        asked.push(RadarCommand::SetMirror(Some(edited)).into());
-    }
+    asked.extend(changed.map(|mirror| Command::Radar(RadarCommand::SetMirror(mirror))));
 }
 
 #[cfg(test)]

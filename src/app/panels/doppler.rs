@@ -5,8 +5,8 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::{DopplerQuery, DopplerResult, Jobs};
 use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
 use crate::app::widgets::{
-    Axis, Bar, Chart, Drawn, MARK, MARK_EDGE, NumberField, Texture, axes, colour_table, computed, edged, labelled,
-    padded, press, tick, warning,
+    Axis, Bar, Chart, Computed, Drawn, MARK, MARK_EDGE, NumberField, Texture, axes, colour_table, computed, edged,
+    labelled, padded, press, tick, warning,
 };
 use crate::maps::Normalisation;
 use crate::radar::{MAX_CHIRPS, Radar};
@@ -39,10 +39,7 @@ impl Content for DopplerPanel {
     }
 }
 
-/// The map, or the reason why there is none; `None` before the first.
-type Shown<'a> = Option<Result<&'a DopplerResult, &'a str>>;
-
-pub fn show(ui: &mut Ui, state: &State, result: Shown<'_>, texture: &mut Texture) -> Vec<Command> {
+pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, DopplerResult>, texture: &mut Texture) -> Vec<Command> {
     padded(ui, |ui, asked| {
         chirps(ui, state, result, asked);
         match state.frames() {
@@ -60,7 +57,7 @@ pub fn show(ui: &mut Ui, state: &State, result: Shown<'_>, texture: &mut Texture
 }
 
 /// Draws the fields of the chirps' number and interval, and the velocities that follow.
-fn chirps(ui: &mut Ui, state: &State, result: Shown<'_>, asked: &mut Vec<Command>) {
+fn chirps(ui: &mut Ui, state: &State, result: Computed<'_, DopplerResult>, asked: &mut Vec<Command>) {
     let mut radar = state.radar().clone();
     ui.add_enabled_ui(!state.is_recorded(), |ui| {
         ui.horizontal_wrapped(|ui| {
@@ -123,7 +120,7 @@ fn play(ui: &mut Ui, state: &State, tip: &str, asked: &mut Vec<Command>) {
 }
 
 /// Writes why there is no map, or a note on the map.
-fn said(ui: &mut Ui, state: &State, result: Shown<'_>, asked: &mut Vec<Command>) {
+fn said(ui: &mut Ui, state: &State, result: Computed<'_, DopplerResult>, asked: &mut Vec<Command>) {
     if state.is_recorded() {
         let text = match result {
             None => "The loops of a raw capture's frame, or of an array, make this map. One chirp tells no velocity.",
@@ -153,16 +150,11 @@ fn said(ui: &mut Ui, state: &State, result: Shown<'_>, asked: &mut Vec<Command>)
     }
 }
 
-/// Limits of a map's axes: velocities in m/s to the edges of the outer columns, ranges in metres to the edges of the bins.
-fn reach(radar: &Radar) -> ([f64; 2], [f64; 2]) {
-    let velocity = |column: f64| radar.velocity_of_column_metres_per_second(column);
-    let range = |bin: f64| radar.range_of_bin_metres(bin);
-    ([velocity(-0.5), velocity(radar.chirps as f64 - 0.5)], [range(-0.5), range(radar.samples as f64 - 0.5)])
-}
-
 fn map(ui: &mut Ui, state: &State, result: &DopplerResult, texture: TextureId) {
     let radar = &result.radar;
-    let (velocities, ranges) = reach(radar);
+    // To the edges of the outer columns and bins.
+    let velocities = [-0.5, radar.chirps as f64 - 0.5].map(|column| radar.velocity_of_column_metres_per_second(column));
+    let ranges = [-0.5, radar.samples as f64 - 0.5].map(|bin| radar.range_of_bin_metres(bin));
     let beyond = 0.06 * (velocities[1] - velocities[0]);
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
@@ -216,11 +208,8 @@ fn told(result: &DopplerResult, velocity: f64, range: f64) -> Option<String> {
         v if v > 0.0 => ", going away",
         _ => "",
     };
-    Some(format!(
-        "{velocity:.2} m/s{towards}\nrange {:.2} m\n{:.1} dB below the peak",
-        radar.range_of_bin_metres(bin),
-        -20.0 * level
-    ))
+    let (range, below) = (radar.range_of_bin_metres(bin), -20.0 * level);
+    Some(format!("{velocity:.2} m/s{towards}\nrange {range:.2} m\n{below:.1} dB below the peak"))
 }
 
 #[cfg(test)]

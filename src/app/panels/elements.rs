@@ -10,7 +10,7 @@ use self::strip::MOST_MILLIMETRES;
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Calibrated, CalibrationQuery, Jobs};
 use crate::app::state::{Command, RadarCommand, State};
-use crate::app::widgets::{NumberField, labelled, press, scrolled};
+use crate::app::widgets::{Computed, NumberField, labelled, press, scrolled};
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
 use eframe::egui::{CollapsingHeader, Grid, TextEdit, Ui};
 use std::sync::Arc;
@@ -47,13 +47,8 @@ impl Content for ElementsPanel {
     }
 }
 
-/// Draws the panel with the calibration on the selected point, or the reason why there is none; `None` where no point is selected.
-pub fn show(
-    ui: &mut Ui,
-    state: &State,
-    calibrated: Option<Result<&Calibrated, &str>>,
-    memory: &mut ElementsMemory,
-) -> Vec<Command> {
+/// Draws the panel with the calibration on the selected point; `None` where no point is selected.
+pub fn show(ui: &mut Ui, state: &State, found: Computed<'_, Calibrated>, memory: &mut ElementsMemory) -> Vec<Command> {
     memory.chosen = memory.chosen.min(state.radar().elements - 1);
     scrolled(ui, |ui, asked| {
         summary(ui, state.elements(), asked);
@@ -67,7 +62,7 @@ pub fn show(
         bend(ui, state, memory, asked);
         list(ui, state.radar(), memory, asked);
         ui.separator();
-        calibration(ui, calibrated, asked);
+        calibration(ui, found, asked);
     })
 }
 
@@ -96,7 +91,7 @@ fn summary(ui: &mut Ui, elements: &BuiltArray, asked: &mut Vec<Command>) {
 
 /// Text of an array's errors: dead elements, and the spread of gain, phase and place.
 fn told(elements: &BuiltArray) -> String {
-    let Tolerances { gain, phase_degrees, position_millimetres } = elements.spread();
+    let Tolerances { gain: Decibels(gain), phase_degrees, position_millimetres } = elements.spread();
     let dead = match elements.dead() {
         0 => String::new(),
         n => format!("{n} dead, "),
@@ -105,10 +100,8 @@ fn told(elements: &BuiltArray) -> String {
         0.0 => String::new(),
         most => format!(", up to {most:.2} mm off the line"),
     };
-    format!(
-        "{dead}as drawn: gain ±{:.2} dB, phase ±{phase_degrees:.1}°, place ±{position_millimetres:.2} mm{off_the_line}",
-        gain.0
-    )
+    let place = format!("place ±{position_millimetres:.2} mm{off_the_line}");
+    format!("{dead}as drawn: gain ±{gain:.2} dB, phase ±{phase_degrees:.1}°, {place}")
 }
 
 /// Tooltip of the spread, with its usual random difference from the chosen standard deviation.
@@ -196,7 +189,7 @@ fn list(ui: &mut Ui, radar: &Radar, memory: &mut ElementsMemory, asked: &mut Vec
     });
 }
 
-fn calibration(ui: &mut Ui, calibrated: Option<Result<&Calibrated, &str>>, asked: &mut Vec<Command>) {
+fn calibration(ui: &mut Ui, calibrated: Computed<'_, Calibrated>, asked: &mut Vec<Command>) {
     let found = match calibrated.unwrap_or(Err("Select a point to calibrate the elements on its echo.")) {
         Ok(found) => found,
         Err(reason) => {

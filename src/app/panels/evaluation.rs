@@ -157,45 +157,44 @@ fn tables(ui: &mut Ui, lines: &[Line]) {
         }
         ui.strong(format!("Table 4.{}: {name}", set + 1));
         let has_cfar = lines.iter().any(|line| line.cfar.is_some());
-        Grid::new(("table", set)).num_columns(if has_cfar { 8 } else { 6 }).striped(true).spacing([8.0, 3.0]).show(
-            ui,
-            |ui| {
-                let at = format!("P_D % at\nP_FA {:.2} %\n(own η)", 100.0 * PRINTED_EXPERIMENT_2[set].false_alarm);
-                for title in ["", "SE", "P_D %", "P_FA %"] {
-                    ui.weak(title);
-                }
-                ui.weak(&at).on_hover_text(
-                    "Every scene has a threshold of its own here, which holds its P_FA to the printed one.\n\
+        let grid = Grid::new(("table", set)).num_columns(if has_cfar { 8 } else { 6 }).striped(true);
+        grid.spacing([8.0, 3.0]).show(ui, |ui| {
+            let at = format!("P_D % at\nP_FA {:.2} %\n(own η)", 100.0 * PRINTED_EXPERIMENT_2[set].false_alarm);
+            for title in ["", "SE", "P_D %", "P_FA %"] {
+                ui.weak(title);
+            }
+            ui.weak(&at).on_hover_text(
+                "Every scene has a threshold of its own here, which holds its P_FA to the printed one.\n\
                  The printed P_D is at one threshold for all scenes: it belongs to the column P_D %.",
-                );
-                if has_cfar {
-                    let tip = "Each cell is held against the cells around it, by the detector of the Settings panel";
-                    ui.weak("P_D %\nby CFAR").on_hover_text(tip);
-                    ui.weak("P_FA %\nby CFAR").on_hover_text(tip);
+            );
+            if has_cfar {
+                let tip = "Each cell is held against the cells around it, by the detector of the Settings panel";
+                ui.weak("P_D %\nby CFAR").on_hover_text(tip);
+                ui.weak("P_FA %\nby CFAR").on_hover_text(tip);
+            }
+            ui.weak("ms");
+            ui.end_row();
+            for (name, columns) in PRINTED {
+                let printed = columns[set];
+                ui.weak(name);
+                ui.monospace(format!("{:.0}", printed.squared_error));
+                for rate in [printed.detection, printed.false_alarm] {
+                    ui.monospace(format!("{:.2}", 100.0 * rate));
                 }
-                ui.weak("ms");
                 ui.end_row();
-                for (name, columns) in PRINTED {
-                    let printed = columns[set];
-                    ui.weak(name);
-                    ui.monospace(format!("{:.0}", printed.squared_error));
-                    ui.monospace(format!("{:.2}", 100.0 * printed.detection));
-                    ui.monospace(format!("{:.2}", 100.0 * printed.false_alarm));
-                    ui.end_row();
+            }
+            for line in lines {
+                let scenes = counted(line.scenes, "scene", "scenes");
+                ui.strong(&line.label)
+                    .on_hover_text(format!("{scenes}; mean ± standard error, and the median in brackets"));
+                line.figures.iter().for_each(|figure| _ = ui.monospace(figure));
+                for i in 0..if has_cfar { 2 } else { 0 } {
+                    ui.monospace(line.cfar.as_ref().map_or("–", |rates| &rates[i]));
                 }
-                for line in lines {
-                    let scenes = counted(line.scenes, "scene", "scenes");
-                    ui.strong(&line.label)
-                        .on_hover_text(format!("{scenes}; mean ± standard error, and the median in brackets"));
-                    line.figures.iter().for_each(|figure| _ = ui.monospace(figure));
-                    for i in 0..if has_cfar { 2 } else { 0 } {
-                        ui.monospace(line.cfar.as_ref().map_or("–", |rates| &rates[i]));
-                    }
-                    ui.monospace(&line.milliseconds);
-                    ui.end_row();
-                }
-            },
-        );
+                ui.monospace(&line.milliseconds);
+                ui.end_row();
+            }
+        });
         ui.add_space(8.0);
     }
 }

@@ -91,9 +91,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             Grid::new("found").num_columns(6).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
                 if !found.is_empty() {
                     let cosine = "Cosine of the angle to the array's axis, as the maps count directions";
-                    let (range, power) =
-                        ("From the centre of the array", "Power of the echo, relative to the strongest");
-                    let measured = [("angle", CONVENTION), ("cos θ", cosine), ("range", range), ("dB", power)];
+                    let power = "Power of the echo, relative to the strongest";
+                    let range = ("range", "From the centre of the array");
+                    let measured = [("angle", CONVENTION), ("cos θ", cosine), range, ("dB", power)];
                     headings(ui, [("", "")].into_iter().chain(measured).chain([("needed", NEEDED)]));
                 }
                 found.iter().take(LINES).enumerate().for_each(|(i, d)| line(ui, i + 1, d, input.has_ranges));
@@ -101,7 +101,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
             if more > 0 {
                 ui.weak(format!("and {more} weaker ones"));
             }
-            asked.extend(attempts(ui, input.attempts, input.objects));
+            attempts(ui, input.attempts, input.objects, asked);
         });
     })
 }
@@ -132,23 +132,21 @@ const ATTEMPT_COLUMNS: [(&str, &str); 4] = [
 ];
 
 /// Draws the folded group; nothing where there is no attempt. `objects` are those of the scene on screen.
-fn attempts(ui: &mut Ui, attempts: &[Attempt], objects: &[Object]) -> Vec<Command> {
-    let mut commands = Vec::new();
+fn attempts(ui: &mut Ui, attempts: &[Attempt], objects: &[Object], asked: &mut Vec<Command>) {
     if attempts.is_empty() {
-        return commands;
+        return;
     }
     CollapsingHeader::new(ATTEMPTS_HEADING).id_salt("attempts").show_unindented(ui, |ui| {
         Grid::new("attempts").num_columns(4).striped(true).spacing([14.0, 3.0]).show(ui, |ui| {
             headings(ui, ATTEMPT_COLUMNS);
             for attempt in attempts {
-                commands.extend(attempt_line(ui, attempt, objects));
+                asked.extend(attempt_line(ui, attempt, objects));
             }
         });
         if attempts.len() == MOST_ATTEMPTS {
             ui.weak(format!("The search tried more. The first {MOST_ATTEMPTS} attempts are listed."));
         }
     });
-    commands
 }
 
 /// Draws the line of an attempt. A click selects the object at its place.
@@ -166,10 +164,8 @@ fn attempt_line(ui: &mut Ui, attempt: &Attempt, objects: &[Object]) -> Option<Co
     ui.monospace(plain(attempt.gain_decades, 2));
     ui.label(attempt.verdict.to_string());
     ui.end_row();
-    let selected = |place| {
-        Command::from(EditCommand::Select(nearest(objects, place).into_iter().collect(), SelectionMode::Replace))
-    };
-    place.filter(|_| clicked).map(selected)
+    let selected = |place| EditCommand::Select(nearest(objects, place).into_iter().collect(), SelectionMode::Replace);
+    place.filter(|_| clicked).map(|place| selected(place).into())
 }
 
 /// The object that has a reflector nearest to a place; `None` where none is near. Samples do not distinguish y from -y.
@@ -264,7 +260,7 @@ mod tests {
 
     fn attempts_panel(attempts: Vec<Attempt>, scene: Scene) -> Harness<'static, Vec<Command>> {
         let draw = move |ui: &mut Ui, commands: &mut Vec<Command>| {
-            commands.extend(super::attempts(ui, &attempts, &scene.objects));
+            super::attempts(ui, &attempts, &scene.objects, commands);
         };
         let mut panel = Harness::builder().with_size([700.0, 300.0]).build_ui_state(draw, Vec::new());
         panel.run();

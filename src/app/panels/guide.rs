@@ -23,7 +23,9 @@ const CHAPTERS: &[&[Step]] = &[
         ("One reflector at 20 m", || scene("one-at-20-m", thesis())),
         ("A tenth of a radian off", || scene("one-at-20-m-a-tenth-of-a-radian-off", thesis())),
     ],
-    &[("Rings around four blobs", || scene("four-reflectors", rings(thesis())))],
+    &[("Rings around four blobs", || {
+        scene("four-reflectors", [thesis(), vec![ViewCommand::MarkReflectors.into()]].concat())
+    })],
     &[
         ("Four reflectors, Hann", || scene("four-reflectors", window(WindowFunction::Hann))),
         ("No window", || scene("four-reflectors", window(WindowFunction::Rectangular))),
@@ -113,12 +115,6 @@ fn thesis() -> Vec<Command> {
     ]
 }
 
-/// `then`, followed by the command that marks the true reflectors in the maps.
-fn rings(mut then: Vec<Command>) -> Vec<Command> {
-    then.push(ViewCommand::MarkReflectors.into());
-    then
-}
-
 /// Commands for a window without a floor, so that its side lobes are all there is to see.
 fn window(window: WindowFunction) -> Vec<Command> {
     vec![
@@ -129,20 +125,13 @@ fn window(window: WindowFunction) -> Vec<Command> {
 }
 
 fn floor(floor: Floor, normalisation: Normalisation) -> Vec<Command> {
-    scene(
-        "one-at-20-m",
-        vec![Command::View(ViewCommand::SetFloor(floor)), Command::View(ViewCommand::Normalise(normalisation))],
-    )
+    let commands = [ViewCommand::SetFloor(floor), ViewCommand::Normalise(normalisation)].map(Command::View);
+    scene("one-at-20-m", commands.to_vec())
 }
 
 /// The chapters of [`TEXT`].
 fn chapters() -> impl Iterator<Item = &'static str> {
-    let starts = TEXT.match_indices("## ").filter(|(i, _)| *i == 0 || TEXT.as_bytes()[i - 1] == b'\n').map(|(i, _)| i);
-    let mut starts = starts.peekable();
-    std::iter::from_fn(move || {
-        let start = starts.next()?;
-        Some(&TEXT[start..starts.peek().copied().unwrap_or(TEXT.len())])
-    })
+    TEXT.split("\n## ")
 }
 
 fn heading(chapter: &str) -> &str {

@@ -2,15 +2,14 @@
 
 mod answer;
 mod list;
-mod memory;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, LessonCommand, LessonRun, State};
 use crate::app::widgets::{LARGE_TEXT_RATIO, button, inline, large, press};
+pub use answer::LessonMemory;
 use answer::{answer, answered, judgement, requirements};
 use eframe::egui::{self, ScrollArea, TextureId, TextureOptions, Ui};
 use list::list;
-pub use memory::LessonMemory;
 
 pub struct LessonPanel;
 

@@ -37,11 +37,8 @@ pub fn show(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory) -> Vec<Comma
         return asked;
     }
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(6, 4)).show(ui, |ui| {
-        let list = ui.interact(
-            ui.available_rect_before_wrap(),
-            ui.scope_id().with("objects"),
-            Sense::focusable_noninteractive(),
-        );
+        let (area, id) = (ui.available_rect_before_wrap(), ui.scope_id().with("objects"));
+        let list = ui.interact(area, id, Sense::focusable_noninteractive());
         list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Objects"));
         focus_after_click(&list, &mut memory.was_clicked);
         if list.has_focus() {

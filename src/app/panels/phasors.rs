@@ -3,9 +3,9 @@
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, PhasorsQuery, PhasorsResult};
 use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
-use crate::app::widgets::legend::{self, Entry, Sign};
+use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{
-    Axis, Chart, Drawn, Inks, MARK, computed, direction, edged, empty_text, labelled, padded, plain,
+    Axis, Chart, Computed, Drawn, Inks, MARK, computed, direction, edged, empty_text, labelled, padded, plain,
 };
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
@@ -43,11 +43,11 @@ impl Content for PhasorsPanel {
     }
 }
 
-/// Draws the panel with the chains, or with the reason why there are none; `None` before the first.
+/// Draws the panel with the chains.
 pub fn show(
     ui: &mut Ui,
     state: &State,
-    result: Option<Result<&PhasorsResult, &str>>,
+    result: Computed<'_, PhasorsResult>,
     memory: &mut PhasorsMemory,
 ) -> Vec<Command> {
     padded(ui, |ui, asked| {
@@ -133,10 +133,10 @@ fn whole_length(chain: &Phasors) -> f64 {
 
 /// Draws the chains in the complex plane, both axes to one scale.
 fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
-    let entries: Vec<Entry> =
-        drawn(result).map(|(_, kind)| (Sign::Line, kind.ink(ui).1, kind.ink(ui).0.to_owned())).collect();
-    if entries.len() > 1 {
-        legend::row(ui, &entries);
+    let drawn = drawn(ui, result);
+    if drawn.len() > 1 {
+        let entry = |(_, name, colour, _): &Drawable<'_>| (Sign::Line, *colour, (*name).to_owned());
+        legend::row(ui, &drawn.iter().map(entry).collect::<Vec<_>>());
     }
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
@@ -146,10 +146,10 @@ fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
         return;
     }
     let place = |z: &Complex64| [z.re / unit, z.im / unit];
-    let chains: Vec<(Vec<[f64; 2]>, Kind)> =
-        drawn(result).map(|(chain, kind)| (chain.chain().iter().map(place).collect(), kind)).collect();
+    let chains: Vec<Vec<[f64; 2]>> =
+        drawn.iter().map(|(chain, ..)| chain.chain().iter().map(place).collect()).collect();
     let axis = |i: usize, title| {
-        let values = chains.iter().flat_map(|(chain, _)| chain.iter().map(|place| place[i]));
+        let values = chains.iter().flatten().map(|place| place[i]);
         let (low, high) = values.fold((0.0, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)));
         let room = 0.08 * (high - low).max(1e-6);
         Axis::new(low - room, high + room, title)
@@ -157,51 +157,37 @@ fn chart(ui: &mut Ui, radar: &Radar, result: &PhasorsResult, part: f32) {
     let (x, y) = (axis(0, "real part, of the length of all contributions"), axis(1, "imaginary part"));
     let mut chart = Chart::new("Phasors in the complex plane", x, y).with_one_scale();
     let count = drawn_count(part, result.measured.contributions.len());
-    for (chain, kind) in &chains {
-        line(ui, &mut chart, radar, &chain[..=count.min(chain.len() - 1)], *kind, result.measured.first_element);
+    for (n, (chain, (_, _, colour, style))) in chains.iter().zip(drawn).enumerate() {
+        let chain = &chain[..=count.min(chain.len() - 1)];
+        chart.line(chain.iter().copied(), Stroke::new(1.4, colour), style);
+        if n == 0 {
+            ends(ui, &mut chart, radar, chain, result.measured.first_element);
+        }
     }
     let drawn = chart.show(ui, area, Sense::hover());
-    if let Some(end) = chains.first().and_then(|(chain, _)| chain.get(count)) {
+    if let Some(end) = chains.first().and_then(|chain| chain.get(count)) {
         arrow(&drawn, *end);
     }
 }
 
-/// The samples that a chain is made of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Measured,
-    Focused,
-    Echoes,
-    Residual,
+/// A chain with its name, its colour and its style.
+type Drawable<'a> = (&'a Phasors, &'static str, Color32, LineStyle);
+
+/// The chains, that of the samples first.
+fn drawn<'a>(ui: &Ui, result: &'a PhasorsResult) -> Vec<Drawable<'a>> {
+    let inks = Inks::of(ui.visuals());
+    let all = [
+        (Some(&result.measured), "all elements", inks.reflector, LineStyle::Solid),
+        (result.focused.as_ref(), "focused", inks.selected, LineStyle::Solid),
+        (result.echoes.as_ref(), "echoes alone", inks.grid_text, LineStyle::dashed_dense()),
+        (result.residual.as_ref(), "residual", inks.found, LineStyle::Solid),
+    ];
+    all.into_iter().filter_map(|(chain, name, colour, style)| Some((chain?, name, colour, style))).collect()
 }
 
-impl Kind {
-    /// Name and colour of the chain.
-    fn ink(self, ui: &Ui) -> (&'static str, Color32) {
-        let inks = Inks::of(ui.visuals());
-        match self {
-            Kind::Measured => ("all elements", inks.reflector),
-            Kind::Focused => ("focused", inks.selected),
-            Kind::Echoes => ("echoes alone", inks.grid_text),
-            Kind::Residual => ("residual", inks.found),
-        }
-    }
-}
-
-fn drawn(result: &PhasorsResult) -> impl Iterator<Item = (&Phasors, Kind)> {
-    let others = [(&result.focused, Kind::Focused), (&result.echoes, Kind::Echoes), (&result.residual, Kind::Residual)];
-    let others = others.into_iter().filter_map(|(chain, kind)| chain.as_ref().map(|chain| (chain, kind)));
-    std::iter::once((&result.measured, Kind::Measured)).chain(others)
-}
-
-/// Draws a chain, the pieces of the two ends of the array in their colours.
-fn line(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], kind: Kind, first_element: usize) {
-    let style = if kind == Kind::Echoes { LineStyle::dashed_dense() } else { LineStyle::Solid };
-    chart.line(chain.iter().copied(), Stroke::new(1.4, kind.ink(ui).1), style);
-    if kind != Kind::Measured {
-        return;
-    }
-    for (end, colour) in [End::First, End::Last].into_iter().zip(Inks::of(ui.visuals()).ends) {
+/// Draws the pieces of the two ends of the array in their colours over a chain.
+fn ends(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], first_element: usize) {
+    for (end, colour) in End::BOTH.into_iter().zip(Inks::of(ui.visuals()).ends) {
         let range = radar.end_range(end);
         let from = range.start.saturating_sub(first_element).min(chain.len());
         let to = (range.end + 1).saturating_sub(first_element).min(chain.len());

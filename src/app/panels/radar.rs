@@ -11,8 +11,8 @@ use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::{Quantity, headings, labelled, scrolled_both};
 use crate::lesson::Step;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
+use crate::scene::Object;
 use crate::theory::Consequences;
-use budget::Selected;
 use eframe::egui::{ComboBox, Label, RichText, Ui};
 use table::{Table, number};
 
@@ -58,12 +58,12 @@ fn solved_by(step: &Step) -> Option<&'static str> {
 }
 
 /// The selected object, where it is a single one and made of points.
-fn selected(state: &State) -> Option<Selected> {
+fn selected(state: &State) -> Option<(String, Object)> {
     let index = state.editor.selection().single()?;
     let object = state.editor.scene().objects.get(index).filter(|o| o.body().is_none())?;
     let name = object.called(index);
     let name = if object.reflector_count() == 1 { name } else { format!("a reflector of {name}") };
-    Some(Selected { name, place_metres: object.centre_metres(), reflectivity: object.reflectivity() })
+    Some((name, object.clone()))
 }
 
 /// Draws the panel; `sought` is the constant or the group that is to be brought into sight.
@@ -244,11 +244,8 @@ fn convention(ui: &mut Ui, table: Table, radar: &mut Radar, is_free: bool) {
     let is_filled = radar.element_spacing_metres == radar.filled_spacing_metres();
     let squint = 100.0 * (radar.squint() - 1.0);
     let text = match is_filled {
-        true => format!(
-            "blobs stand {:.1} % {} broadside",
-            squint.abs(),
-            if squint < 0.0 { "nearer to" } else { "farther from" }
-        ),
+        true if squint < 0.0 => format!("blobs stand {:.1} % nearer to broadside", -squint),
+        true => format!("blobs stand {squint:.1} % farther from broadside"),
         false => format!("the spacing is another than its own, {:.3} mm", 1e3 * radar.filled_spacing_metres()),
     };
     table.row(ui, ("convention", tooltip), &text, |ui, label| {

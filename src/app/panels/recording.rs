@@ -2,7 +2,7 @@
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{CardPlan, Command, DocumentCommand, Purpose, Way, WorkCommand};
-use crate::app::widgets::{Inks, NumberField, button, choice_told, labelled, scrolled, warning};
+use crate::app::widgets::{Inks, NumberField, button, choice, labelled, scrolled, warning};
 use crate::platform;
 use crate::recording::card::{CardSummary, USUAL_PORT};
 use crate::recording::raw::boards;
@@ -162,7 +162,7 @@ fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
         let mut taken = origin.board.unwrap_or("the .cfg");
         let guide = |name: &str| boards::ALL.iter().find(|board| board.name == name).map_or("", |board| board.guide);
         let offered = boards::ALL.iter().map(|board| board.name);
-        choice_told(ui, "Antennas of", tooltip, &mut taken, offered, |name| ((*name).to_owned(), guide(name)));
+        choice(ui, "Antennas of", tooltip, &mut taken, offered, |name| ((*name).to_owned(), guide(name)));
         if origin.board != Some(taken) && boards::ALL.iter().any(|board| board.name == taken) {
             asked.push(Way::Board(taken));
         }

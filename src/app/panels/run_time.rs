@@ -29,17 +29,13 @@ pub struct Input<'a> {
 }
 
 /// The chosen measurement, and the rows to draw.
+#[derive(Default)]
 pub struct RunTimeMemory {
     thorough: bool,
-    task: FrontTask,
+    /// Whether the rows of drags are drawn, and not those from scratch.
+    drags: bool,
     /// Number of reflectors whose rows are drawn; all where `None`.
     reflectors: Option<usize>,
-}
-
-impl Default for RunTimeMemory {
-    fn default() -> Self {
-        RunTimeMemory { thorough: false, task: FrontTask::Scratch, reflectors: None }
-    }
 }
 
 pub struct RunTimePanel;
@@ -92,18 +88,15 @@ pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Co
 fn filter(ui: &mut Ui, rows: &[FrontRow], memory: &mut RunTimeMemory) {
     let counts: BTreeSet<usize> = rows.iter().map(|r| r.reflectors).collect();
     ui.horizontal_wrapped(|ui| {
-        let text = |count: &Option<usize>| match count {
-            None => "all".to_owned(),
-            Some(count) => count.to_string(),
-        };
+        let text = |count: &Option<usize>| (count.map_or("all".to_owned(), |count| count.to_string()), "");
         let offered = std::iter::once(None).chain(counts.into_iter().map(Some));
         let tooltip = "Draw the measurements of so many reflectors";
         choice(ui, "Reflectors", tooltip, &mut memory.reflectors, offered, text);
         if rows.iter().any(|r| r.task == FrontTask::Drag) {
-            ui.selectable_value(&mut memory.task, FrontTask::Scratch, "from scratch");
-            ui.selectable_value(&mut memory.task, FrontTask::Drag, "one dragged");
+            ui.selectable_value(&mut memory.drags, false, "from scratch");
+            ui.selectable_value(&mut memory.drags, true, "one dragged");
         } else {
-            memory.task = FrontTask::Scratch;
+            memory.drags = false;
         }
     });
 }
@@ -129,7 +122,8 @@ struct Series {
 
 /// The drawn measurements, algorithm by algorithm.
 fn series(rows: &[FrontRow], memory: &RunTimeMemory, dark: bool) -> Vec<Series> {
-    let drawn = |r: &&FrontRow| r.task == memory.task && memory.reflectors.is_none_or(|count| count == r.reflectors);
+    let task = if memory.drags { FrontTask::Drag } else { FrontTask::Scratch };
+    let drawn = |r: &&FrontRow| r.task == task && memory.reflectors.is_none_or(|count| count == r.reflectors);
     let shown: Vec<&FrontRow> = rows.iter().filter(drawn).collect();
     let place = |r: &&&FrontRow| [r.signal_error.max(SMALLEST_ERROR).log10(), r.median_ms.log10()];
     let entrants = std::iter::once(Entrant::Planned).chain(Algorithm::ALL.map(Entrant::Forced));

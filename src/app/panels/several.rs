@@ -3,7 +3,7 @@
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, State, Variant, ViewCommand};
-use crate::app::widgets::{NumberField, Texture, choice, choice_told, labelled, member_box, method_lines, padded};
+use crate::app::widgets::{NumberField, Texture, choice, labelled, member_box, method_lines, padded};
 use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 
 /// Height of a map's name.
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Textu
         for (index, (small, texture)) in maps.iter().zip(textures).enumerate() {
             let corner = vec2((index % columns) as f32 * size.x, (index / columns) as f32 * size.y);
             let place = Rect::from_min_size(area.min + corner, size).shrink(3.0);
-            tile(ui, place, small, texture, state.settings.several.parameter, asked);
+            asked.extend(tile(ui, place, small, texture, state.settings.several.parameter));
         }
     })
 }
@@ -53,12 +53,12 @@ fn choices(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     let mut several = state.settings.several.clone();
     ui.horizontal_wrapped(|ui| {
         let mut parameter = several.parameter;
-        choice(ui, "Compare", "", &mut parameter, Parameter::ALL, |p| p.name().to_owned());
+        choice(ui, "Compare", "", &mut parameter, Parameter::ALL, |p| (p.name().to_owned(), ""));
         if parameter != several.parameter {
             several = several.with(parameter, state.radar());
         }
         let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output];
-        choice_told(ui, "in", "", &mut several.map, maps, |map| (map.title().to_owned(), map.describe()));
+        choice(ui, "in", "", &mut several.map, maps, |map| (map.title().to_owned(), map.describe()));
         match several.parameter.unit() {
             Some(unit) => numbers(ui, &mut several, unit),
             None if several.parameter == Parameter::Method => methods(ui, &mut several, state),
@@ -92,14 +92,7 @@ fn methods(ui: &mut Ui, several: &mut Several, state: &State) {
     .on_hover_text("Which methods, at most eight; the first eight where none is chosen");
 }
 
-fn tile(
-    ui: &mut Ui,
-    place: Rect,
-    small: &Small,
-    texture: &mut Texture,
-    parameter: Parameter,
-    asked: &mut Vec<Command>,
-) {
+fn tile(ui: &mut Ui, place: Rect, small: &Small, texture: &mut Texture, parameter: Parameter) -> Option<Command> {
     let Variant { label, .. } = &small.variant;
     let response = ui.interact(place, ui.scope_id().with(("small map", label)), Sense::click());
     let name = format!("{}: {label}", parameter.name());
@@ -125,9 +118,7 @@ fn tile(
             _ = painter.text(picture.center(), Align2::CENTER_CENTER, "computing…", FontId::proportional(11.0), ink)
         }
     }
-    if response.on_hover_text("Use this value for the scene").clicked() {
-        asked.extend(take(&small.variant, parameter));
-    }
+    response.on_hover_text("Use this value for the scene").clicked().then(|| take(&small.variant, parameter)).flatten()
 }
 
 /// The command that sets the scene's radar, floor or method to this value.

@@ -4,7 +4,7 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, LOG_INTERVAL, Log, LogQuery, Watched};
 use crate::app::state::{Command, Purpose, State};
 use crate::app::widgets::legend::{self, Sign};
-use crate::app::widgets::{Axis, Chart, button, padded, theme, warning};
+use crate::app::widgets::{Axis, Chart, Computed, button, padded, theme, warning};
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 use std::path::Path;
@@ -30,7 +30,7 @@ impl Content for TrainingPanel {
 }
 
 /// Draws the log at `path`, or the error of its last reading.
-pub fn show(ui: &mut Ui, path: Option<&Path>, read: Option<Result<&Log, &str>>) -> Vec<Command> {
+pub fn show(ui: &mut Ui, path: Option<&Path>, read: Computed<'_, Log>) -> Vec<Command> {
     let error = read.and_then(Result::err);
     padded(ui, |ui, asked| {
         button(ui, "Open training log…", Purpose::OpenLog, true, asked);
@@ -56,7 +56,12 @@ fn curves(ui: &mut Ui, log: &Log) {
     Grid::new("last").num_columns(8).spacing([10.0, 2.0]).show(ui, |ui| {
         for (i, (name, value)) in log.last.iter().enumerate() {
             ui.weak(name.replace('_', " "));
-            ui.monospace(value.parse::<f64>().map_or_else(|_| value.clone(), short));
+            // A whole number has all digits, others have five.
+            ui.monospace(match value.parse::<f64>() {
+                Ok(number) if number != number.trunc() || number.abs() >= 1e9 => format!("{number:.4e}"),
+                Ok(number) => number.to_string(),
+                Err(_) => value.clone(),
+            });
             if i % 4 == 3 {
                 ui.end_row();
             }
@@ -81,11 +86,6 @@ fn curves(ui: &mut Ui, log: &Log) {
     chart.line(log10(&log.smoothed), Stroke::new(1.8, lines[1].1), LineStyle::Solid);
     let drawn = chart.show(ui, ui.available_rect_before_wrap(), Sense::click_and_drag());
     drawn.tell(|[step, power]| Some(format!("step {step:.0}\nloss {:.3e}", 10f64.powf(power))));
-}
-
-/// Text of a number: a whole one with all digits, others with five.
-fn short(value: f64) -> String {
-    if value == value.trunc() && value.abs() < 1e9 { format!("{value}") } else { format!("{value:.4e}") }
 }
 
 #[cfg(test)]

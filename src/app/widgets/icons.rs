@@ -1,8 +1,7 @@
-//! Small drawn buttons.
+//! Small drawn buttons, and marks that are readable over any picture.
 
-use super::marks::cross;
 use super::theme::{MARK, MARK_EDGE};
-use eframe::egui::{self, Painter, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 
 /// The picture on a drawn button.
 pub enum Icon {
@@ -56,5 +55,19 @@ fn draw(painter: &Painter, r: Rect, icon: Icon, stroke: Stroke) {
             painter.hline(r.x_range(), r.center().y, stroke);
             painter.vline(r.center().x, r.y_range(), stroke);
         }
+    }
+}
+
+/// Draws twice: in a wide dark stroke, and over it in `colour`. `widths` are those of both strokes, points.
+pub fn edged<T>(widths: [f32; 2], colour: Color32, mut draw: impl FnMut(Stroke) -> T) {
+    for (width, colour) in widths.into_iter().zip([MARK_EDGE, colour]) {
+        draw(Stroke::new(width, colour));
+    }
+}
+
+/// Draws both diagonals of a box around a place; `half` is half its size, points.
+pub fn cross(painter: &Painter, at: Pos2, half: Vec2, stroke: Stroke) {
+    for half in [half, vec2(half.x, -half.y)] {
+        painter.line_segment([at - half, at + half], stroke);
     }
 }

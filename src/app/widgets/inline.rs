@@ -25,7 +25,8 @@ pub fn inline(ui: &Ui, text: &str, times: f32) -> LayoutJob {
             job.append(piece, 0.0, code.clone());
             continue;
         }
-        let mut rest = unwrapped(piece);
+        // Each paragraph on one line.
+        let mut rest = piece.split("\n\n").map(|text| text.replace('\n', " ")).collect::<Vec<_>>().join("\n\n");
         while let Some((before, words, after)) = emphasis(&rest) {
             job.append(before, 0.0, plain.clone());
             job.append(words, 0.0, strong.clone());
@@ -34,11 +35,6 @@ pub fn inline(ui: &Ui, text: &str, times: f32) -> LayoutJob {
         job.append(&rest, 0.0, plain.clone());
     }
     job
-}
-
-/// The text with each paragraph on one line.
-fn unwrapped(text: &str) -> String {
-    text.split("\n\n").map(|paragraph| paragraph.replace('\n', " ")).collect::<Vec<_>>().join("\n\n")
 }
 
 /// The text before the first words between asterisks, those words, and the text behind them. `2 * 3` has no such words.

@@ -12,20 +12,8 @@ pub fn labelled(ui: &mut Ui, name: impl Into<WidgetText>, tooltip: &str, widget:
     tipped(response, tooltip)
 }
 
-/// A menu after its name, for choosing one of `values`; `text` makes their names.
+/// A menu after its name, for choosing one of `values`; `told` makes their names and their tooltips.
 pub fn choice<T: PartialEq>(
-    ui: &mut Ui,
-    name: &str,
-    tooltip: &str,
-    chosen: &mut T,
-    values: impl IntoIterator<Item = T>,
-    text: impl Fn(&T) -> String,
-) {
-    choice_told(ui, name, tooltip, chosen, values, |value| (text(value), ""));
-}
-
-/// The same for values with a tooltip each.
-pub fn choice_told<T: PartialEq>(
     ui: &mut Ui,
     name: &str,
     tooltip: &str,

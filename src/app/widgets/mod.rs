@@ -8,10 +8,8 @@ mod entry;
 pub mod focus_ring;
 pub mod icons;
 mod inline;
-mod kind_boxes;
 mod labelled;
 pub mod legend;
-mod marks;
 mod method_menu;
 #[cfg(feature = "live")]
 mod networks;
@@ -22,30 +20,29 @@ mod padded;
 mod progress;
 #[cfg(test)]
 pub mod seen;
-mod setting_row;
 mod text_entry;
-mod textures;
 pub mod theme;
 
 pub use axes::{Axis, Tick};
 pub use chart::{Chart, Drawn, Span};
-pub use colour_bar::Bar;
+pub use colour_bar::{Bar, Texture, colour_table, picture};
 pub use entry::{button, choices, entry, entry_called, item, press, tick, ticked, tooltip};
-pub use icons::{Icon, icon};
+pub use icons::{Icon, cross, edged, icon};
 pub use inline::{LARGE_TEXT_RATIO, inline, large};
-pub use kind_boxes::{kind_boxes, kind_names, member_box, ticking_menu};
-pub use labelled::{Quantity, choice, choice_told, labelled};
-pub use marks::{cross, edged};
-pub use method_menu::{LIST_HEIGHT, method_lines, method_list, method_menu};
+pub use labelled::{Quantity, choice, labelled};
+pub use method_menu::{
+    LIST_HEIGHT, kind_boxes, kind_names, member_box, method_lines, method_list, method_menu, ticking_menu,
+};
 pub use nudge::{focus_after_click, focused_steps, keep_arrows, nudge, pan_keys, zoom_keys};
 pub use number_field::{NumberField, Wanted};
 pub use numbers::{
     CONVENTION, angle_degrees, angle_of_place_degrees, difference, direction, level, lowest_db, percent, plain, signed,
     significant, with_unit,
 };
-pub use padded::{computed, empty_text, headings, padded, right_aligned, scrolled, scrolled_both, warning};
+pub use padded::{
+    Computed, computed, empty_text, group, headings, padded, rarely, right_aligned, row, row_of, scrolled,
+    scrolled_both, warning,
+};
 pub use progress::{bar, progress, start_or_cancel};
-pub use setting_row::{group, rarely, row, row_of};
 pub use text_entry::{entry_problem, text_entry};
-pub use textures::{Texture, colour_table, picture};
 pub use theme::{CAPTION, CAPTION_INK, Inks, MARK, MARK_EDGE, MARK_SELECTED};

@@ -195,15 +195,11 @@ fn rate(ui: &mut Ui, false_alarm: &mut f64) {
     let tooltip = "Part of the cells of noise alone that are to be detected. It holds for noise that is independent from cell to \
                    cell: a window function makes neighbours alike.";
     row(ui, "P_FA", tooltip, |ui| {
-        let text = rate_text(*false_alarm);
+        let rate = *false_alarm;
+        let text = if rate < 1e-3 { format!("{rate:.1e}") } else { format!("{rate:.3}") };
         let speed = 0.02 * *false_alarm;
         ui.add(NumberField::new(false_alarm).range(1e-12..=0.9).speed(speed).standing_for(&text))
     });
-}
-
-/// Text of a rate, which the field can parse again.
-fn rate_text(rate: f64) -> String {
-    if rate < 1e-3 { format!("{rate:.1e}") } else { format!("{rate:.3}") }
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! The cuts panel: range profile and angle cut of all maps through the cursor, with pinned cuts, and markers to measure between.
 
 mod markers;
-mod measure;
 mod trace;
 
 use crate::app::content::{Content, Cx, Nothing};
@@ -133,7 +132,7 @@ fn marks(ui: &mut Ui, state: &State, maps: &[CutMap], memory: &mut CutsMemory) {
         }
     } else {
         let lines = lines(state, maps, &memory.hidden).into_iter().map(Some);
-        let name = |line: &Option<Line>| line.map_or_else(String::new, Line::name);
+        let name = |line: &Option<Line>| (line.map_or_else(String::new, Line::name), "");
         choice(ui, "Read", "The line that the markers measure", &mut memory.read, lines, name);
         if ui.button("No markers").on_hover_text("Take the markers away").clicked() {
             memory.views.values_mut().for_each(|view| view.markers = Markers::default());
@@ -203,7 +202,7 @@ fn draw(ui: &mut Ui, area: Rect, state: &State, maps: &[CutMap], memory: &mut Cu
     }
     let drawn = chart.show(ui, area, Sense::click_and_drag());
     view.markers.follow(ui, &drawn, whole);
-    let turned = span.navigate(ui, &drawn, whole, !view.markers.is_held());
+    let turned = span.navigate(ui, &drawn, whole, view.markers.held.is_none());
     view.span = (turned != whole).then_some(turned);
     view.markers.draw(&drawn, ink);
     memory.views.insert(cut, view);

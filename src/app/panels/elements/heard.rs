@@ -1,7 +1,7 @@
 //! Choice of the layout of elements that methods use: from a list, or by its typed name or numbers.
 
 use crate::app::state::{Command, State, ViewCommand};
-use crate::app::widgets::{choice_told, entry_problem, text_entry};
+use crate::app::widgets::{choice, entry_problem, text_entry};
 use crate::radar::{LayoutKind, Radar};
 use eframe::egui::Ui;
 
@@ -16,7 +16,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let mut chosen = layout.cloned();
         let offered = std::iter::once(None).chain(suggested(radar).map(Some));
-        choice_told(ui, "heard", TIP, &mut chosen, offered, |layout| (name(layout.as_ref()), tip(layout.as_ref())));
+        choice(ui, "heard", TIP, &mut chosen, offered, |layout| (name(layout.as_ref()), tip(layout.as_ref())));
         let shown = (layout.unwrap_or(&LayoutKind::TwoEnds).to_string(), 180.0);
         let typed = text_entry(ui, id, ("as text", LayoutKind::NAMES), shown, true, |text| layout_of(text, radar));
         let new = typed.or_else(|| (chosen.as_ref() != layout).then_some(chosen));

@@ -31,34 +31,33 @@ fn last_part(text: &str) -> &str {
 }
 
 /// A column's heading in two lines of words; the column's name in the file where it has no other.
-pub fn title(column: Column) -> [String; 2] {
-    let [above, below] = match column {
-        Column::Index => ["Scene", ""],
-        Column::Eta => ["η", ""],
-        Column::Detection => ["P_D", ""],
-        Column::FalseAlarm => ["P_FA", ""],
-        Column::DetectionAtPrinted => ["P_D at the", "printed η"],
-        Column::Milliseconds => ["Time", "ms"],
-        Column::MinRangeMetres => ["Least range", "m"],
-        Column::StrongestOverWeakestDb => ["Strongest over", "weakest, dB"],
-        Column::Echoes => ["Echoes of", "bodies"],
-        Column::Doubt => ["Doubt", "as SE"],
-        Column::WithinDoubt => ["Cells within", "doubt"],
-        Column::CfarDetection => ["P_D", "by CFAR"],
-        Column::CfarFalseAlarm => ["P_FA", "by CFAR"],
+pub fn title(column: Column) -> String {
+    let title = match column {
+        Column::Index => "Scene",
+        Column::Eta => "η",
+        Column::Detection => "P_D",
+        Column::FalseAlarm => "P_FA",
+        Column::DetectionAtPrinted => "P_D at the\nprinted η",
+        Column::Milliseconds => "Time\nms",
+        Column::MinRangeMetres => "Least range\nm",
+        Column::StrongestOverWeakestDb => "Strongest over\nweakest, dB",
+        Column::Echoes => "Echoes of\nbodies",
+        Column::Doubt => "Doubt\nas SE",
+        Column::WithinDoubt => "Cells within\ndoubt",
+        Column::CfarDetection => "P_D\nby CFAR",
+        Column::CfarFalseAlarm => "P_FA\nby CFAR",
         _ => {
             let (first, rest) = column.name().split_at(1);
             let words = first.to_uppercase() + &rest.replace('_', " ");
-            let (above, below) = words.rsplit_once(' ').unwrap_or((&words, ""));
-            return [above.to_owned(), below.to_owned()];
+            return words.rsplit_once(' ').map_or(words.clone(), |(above, below)| format!("{above}\n{below}"));
         }
     };
-    [above.to_owned(), below.to_owned()]
+    title.to_owned()
 }
 
 /// A column's heading as one text.
 pub fn heading(column: Column) -> String {
-    title(column).join(" ").trim_end().to_owned()
+    title(column).replace('\n', " ")
 }
 
 /// Width of a column, points.
@@ -97,7 +96,7 @@ mod tests {
             assert!(!text(&row, column).is_empty());
         }
         assert_eq!(heading(Column::SquaredError), "Squared error");
-        assert_eq!(title(Column::NearestPairBins), ["Nearest pair", "bins"]);
+        assert_eq!(title(Column::NearestPairBins), "Nearest pair\nbins");
         assert_eq!(
             [Column::Set, Column::DetectionAtPrinted, Column::Found, Column::Doubt].map(|c| text(&row, c)),
             ["scenes", "–", "1", "93.0"]

@@ -73,10 +73,10 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
         ui.selectable_value(&mut memory.view, view, name).on_hover_text(tip);
     }
     let column = |ui: &mut Ui, name: &str, column: &mut Column| {
-        choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| column.name().to_owned());
+        choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| (column.name().to_owned(), ""));
     };
     if matches!(memory.view, View::Histogram | View::Columns) {
-        choice(ui, "Colour", "", &mut memory.grouping, GROUPINGS, |column| column.name().to_owned());
+        choice(ui, "Colour", "", &mut memory.grouping, GROUPINGS, |column| (column.name().to_owned(), ""));
     }
     match memory.view {
         View::None | View::Shared => {}
@@ -93,7 +93,7 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
                 if !table.methods().contains(chosen) {
                     *chosen = other.cloned().unwrap_or_default();
                 }
-                choice(ui, name, "", chosen, table.methods().iter().cloned(), String::clone);
+                choice(ui, name, "", chosen, table.methods().iter().cloned(), |name| (name.clone(), ""));
             }
         }
     }

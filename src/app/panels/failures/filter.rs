@@ -6,7 +6,6 @@ use eframe::egui::text_edit::TextEditOutput;
 use eframe::egui::{
     self, CompletionPopup, CompletionQuery, Label, RectAlign, RichText, Stroke, Suggestion, TextEdit, Ui, vec2,
 };
-use std::collections::BTreeSet;
 
 /// The typed expression, and the filter that it means.
 #[derive(Default)]
@@ -20,16 +19,15 @@ pub struct FilterMemory {
 
 impl FilterMemory {
     /// Parses the expression, unless it was parsed before.
-    fn read(&mut self, methods: &BTreeSet<&str>) {
+    fn read(&mut self, methods: &[&str]) {
         let now = (self.text.clone(), methods.len());
         if self.read.as_ref() == Some(&now) {
             return;
         }
         self.read = Some(now);
-        let names: Vec<&str> = methods.iter().copied().collect();
         let read = match self.text.trim() {
             "" => Ok(None),
-            _ => Filter::parse(&self.text, &names).map(Some),
+            _ => Filter::parse(&self.text, methods).map(Some),
         };
         match read {
             // The rows stay as they were while an expression is unfinished.
@@ -40,8 +38,7 @@ impl FilterMemory {
 }
 
 /// Draws the field. Expressions may name `methods`.
-pub fn show(ui: &mut Ui, methods: &BTreeSet<&str>, memory: &mut FilterMemory) {
-    let names: Vec<&str> = methods.iter().copied().collect();
+pub fn show(ui: &mut Ui, methods: &[&str], memory: &mut FilterMemory) {
     let edit = ui.horizontal(|ui| {
         let label = ui.label("Filter");
         let id = ui.make_persistent_id("filter of rows");
@@ -49,7 +46,7 @@ pub fn show(ui: &mut Ui, methods: &BTreeSet<&str>, memory: &mut FilterMemory) {
             .hint_text("live.squared_error > 800 & objects >= 4")
             .desired_width(f32::INFINITY);
         let popup = CompletionPopup::new(id).word_boundary(is_boundary).align(RectAlign::BOTTOM_START);
-        let edit = popup.show(ui, edit, |query| suggestions(query, &names)).text_edit;
+        let edit = popup.show(ui, edit, |query| suggestions(query, methods)).text_edit;
         let _labelled = edit.response.response.clone().labelled_by(label.id);
         edit
     });
@@ -106,7 +103,7 @@ mod tests {
 
     fn field() -> Harness<'static, FilterMemory> {
         let draw = |ui: &mut Ui, memory: &mut FilterMemory| {
-            show(ui, &BTreeSet::from(["live", "nomp"]), memory);
+            show(ui, &["live", "nomp"], memory);
             problem(ui, memory);
         };
         Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, FilterMemory::default())

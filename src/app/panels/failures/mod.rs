@@ -13,13 +13,12 @@ mod table;
 
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::jobs::{Jobs, fates_of};
-use crate::evaluate::worsen::summary;
-pub use input::{Input, Now};
-
 use crate::app::state::{Command, MethodSlot, RowsCommand, State};
+use crate::evaluate::worsen::summary;
 use crate::radar::counted;
 use charts::View;
 use eframe::egui::{self, Frame, Margin, Ui, Vec2};
+pub use input::{Input, Now};
 use order::{Boxed, Order, Sort};
 use std::collections::BTreeSet;
 
@@ -65,24 +64,23 @@ fn now(state: &State, jobs: &Jobs) -> Option<Now> {
     Some(Now { method: output.method(), metrics: scores.metrics, fates })
 }
 
+const NO_ROWS: &str = "Try methods on scenes, or open rows that apertura evaluate --rows wrote: every scene is a row to sort, filter and open.";
+
 pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     Frame::NONE.inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         choices::show(ui, input, &mut memory.choices, &mut asked);
-        egui::Panel::bottom("row on screen").resizable(false).frame(Frame::NONE.inner_margin(Margin::symmetric(0, 4))).show(
-            ui,
-            |ui| opened::show(ui, input, &mut memory.opened, &mut asked),
-        );
+        let below = egui::Panel::bottom("row on screen").resizable(false);
+        let below = below.frame(Frame::NONE.inner_margin(Margin::symmetric(0, 4)));
+        below.show(ui, |ui| opened::show(ui, input, &mut memory.opened, &mut asked));
         if input.job.table.rows().is_empty() {
             memory.table.in_sight.clear();
-            let text = "Try methods on scenes, or open rows that apertura evaluate --rows wrote: every scene is a row to \
-                        sort, filter and open.";
-            ui.weak(text);
+            ui.weak(NO_ROWS);
             return;
         }
         let tried = input.job.table.methods().iter().map(String::as_str);
         let known: BTreeSet<&str> = tried.chain(input.state.methods.all.iter().map(|m| m.name())).collect();
-        filter::show(ui, &known, &mut memory.filter);
+        filter::show(ui, &known.into_iter().collect::<Vec<_>>(), &mut memory.filter);
         update(ui, input, memory);
         head(ui, input, memory);
         if memory.charts.view != View::None {

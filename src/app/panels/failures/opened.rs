@@ -85,9 +85,8 @@ fn search(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut
             asked.push(RowsCommand::CancelSearch.into());
         }
     } else {
-        choice(ui, "Look by", "", &mut memory.search.measure, WorseningMeasure::ALL, |measure| {
-            name(*measure).to_owned()
-        });
+        let named = |measure: &WorseningMeasure| (name(*measure).to_owned(), "");
+        choice(ui, "Look by", "", &mut memory.search.measure, WorseningMeasure::ALL, named);
         let within = NumberField::new(&mut memory.search.within_metres).range(0.01..=100.0).speed(0.02).suffix(" m");
         labelled(ui, "within", "", within);
         labelled(ui, "in", "", NumberField::new(&mut memory.search.tries).range(1..=100_000).suffix(" tries"));

@@ -3,7 +3,7 @@
 use crate::app::jobs::RowTable;
 use crate::app::widgets::labelled;
 use crate::evaluate::rows::Row;
-use crate::evaluate::statistics::{Rule, SharedTrait, USUALLY_BAD, rules};
+use crate::evaluate::statistics::{SharedTrait, USUALLY_BAD, rules};
 use crate::platform::Instant;
 use crate::radar::counted;
 use eframe::egui::{Label, RichText, ScrollArea, TextEdit, Ui};
@@ -92,10 +92,8 @@ fn found(shared: &SharedTrait) -> String {
     match (rules.as_slice(), tried) {
         ([], 0) => format!("{of} {how} No rule was suggested."),
         ([], _) => format!("{of} {how} {} suggested, none held.", counted(*tried, "rule was", "rules were")),
-        (rules, _) => format!("{of} {how} {} (at most 5 % of those shown are chance):", held(rules, *tried)),
+        (rules, tried) => {
+            format!("{of} {how} {} of {tried} held (at most 5 % of those shown are chance):", rules.len())
+        }
     }
-}
-
-fn held(rules: &[Rule], tried: usize) -> String {
-    format!("{} of {tried} held", rules.len())
 }

@@ -5,7 +5,7 @@ use super::input::Input;
 use super::order::Sort;
 use crate::app::jobs::{THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail};
 use crate::app::widgets::{Texture, colour_table, focus_after_click, keep_arrows};
-use crate::evaluate::rows::{Column, Row};
+use crate::evaluate::rows::Column;
 use crate::picture::ColourMap;
 use eframe::egui::{
     self, Align, Color32, ColorImage, FontId, Id, Key, Label, Layout, Modifiers, Rect, Response, RichText, ScrollArea,
@@ -125,7 +125,7 @@ fn row(drawn: &mut TableRow<'_, '_>, input: &Input<'_>, index: usize, memory: &m
     let Some(row) = input.job.table.rows().get(index) else { return false };
     let is_selected = input.opened() == Some(index);
     drawn.set_selected(is_selected);
-    let made = texture(drawn, input, index, row, memory);
+    let made = texture(drawn, input, index, memory);
     for &column in Column::FIGURES {
         let text = RichText::new(cells::text(row, column)).size(12.5);
         drawn.col(|ui| {
@@ -155,11 +155,10 @@ fn texture(
     drawn: &mut TableRow<'_, '_>,
     input: &Input<'_>,
     index: usize,
-    row: &Row,
     memory: &mut TableMemory,
 ) -> Result<(), String> {
     let (generation, colours) = (input.job.table.generation(), input.state.settings.colours);
-    let made = input.job.thumbnails.album.get(generation, row);
+    let made = input.job.thumbnails.album.get(generation, &input.job.table.rows()[index]);
     let key = (generation, index);
     if let Some(Ok(thumbnail)) = &made {
         let same = |p: &Picture| Arc::ptr_eq(&p.of, thumbnail) && p.colours == colours;
@@ -221,8 +220,7 @@ fn titles(drawn: &mut TableRow<'_, '_>, sort: &mut Option<Sort>) {
 fn title(ui: &mut Ui, column: Column, sorted: Option<Sort>) {
     let (visuals, cell) = (ui.visuals(), ui.max_rect());
     let ink = if sorted.is_some() { visuals.strong_text_color() } else { visuals.weak_text_color() };
-    let lines = cells::title(column).join("\n").trim_end().to_owned();
-    let galley = ui.painter().layout_no_wrap(lines, FontId::proportional(11.5), ink);
+    let galley = ui.painter().layout_no_wrap(cells::title(column), FontId::proportional(11.5), ink);
     // Room beside the triangle.
     let free = cell.width() - galley.size().x - 10.0;
     let left = if cells::is_number(column) { cell.left() + free.max(0.0) } else { cell.left() + 4.0 };

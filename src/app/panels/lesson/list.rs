@@ -1,6 +1,6 @@
 //! The list of lessons, with the progress in each.
 
-use super::memory::LessonMemory;
+use super::answer::LessonMemory;
 use crate::app::state::{Command, LessonCommand, Purpose};
 use crate::app::widgets::press;
 use crate::lesson::{Lesson, Progress, shipped};

@@ -3,7 +3,7 @@
 use super::kinds::{Kinds, Sign};
 use crate::app::widgets::{axes, theme};
 use crate::picture::CellVerdict;
-use eframe::egui::{self, Align2, Color32, Painter, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, Painter, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
 /// Height of a row, points.
 const ROW: f32 = 18.0;
@@ -56,78 +56,46 @@ impl Fill {
     }
 }
 
-#[derive(Debug, Clone, PartialEq)]
-struct Entry {
-    sign: Sign,
-    name: String,
-    /// Left end, and the row.
-    at: (f32, usize),
-}
-
-/// The entries of a legend with their places.
-#[derive(Debug, Default)]
-pub struct Legend {
-    fills: Vec<Fill>,
-    entries: Vec<Entry>,
-    current: bool,
-}
-
-impl Legend {
-    /// Legend of fills and marks; without marks where these need more than two rows of `width` points.
-    pub fn new(painter: &Painter, fills: Vec<Fill>, kinds: Option<&Kinds<'_>>, width: f32) -> Legend {
-        let (mut left, mut row) = (0.0, 0);
-        let mut entries = Vec::new();
-        for (sign, count) in kinds.map(Kinds::counts).unwrap_or_default() {
-            let name = sign.counted(count);
-            let needed = SWATCH + GAPS[0] + axes::width(painter, &name);
-            if left > 0.0 && left + needed > width {
-                (left, row) = (0.0, row + 1);
-            }
-            entries.push(Entry { sign, name, at: (left, row) });
-            left += needed + GAPS[1];
+/// Draws fills right of `map`, and marks above it unless these need more than two rows of `width` points.
+pub fn draw(ui: &Ui, painter: &Painter, map: Rect, fills: &[Fill], kinds: Option<&Kinds<'_>>, width: f32) {
+    let (mut left, mut row) = (0.0, 0);
+    let mut marks: Vec<(Sign, String, Vec2)> = Vec::new();
+    for (sign, count) in kinds.map(Kinds::counts).unwrap_or_default() {
+        let name = sign.counted(count);
+        let needed = SWATCH + GAPS[0] + axes::width(painter, &name);
+        if left > 0.0 && left + needed > width {
+            (left, row) = (0.0, row + 1);
         }
-        if row >= ROWS {
-            entries.clear();
-        }
-        Legend { fills, entries, current: kinds.is_none_or(|kinds| kinds.current) }
+        marks.push((sign, name, vec2(left, row as f32 * ROW)));
+        left += needed + GAPS[1];
     }
-
-    /// Height of the rows above the map, points.
-    fn height(&self) -> f32 {
-        self.entries.last().map_or(0.0, |entry| (entry.at.1 + 1) as f32 * ROW)
+    if row >= ROWS {
+        marks.clear();
     }
-
-    /// Draws the legend above `map` and right of it.
-    pub fn draw(&self, ui: &Ui, painter: &Painter, map: Rect) {
-        let at = map.left_top() - vec2(0.0, self.height() + 4.0);
-        let ink = ui.visuals().text_color();
-        for Entry { sign, name, at: (left, row) } in &self.entries {
-            let from = at + vec2(*left, *row as f32 * ROW);
-            let middle = from + vec2(SWATCH / 2.0, ROW / 2.0);
-            painter.rect_filled(Rect::from_center_size(middle, vec2(18.0, 16.0)), 3.0, Color32::from_gray(70));
-            sign.draw(painter, middle, vec2(1.0, 0.0), self.current);
-            let place = pos2(from.x + SWATCH + GAPS[0], middle.y);
-            axes::text(painter, place, Align2::LEFT_CENTER, name, ink);
-        }
-        let mut top = map.top();
-        for Fill { inside, around, name } in &self.fills {
-            let square = Rect::from_min_size(pos2(map.right() + BESIDE[0], top + 1.0), vec2(SQUARE, SQUARE));
-            painter.rect(square, 0.0, *inside, Stroke::new(1.5, *around), StrokeKind::Outside);
-            let lines = name.replace(' ', "\n");
-            let text = axes::text(painter, pos2(square.right() + BESIDE[1], top), Align2::LEFT_TOP, &lines, ink);
-            top = text.bottom().max(square.bottom()) + BESIDE[2];
-        }
-        self.label(ui, map);
+    let at = map.left_top() - vec2(0.0, (row + 1) as f32 * ROW + 4.0);
+    let (ink, is_current) = (ui.visuals().text_color(), kinds.is_some_and(|kinds| kinds.current));
+    for (sign, name, by) in &marks {
+        let from = at + *by;
+        let middle = from + vec2(SWATCH / 2.0, ROW / 2.0);
+        painter.rect_filled(Rect::from_center_size(middle, vec2(18.0, 16.0)), 3.0, Color32::from_gray(70));
+        sign.draw(painter, middle, vec2(1.0, 0.0), is_current);
+        axes::text(painter, pos2(from.x + SWATCH + GAPS[0], middle.y), Align2::LEFT_CENTER, name, ink);
     }
-
-    fn label(&self, ui: &Ui, map: Rect) {
-        let marks = self.entries.iter().map(|entry| entry.name.as_str());
-        let names: Vec<&str> = self.fills.iter().map(|fill| fill.name).chain(marks).collect();
-        if !names.is_empty() {
-            let rect = Rect::from_min_size(map.right_top(), vec2(SWATCH, SQUARE));
-            let response = ui.interact(rect, ui.scope_id().with("legend"), Sense::hover());
-            let label = format!("Legend: {}", names.join(", "));
-            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &label));
-        }
+    let mut top = map.top();
+    for Fill { inside, around, name } in fills {
+        let square = Rect::from_min_size(pos2(map.right() + BESIDE[0], top + 1.0), vec2(SQUARE, SQUARE));
+        painter.rect(square, 0.0, *inside, Stroke::new(1.5, *around), StrokeKind::Outside);
+        let lines = name.replace(' ', "\n");
+        let text = axes::text(painter, pos2(square.right() + BESIDE[1], top), Align2::LEFT_TOP, &lines, ink);
+        top = text.bottom().max(square.bottom()) + BESIDE[2];
+    }
+    // For screen readers.
+    let names: Vec<&str> =
+        fills.iter().map(|fill| fill.name).chain(marks.iter().map(|(_, name, _)| name.as_str())).collect();
+    if !names.is_empty() {
+        let rect = Rect::from_min_size(map.right_top(), vec2(SWATCH, SQUARE));
+        let response = ui.interact(rect, ui.scope_id().with("legend"), Sense::hover());
+        let label = format!("Legend: {}", names.join(", "));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &label));
     }
 }

@@ -43,7 +43,7 @@ use crate::scene::Object;
 use answer::Places;
 use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
-use legend::{Fill, Legend};
+use legend::Fill;
 use plot::{draw_axes, is_wide, navigate, rect_of};
 
 /// Text over a map of an earlier scene.
@@ -58,7 +58,6 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     ui.painter().rect_filled(area, 0.0, ui.visuals().panel_fill);
     let is_bare = !input.is_veiled();
     let bar = (!kind.is_above() && is_bare && is_wide(area)).then(|| scale::bar(&input));
-    let legend = legend_of(ui, &input, area);
     // Reserved in every map, also where nothing is marked: frames beside each other stay aligned.
     let above = if state.settings.show_kinds { legend::reserved(area.height()) } else { 0.0 };
     let rect = rect_of(area, projection, above);
@@ -88,7 +87,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
         appearing.multiply_opacity(rest);
         draw_axes(ui, &appearing, frame, state.settings.directions, (free, line_of(&input).is_some()));
     }
-    legend.draw(ui, &painter, frame.shown());
+    if is_bare {
+        draw_legend(ui, &painter, &input, area, frame.shown());
+    }
     draw_over(&inner, frame, &input, response.hover_pos(), is_drawn);
     if let Some(bar) = bar {
         bar.draw(ui, &painter, frame.shown());
@@ -128,17 +129,19 @@ fn describe(ui: &Ui, input: &Input<'_>, id: egui::Id) {
     ui.ctx().accesskit_node_builder(id, |node| node.set_description(description.trim()));
 }
 
-/// Legend of fills and marks, where there is room for one.
-fn legend_of(ui: &Ui, input: &Input<'_>, area: Rect) -> Legend {
-    let has_room = !input.is_veiled() && legend::reserved(area.height()) > 0.0;
+/// Draws the legend of fills and marks around `map`, where its panel has room for one.
+fn draw_legend(ui: &Ui, painter: &Painter, input: &Input<'_>, area: Rect, map: Rect) {
+    if legend::reserved(area.height()) == 0.0 {
+        return;
+    }
     let dark = ui.visuals().dark_mode;
     let fills = match &input.told_apart {
-        _ if !(input.kind.is_above() && has_room && is_wide(area)) => Vec::new(),
+        _ if !(input.kind.is_above() && is_wide(area)) => Vec::new(),
         Some(_) => Fill::detections(dark),
         None => Fill::mask(dark),
     };
     let width = area.width() - axes::LEFT - axes::RIGHT;
-    Legend::new(ui.painter(), fills, input.kinds.as_ref().filter(|_| has_room), width)
+    legend::draw(ui, painter, map, &fills, input.kinds.as_ref(), width);
 }
 
 fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, pointer: Option<Pos2>, is_drawn: bool) {

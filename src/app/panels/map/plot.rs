@@ -9,13 +9,9 @@ use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
 /// Rectangle of the picture within the panel, below a legend that is `above` points high. Every map has the same margins.
 pub fn rect_of(area: Rect, projection: Projection, above: f32) -> Rect {
     let right = if is_wide(area) { axes::RIGHT } else { 12.0 };
-    let rect = Rect::from_min_max(
-        area.min + vec2(axes::LEFT, 8.0 + above),
-        pos2(
-            (area.right() - right).max(area.left() + 60.0),
-            (area.bottom() - axes::BOTTOM).max(area.top() + above + 30.0),
-        ),
-    );
+    let (left, top) = (area.left() + axes::LEFT, area.top() + 8.0 + above);
+    let (right, bottom) = ((area.right() - right).max(area.left() + 60.0), area.bottom() - axes::BOTTOM);
+    let rect = Rect::from_min_max(pos2(left, top), pos2(right, bottom.max(area.top() + above + 30.0)));
     if projection == Projection::RangeAngle {
         return rect;
     }

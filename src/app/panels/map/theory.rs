@@ -56,8 +56,8 @@ impl Theory<'_> {
         for end in [below.first(), below.last()].into_iter().flatten() {
             tick(painter, *end, DRAWN_OUT);
         }
-        for column in lobe_columns(self.overlay) {
-            tick(painter, at(0.0, column), LOBE);
+        for (sign, lobe) in [-1.0, 1.0].into_iter().zip(blob.side_lobes) {
+            lobe.into_iter().for_each(|lobe| tick(painter, at(0.0, sign * lobe.columns), LOBE));
         }
         line(painter, &self.half_power(frame), frame.rect, BEAM);
         if self.comb {
@@ -174,12 +174,6 @@ impl Theory<'_> {
             at.y += height;
         }
     }
-}
-
-/// Columns from the peak to the first side lobes, signed.
-fn lobe_columns(overlay: &Overlay) -> impl Iterator<Item = f64> {
-    let signed = [-1.0, 1.0].into_iter().zip(overlay.blob.side_lobes);
-    signed.filter_map(|(sign, lobe)| Some(sign * lobe?.columns))
 }
 
 fn length(metres: f64) -> String {

@@ -68,13 +68,8 @@ fn counts(ui: &mut Ui, radar: &mut Radar) {
     let (mut transmitters, mut receivers) = before;
     for (name, count) in [("transmitters", &mut transmitters), ("receivers", &mut receivers)] {
         ui.horizontal(|ui| {
-            let mut value = *count as f64;
-            let field = NumberField::new(&mut value).range(1.0..=MAX_ANTENNAS as f64).speed(0.1).max_decimals(0);
-            let field = ui.add(field);
-            let label = ui.label(name);
-            if field.labelled_by(label.id).changed() {
-                *count = value.round() as usize;
-            }
+            let field = ui.add(NumberField::new(count).range(1..=MAX_ANTENNAS).speed(0.1));
+            field.labelled_by(ui.label(name).id);
         });
     }
     if (transmitters, receivers) != before {

@@ -4,18 +4,9 @@ use super::table::{Table, number};
 use crate::app::widgets::{Axis, Chart, Inks, NumberField, Quantity, labelled};
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{LinkBudget, Radar};
+use crate::scene::Object;
 use eframe::egui::{Align, CollapsingHeader, Label, Sense, Stroke, Ui, vec2};
 use egui_plot::{HLine, LineStyle};
-
-/// An object whose SNR is computed by the link budget.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Selected {
-    pub name: String,
-    /// Place of the object, (x, y).
-    pub place_metres: [f64; 2],
-    /// Reflectivity of each of its reflectors.
-    pub reflectivity: f64,
-}
 
 /// The group's heading.
 pub(super) const HEADING: &str = "Link budget";
@@ -64,7 +55,7 @@ const CHIRP: Quantity = Quantity::metres(
 .with(" µs", [0.1, 1e5], 0.1, 2);
 
 /// Draws the group of the link budget.
-pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Option<&Selected>) {
+pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Option<&(String, Object)>) {
     let is_sought = table.sought == Some(HEADING);
     let group = CollapsingHeader::new(HEADING).id_salt(HEADING).open(is_sought.then_some(true));
     let shown = group.show_unindented(ui, |ui| {
@@ -79,8 +70,8 @@ pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Optio
         };
         table.show(ui, HEADING, |ui| numbers(ui, table, radar, budget));
         curve(ui, radar);
-        if let Some(selected) = selected {
-            ui.add(Label::new(told(radar, selected)).wrap());
+        if let Some((name, object)) = selected {
+            ui.add(Label::new(told(radar, name, object)).wrap());
         }
         ui.weak(LEFT_OUT);
     });
@@ -171,10 +162,9 @@ fn curve(ui: &mut Ui, radar: &Radar) {
 }
 
 /// Text of the SNR of the selected object.
-fn told(radar: &Radar, selected: &Selected) -> String {
-    let Selected { name, place_metres: [x, y], reflectivity } = selected;
-    let range = x.hypot(*y).max(1e-3);
-    let dbsm = cross_section_dbsm(*reflectivity);
+fn told(radar: &Radar, name: &str, object: &Object) -> String {
+    let [x, y] = object.centre_metres();
+    let (range, dbsm) = (x.hypot(y).max(1e-3), cross_section_dbsm(object.reflectivity()));
     let link = radar.link(dbsm, range, y / range);
     format!(
         "{name}, {dbsm:.1} dBsm at {range:.1} m: received with {:.1} dBm. SNR {:.1} dB in a sample, {:.1} dB in its range bin, {:.1} dB by one \

@@ -5,7 +5,6 @@ mod bodies;
 mod canvas;
 mod disturbances;
 mod handles;
-mod hint;
 
 use super::captions;
 use crate::app::content::{Content, Cx, Nothing};
@@ -13,9 +12,9 @@ use crate::app::state::{Command, Cursor, EditCommand, MapKind, NewObject, SceneV
 use crate::app::widgets::{Inks, empty_text, entry, nudge, pan_keys, zoom_keys};
 use crate::interact::{Editor, Grip, Place, SelectionMode, hit};
 use crate::scene::{Reflector, Scene};
+pub use canvas::Hint;
 use canvas::{Canvas, Look};
 use eframe::egui::{self, CursorIcon, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
-pub use hint::Hint;
 
 pub struct ScenePanel;
 
@@ -58,13 +57,6 @@ pub struct Input<'a> {
 /// Opacity of marks that belong to an earlier scene.
 const OLD_OPACITY: f32 = 0.35;
 
-/// `painter`, with a lower opacity where the marks are `old`.
-fn dimmed(painter: &egui::Painter, old: bool) -> egui::Painter {
-    let mut painter = painter.clone();
-    painter.set_opacity(if old { OLD_OPACITY } else { 1.0 });
-    painter
-}
-
 /// Draws the canvas. Drags and selections go straight to the editor, since commands would take effect a frame later.
 pub fn show(ui: &mut Ui, input: Input<'_>, state: &mut State) -> Vec<Command> {
     let mut asked = Vec::new();
@@ -91,7 +83,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>, state: &mut State) -> Vec<Command> {
     canvas::ground(&painter, canvas, state.settings.show_fields_of_view, has_numbers);
     let scene = moved.clone().unwrap_or_else(|| editor.scene().clone());
     objects(&painter, canvas, &scene, editor, hovered.map(|h| h.object), input.tells_maps);
-    canvas::found(&dimmed(&painter, input.found_stale), canvas, input.found);
+    let mut of_found = painter.clone();
+    of_found.set_opacity(if input.found_stale { OLD_OPACITY } else { 1.0 });
+    canvas::found(&of_found, canvas, input.found);
     canvas::trails(&painter, canvas, &input.trails);
     if moved.is_none() {
         handles::show(radar.range_resolution_metres(), editor, *view, ui, rect);
