@@ -22,7 +22,7 @@ pub fn print_json(report: &impl Serialize) -> Result<(), CommandError> {
     print(&serde_json::to_string_pretty(report)?)
 }
 
-/// Whether the name of `path` ends in this way, whatever the case.
+/// Whether the name of `path` has this ending, in small or capital letters.
 pub fn ends_in(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
 }

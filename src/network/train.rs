@@ -40,9 +40,7 @@ pub fn train<S: Student>(
     let log_path = run.folder.join("log.csv");
     let mut log = log_at(&log_path, resume).map_err(file(&log_path))?;
     let generator = Generator::new(&run.radar, Reading::Program, Purpose::Training, recipe.seed);
-    let began = Instant::now();
-    let before = progress.seconds;
-    let mut saved = Instant::now();
+    let (before, began, mut saved) = (progress.seconds, Instant::now(), Instant::now());
     let finished = |p: &RunProgress| {
         run.max_steps.is_some_and(|most| p.step >= most) || run.max_time.is_some_and(|most| began.elapsed() >= most)
     };
@@ -132,12 +130,12 @@ fn epoch_order(recipe: &Recipe, epoch: u32) -> Vec<(Kind, u32)> {
     order
 }
 
-/// The log at `path`, to which lines are added; without `goes_on` it begins anew.
 fn write_step(log: &mut fs::File, progress: &RunProgress, rate: f64, loss: f64) -> io::Result<()> {
     let RunProgress { step, epoch, maps, seconds, loss: smoothed, .. } = progress;
     writeln!(log, "{step},{epoch},{maps},{seconds:.1},{rate},{loss},{smoothed}")
 }
 
+/// The log at `path`, to which lines are added; without `goes_on` it begins anew.
 fn log_at(path: &Path, goes_on: bool) -> io::Result<fs::File> {
     if goes_on && path.exists() {
         return fs::OpenOptions::new().append(true).open(path);

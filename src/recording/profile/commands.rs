@@ -2,8 +2,7 @@
 //!
 //! The last of several equal commands holds, as on the radar's command line.
 
-use super::lines::{Line, lines};
-use super::{MOST_CHIRPS, MOST_LOOPS, missing};
+use super::lines::{Line, MOST_CHIRPS, MOST_LOOPS, lines, missing};
 use crate::recording::Fault;
 use std::collections::BTreeMap;
 

@@ -1,8 +1,11 @@
 //! The lines of a `.cfg`: commands with their numbers, out of the text around them.
 
-use super::at_line;
 use crate::recording::Fault;
 use std::fmt::Display;
+
+/// Most chirps in a loop and loops in a frame that the hardware knows, with room to spare.
+pub(super) const MOST_CHIRPS: usize = 512;
+pub(super) const MOST_LOOPS: usize = 65536;
 
 /// Numbers of one command, and where it stands.
 #[derive(Debug, Clone)]
@@ -147,4 +150,13 @@ pub(super) fn check_dialect(text: &str) -> Result<(), Fault> {
 
 fn dialect(name: &str, helps: &str) -> Fault {
     Fault::Data(format!("is a text of another dialect, {name}, which is not read; what would help is {helps}"))
+}
+
+pub(super) fn missing(command: &str) -> Fault {
+    Fault::Data(format!("has no line \"{command}\"; expected profileCfg, channelCfg, chirpCfg and frameCfg"))
+}
+
+/// The error of a line, counted from 1.
+pub(super) fn at_line(line: usize, message: &str) -> Fault {
+    Fault::Data(format!("line {line}: {message}"))
 }

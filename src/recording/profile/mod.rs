@@ -9,7 +9,7 @@ pub(super) mod tests;
 
 use super::Fault;
 use commands::{ChirpLine, Commands, Frame, frames};
-use lines::{Line, check_dialect};
+use lines::{Line, at_line, check_dialect, missing};
 use num_complex::Complex64;
 
 /// The radar and the data format that a `.cfg` sets.
@@ -66,10 +66,8 @@ const CHIRP_HEADER_BYTES: usize = 64;
 
 pub(super) const CHIP_RECEIVERS: usize = 4;
 
-/// Most chirps in a loop, samples in a chirp and loops in a frame that the hardware knows, with room to spare.
-const MOST_CHIRPS: usize = 512;
+/// Most samples in a chirp that the hardware knows, with room to spare.
 const MOST_SAMPLES: usize = 65536;
-const MOST_LOOPS: usize = 65536;
 
 /// Largest bias that is believed, metres.
 const MOST_BIAS_METRES: f64 = 1000.0;
@@ -216,15 +214,6 @@ impl RadarProfile {
 /// Numbers of the bits of a mask that are set.
 pub(super) fn bits(mask: u32) -> impl Iterator<Item = usize> {
     (0..32).filter(move |bit| mask >> bit & 1 == 1)
-}
-
-fn missing(command: &str) -> Fault {
-    Fault::Data(format!("has no line \"{command}\"; expected profileCfg, channelCfg, chirpCfg and frameCfg"))
-}
-
-/// The error of a line, counted from 1.
-fn at_line(line: usize, message: &str) -> Fault {
-    Fault::Data(format!("line {line}: {message}"))
 }
 
 /// The chirps of one frame, with the profile they share.
