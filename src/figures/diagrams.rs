@@ -48,11 +48,8 @@ pub fn encoder_decoder(source: &SceneSource) -> Result<Sheet, FigureError> {
     for step in 0..levels {
         let (x, level) = (4.0 * (levels + step) as f64 + 4.4, levels - step - 1);
         let channels = if level == 0 { 1 } else { 2 * filters };
-        shapes.push(SketchShape::Block(
-            (x - 1.8, 2.2),
-            (x + 1.8, 3.8),
-            format!("up conv 4×4\n{}", size(channels, level)),
-        ));
+        let text = format!("up conv 4×4\n{}", size(channels, level));
+        shapes.push(SketchShape::Block((x - 1.8, 2.2), (x + 1.8, 3.8), text));
         if step > 0 {
             shapes.push(SketchShape::Arrow((x - 2.2, 3.0), (x - 1.8, 3.0), Ink::Dark));
         }
@@ -82,6 +79,10 @@ pub fn flow(_: &SceneSource) -> Result<Sheet, FigureError> {
     };
     let mut shapes: Vec<SketchShape> =
         arrows.iter().map(|(a, b)| SketchShape::Arrow(side(*a, true), side(*b, false), Ink::Dark)).collect();
-    shapes.extend(boxes.iter().map(|((x, y), text)| SketchShape::Block((x - 1.6, y - 0.7), (x + 1.6, y + 0.7), (*text).to_owned())));
+    shapes.extend(
+        boxes
+            .iter()
+            .map(|((x, y), text)| SketchShape::Block((x - 1.6, y - 0.7), (x + 1.6, y + 0.7), (*text).to_owned())),
+    );
     Ok(Sheet::of(1, (1240, 330), vec![SheetPanel::sketch("From a scene to the loss", -2.0..22.0, -0.8..4.8, shapes)]))
 }

@@ -19,12 +19,7 @@ fn title(method: &str, seen: &ScenePictures, output: &RangeAngleMap) -> String {
 
 /// A scene's inputs and target, then the thesis' network, `live` and `hybrid` on it.
 pub fn beside(source: &SceneSource, seen: &ScenePictures, network: &str) -> Result<Sheet, FigureError> {
-    let [first, last, full] = &seen.lambda;
-    let mut panels = vec![
-        source.lambda_panel("Input 0", first),
-        source.lambda_panel("Input 1", last),
-        source.lambda_panel("Target", full),
-    ];
+    let mut panels = source.map_panels(seen);
     for method in [network, "live", "hybrid"] {
         let output = source.output(method, seen)?;
         panels.push(source.lambda_panel(title(method, seen, &output), &output));

@@ -66,9 +66,7 @@ fn draw_shape<B: DrawingBackend>(shape: &SketchShape, scale: &Scale, area: &Shee
             area.draw(&Polygon::new(arrow_head(from, to), colour(*ink).filled()))?;
             area.draw(&PathElement::new(vec![from, to], colour(*ink).stroke_width(2)))
         }
-        SketchShape::Dot(at, pixels, ink) => {
-            area.draw(&Circle::new(scale.pixel(*at), *pixels, colour(*ink).filled()))
-        }
+        SketchShape::Dot(at, pixels, ink) => area.draw(&Circle::new(scale.pixel(*at), *pixels, colour(*ink).filled())),
         SketchShape::Area(corners, ink) => {
             let corners: Vec<_> = corners.iter().map(|p| scale.pixel(*p)).collect();
             area.draw(&Polygon::new(corners, colour(*ink).mix(0.22).filled()))
@@ -85,9 +83,7 @@ fn draw_shape<B: DrawingBackend>(shape: &SketchShape, scale: &Scale, area: &Shee
             }
             Ok(())
         }
-        SketchShape::Words(at, text, ink) => {
-            area.draw(&Text::new(text.clone(), scale.pixel(*at), centred(15.0, *ink)))
-        }
+        SketchShape::Words(at, text, ink) => area.draw(&Text::new(text.clone(), scale.pixel(*at), centred(15.0, *ink))),
     }
 }
 

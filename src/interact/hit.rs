@@ -1,15 +1,12 @@
 //! The grip under the pointer, and the objects inside a box.
 
-use super::grip::grips;
-use super::grip_kind::Grip;
-use super::{Place, Selection};
+use super::{Grip, Place, Selection, grips};
 use crate::scene::shape::from_stretch;
 use crate::scene::{Object, Scene};
 
 /// Smallest radius of a target, in points of the view.
 pub const TARGET_RADIUS_POINTS: f64 = 9.0;
 
-/// A grip under the pointer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     pub object: usize,
@@ -45,9 +42,7 @@ fn body_distance(object: &Object, at: Place) -> f64 {
     let centre = Place::from(object.centre_metres());
     match object {
         Object::Point(_) => centre.distance_metres(at),
-        Object::Line(l) => {
-            from_stretch([at.x_metres, at.y_metres], [[l.x_metres, l.y_start_metres], l.end_metres()])
-        }
+        Object::Line(l) => from_stretch([at.x_metres, at.y_metres], [[l.x_metres, l.y_start_metres], l.end_metres()]),
         Object::Gaussian(g) => {
             let out_x = ((at.x_metres - g.x_metres).abs() - g.x_std_metres).max(0.0);
             let out_y = ((at.y_metres - g.y_metres).abs() - g.y_std_metres).max(0.0);

@@ -1,9 +1,7 @@
 //! Lesson files: TOML that a teacher writes without Rust. `docs/lessons.md` describes the format with a worked example.
 
-use super::challenge::Challenge;
-use super::fault::{Fault, LessonTextError};
-use super::question::Question;
-use super::stage::StepView;
+use super::fault::Fault;
+use super::{Challenge, LessonTextError, Question, StepView};
 use crate::files::read_bounded;
 use crate::radar::Radar;
 use crate::scene::presets::Preset;
@@ -36,7 +34,6 @@ pub struct Lesson {
 pub struct Step {
     pub text: String,
     /// Name of a scene that comes with the program, in place of `object`s.
-    #[serde(default)]
     pub preset: Option<String>,
     #[serde(default, rename = "object")]
     pub objects: Vec<Object>,
@@ -45,20 +42,14 @@ pub struct Step {
     pub radar: Radar,
     #[serde(default)]
     pub view: StepView,
-    #[serde(default)]
     pub predict: Option<Question>,
-    #[serde(default)]
     pub challenge: Option<Challenge>,
 }
 
-/// An error of opening a lesson.
 #[derive(Debug, thiserror::Error)]
 pub enum LessonError {
     #[error("{}: {source}", path.display())]
-    Io {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Io { path: PathBuf, source: std::io::Error },
     #[error("{}: larger than {MAX_LESSON_BYTES} bytes, which no lesson is", path.display())]
     Large { path: PathBuf },
     #[error("{}: {source}", path.display())]

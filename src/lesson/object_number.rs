@@ -17,7 +17,6 @@ impl ObjectNumber {
         }
     }
 
-    /// The object of a scene, where it has it.
     pub fn of(self, scene: &Scene) -> Result<&Object, String> {
         self.index(scene.objects.len()).map(|index| &scene.objects[index])
     }

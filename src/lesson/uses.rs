@@ -1,8 +1,7 @@
 //! The parts of the window that a lesson needs.
 
-use super::file::Lesson;
 use super::question::Answer;
-use super::stage::StepView;
+use super::{Lesson, StepView};
 
 /// The parts that a lesson needs beside scene, radar and the maps of ends and whole array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -158,22 +158,17 @@ fn read_budget(archive: &mut Npz) -> Result<Option<LinkBudget>, NpzError> {
         return Ok(None);
     }
     let half_power_width_degrees = optional(archive, WIDTH_KEY)?;
-    let mut of = |key: &str| number(archive, key);
-    Ok(Some(LinkBudget {
-        transmit_power_dbm: of(BUDGET_KEYS[0])?,
-        antenna_gain_dbi: of(BUDGET_KEYS[1])?,
-        noise_figure_db: of(BUDGET_KEYS[2])?,
-        half_power_width_degrees,
-    }))
+    let [power, gain, noise] = BUDGET_KEYS.map(|key| number(archive, key));
+    let (transmit_power_dbm, antenna_gain_dbi, noise_figure_db) = (power?, gain?, noise?);
+    Ok(Some(LinkBudget { transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees }))
 }
 
 fn read_antennas(archive: &mut Npz) -> Result<Option<Antennas>, NpzError> {
     if !archive.has(ANTENNA_KEYS[0]) {
         return Ok(None);
     }
-    let damaged = |key: &'static str| {
-        move |e: AntennasError| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() }
-    };
+    let damaged =
+        |key: &'static str| move |e: AntennasError| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() };
     let [transmitters, receivers] = places(archive, ANTENNA_KEYS)?;
     let antennas = Antennas::new(&transmitters, &receivers).map_err(damaged(ANTENNA_KEYS[0]))?;
     if !archive.has(OFF_LINE_KEYS[0]) {

@@ -15,28 +15,15 @@ pub struct Attempt {
     pub work: usize,
 }
 
-/// The proposal of an attempt. Places are (x, y), metres.
+/// The proposal of an attempt. Places are (x, y), metres. Gains of the ends' elements are told by roots of mean squares: of their differences
+/// from their mean, and of their phases. Several objects together are kept or refused together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tried {
     Nothing,
-    Point {
-        at_metres: [f64; 2],
-    },
-    Line {
-        from_metres: [f64; 2],
-        to_metres: [f64; 2],
-        count: usize,
-    },
-    Gains {
-        /// Root of the mean square of their differences from their mean, decibels.
-        decibels: f64,
-        /// Root of the mean square of their phases, degrees.
-        degrees: f64,
-    },
-    /// Several objects that are kept or refused together.
-    Together {
-        count: usize,
-    },
+    Point { at_metres: [f64; 2] },
+    Line { from_metres: [f64; 2], to_metres: [f64; 2], count: usize },
+    Gains { decibels: f64, degrees: f64 },
+    Together { count: usize },
 }
 
 impl Tried {

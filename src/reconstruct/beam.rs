@@ -22,25 +22,17 @@ impl<'a> Beam<'a> {
         Beam { radar, elements, profiles: channels_range_transform(radar, rows.view()).profiles }
     }
 
-    /// The cosine within `within` of `about` from which the power at this range is largest, all elements added in phase.
-    pub fn strongest_near(&self, range_metres: f64, about: f64, within: f64) -> f64 {
-        let bin = self.bin(range_metres);
+    /// The cosine within `within` of `about` from which the power at this range is largest, all elements added in phase; and that power.
+    pub fn strongest_near(&self, range_metres: f64, about: f64, within: f64) -> (f64, f64) {
+        let bin = self.radar.bin_of_range(range_metres).round().rem_euclid(self.radar.samples as f64) as usize;
         let cosine = |step: i32| (about + within * f64::from(step) / f64::from(STEPS)).clamp(-1.0, 1.0);
         let power = |step: i32| self.power(bin, range_metres, cosine(step));
         // The nearest of equal cosines: silence keeps `about`.
-        let best = (1..=STEPS).flat_map(|n| [n, -n]).fold((0, power(0)), |best, step| {
+        let (step, power) = (1..=STEPS).flat_map(|n| [n, -n]).fold((0, power(0)), |best, step| {
             let found = power(step);
             if found > best.1 { (step, found) } else { best }
         });
-        cosine(best.0)
-    }
-
-    pub fn power_at(&self, range_metres: f64, cos_theta: f64) -> f64 {
-        self.power(self.bin(range_metres), range_metres, cos_theta)
-    }
-
-    fn bin(&self, range_metres: f64) -> usize {
-        self.radar.bin_of_range(range_metres).round().rem_euclid(self.radar.samples as f64) as usize
+        (cosine(step), power)
     }
 
     fn power(&self, bin: usize, range_metres: f64, cosine: f64) -> f64 {

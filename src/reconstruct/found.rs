@@ -1,7 +1,8 @@
 //! Lists of detections: a method's reflectors, or the peaks of its map.
 
 use super::beam::Beam;
-use super::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
+use super::error::Result;
+use super::{Detection, Reconstruction, Reconstructor, Request};
 use crate::maps::Normalisation;
 use crate::maps::peaks::peaks;
 use crate::radar::{Decibels, Radar};
@@ -30,7 +31,7 @@ pub fn reconstruct_and_find(
     radar: &Radar,
     ends: &TwoEnds,
     request: &Request,
-) -> Result<(Reconstruction, Vec<Detection>), ReconstructError> {
+) -> Result<(Reconstruction, Vec<Detection>)> {
     let answer = method.reconstruct(radar, ends, request)?;
     let found = find(method, radar, ends, request, &answer)?;
     Ok((answer, found))
@@ -47,7 +48,7 @@ pub fn find(
     ends: &TwoEnds,
     request: &Request,
     answer: &Reconstruction,
-) -> Result<Vec<Detection>, ReconstructError> {
+) -> Result<Vec<Detection>> {
     let normalisation = Normalisation::DynamicRange(MAP_RANGE);
     // Beside another layout the ends have no samples.
     let heard = request.heard.is_none().then_some(ends);
@@ -87,13 +88,13 @@ fn between_columns(radar: &Radar, ends: &TwoEnds, peaks: impl Iterator<Item = De
     let column = (radar.cos_of_column(1.0) - radar.cos_of_column(0.0)).abs();
     let mut found: Vec<(f64, Detection)> = Vec::new();
     for peak in peaks {
-        let cos_theta = beam.strongest_near(peak.range_metres, peak.cos_theta, 1.5 * column);
+        let (cos_theta, power) = beam.strongest_near(peak.range_metres, peak.cos_theta, 1.5 * column);
         let is_new = |(_, f): &(f64, Detection)| {
             let bins = (f.range_metres - peak.range_metres).abs() / radar.range_resolution_metres();
             bins > 1.5 || (f.cos_theta - cos_theta).abs() > ONE_PEAK * column
         };
         if found.iter().all(is_new) {
-            found.push((beam.power_at(peak.range_metres, cos_theta), Detection { cos_theta, ..peak }));
+            found.push((power, Detection { cos_theta, ..peak }));
         }
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -217,8 +217,9 @@ impl Body {
             return None;
         }
         (0..radar.elements).find(|n| {
-            let covers =
-                |[x, y]: [f64; 2]| x >= low[0] - near && x <= high[0] + near && self.shape.distance_metres([x, y]) < near;
+            let covers = |[x, y]: [f64; 2]| {
+                x >= low[0] - near && x <= high[0] + near && self.shape.distance_metres([x, y]) < near
+            };
             radar.pair(*n).places_metres().into_iter().any(covers)
         })
     }

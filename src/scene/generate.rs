@@ -78,14 +78,8 @@ const LINE_POINTS: usize = 75;
 impl Generator {
     /// Scenes for `radar`; the same arguments give the same scenes on every machine.
     pub fn new(radar: &Radar, reading: Reading, purpose: Purpose, seed: u64) -> Self {
-        Generator {
-            max_range: radar.max_range_metres(),
-            bin: radar.range_resolution_metres(),
-            world: World::new(radar),
-            reading,
-            purpose,
-            seed,
-        }
+        let (max_range, bin) = (radar.max_range_metres(), radar.range_resolution_metres());
+        Generator { max_range, bin, world: World::new(radar), reading, purpose, seed }
     }
 
     /// Random stream of one scene. Purposes get different keys, kinds and numbers different streams of that key.
@@ -276,10 +270,8 @@ mod tests {
             assert!(bodies >= 60, "{kind}: {bodies} in 40 scenes");
         }
         let rough = scenes(Kind::Rough).into_iter().flatten();
-        let deviations: Vec<f64> = rough
-            .filter_map(|o| Some(o.body()?.roughness_millimetres))
-            .filter(|deviation| *deviation > 0.0)
-            .collect();
+        let deviations: Vec<f64> =
+            rough.filter_map(|o| Some(o.body()?.roughness_millimetres)).filter(|deviation| *deviation > 0.0).collect();
         assert!(deviations.len() >= 40 && deviations.iter().all(|d| (0.2..=1.5).contains(d)), "{deviations:?}");
     }
 

@@ -183,13 +183,8 @@ impl Scene {
             }
             for r in object.reflectors() {
                 if let Some(element) = touched_element(radar, &r) {
-                    return Err(SceneError::OnElement {
-                        object: index,
-                        kind: object.kind(),
-                        x_metres: r.x_metres,
-                        y_metres: r.y_metres,
-                        element,
-                    });
+                    let (kind, Reflector { x_metres, y_metres, .. }) = (object.kind(), r);
+                    return Err(SceneError::OnElement { object: index, kind, x_metres, y_metres, element });
                 }
             }
         }

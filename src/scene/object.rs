@@ -1,9 +1,8 @@
 //! The objects of a scene: points, lines of points, Gaussian clusters of points, and bodies.
 
-use super::Reflector;
-use super::body::{Block, Body, Polygon, Post, Wall, one};
-use super::shape::Shape;
-use super::common::{is_default, moving, of_each};
+use super::body::one;
+use super::common::{moving, of_each};
+use super::{Block, Body, Polygon, Post, Reflector, Shape, Wall, is_default};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

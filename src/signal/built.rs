@@ -1,11 +1,9 @@
 //! The signal at an array with element errors.
 
-use super::floor::{self, Floor};
-use super::interference::add_interference;
-use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, Plan, amplitude_bound};
+use super::floor::{self};
+use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, amplitude_bound};
 use super::run::samples_of;
-use super::samples::BeatSignal;
-use super::unfinished::Unfinished;
+use super::{BeatSignal, Floor, Made, Plan, Unfinished, add_interference};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Echoing;
 use crate::scene::{Scene, SceneError};
@@ -34,12 +32,13 @@ pub(super) fn simulate_built_for(
     array: &BuiltArray,
     floor: Floor,
     seed: u64,
-) -> Result<BeatSignal, Unfinished> {
+) -> Made<BeatSignal> {
     scene.validate(radar)?;
     array.validate(radar).map_err(SceneError::from)?;
     let echoing = Echoing::of(radar, scene);
     let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
-    let mut signal = BeatSignal { samples: samples_of(radar, array, (&echoing).into(), &plan, 0..radar.elements, task) };
+    let mut signal =
+        BeatSignal { samples: samples_of(radar, array, (&echoing).into(), &plan, 0..radar.elements, task) };
     hear(radar, scene, array, &mut signal);
     task.check()?;
     if let Some(variance) = floor::noise_variance(radar, &echoing, floor) {

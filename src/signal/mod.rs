@@ -56,4 +56,4 @@ pub use rows::Rows;
 pub use run::beat_signal;
 pub use samples::{BeatSignal, LayoutSamples, TwoEnds};
 pub use simulate::{simulate, simulate_ends_for, simulate_for};
-pub use unfinished::Unfinished;
+pub use unfinished::{Made, Unfinished};

@@ -1,11 +1,10 @@
 //! Samples of a scene over a floor.
 
 use super::built::{simulate_built_for, tolerance};
-use super::floor::{self, Floor};
-use super::plan::{Plan, amplitude_bound};
+use super::floor::{self};
+use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::samples::{BeatSignal, TwoEnds};
-use super::unfinished::Unfinished;
+use super::{BeatSignal, Floor, Made, Plan, TwoEnds, Unfinished};
 use crate::radar::{BuiltArray, End, Radar};
 use crate::scattering::Echoing;
 use crate::scene::{Scene, SceneError};
@@ -25,26 +24,14 @@ pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result
 /// [`simulate`], unless `task` is cancelled before it is done.
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
-pub fn simulate_for(
-    task: &Task,
-    radar: &Radar,
-    scene: &Scene,
-    floor: Floor,
-    seed: u64,
-) -> Result<BeatSignal, Unfinished> {
+pub fn simulate_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<BeatSignal> {
     simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed)
 }
 
 /// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them, unless `task` is cancelled before they are done.
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
-pub fn simulate_ends_for(
-    task: &Task,
-    radar: &Radar,
-    scene: &Scene,
-    floor: Floor,
-    seed: u64,
-) -> Result<TwoEnds, Unfinished> {
+pub fn simulate_ends_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<TwoEnds> {
     if !scene.disturbances.is_none_to(radar) {
         return Ok(simulate_for(task, radar, scene, floor, seed)?.two_ends(radar));
     }
@@ -89,7 +76,11 @@ mod tests {
         for (radar, scene) in cases {
             for floor in [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0)), Floor::Snr(Decibels(60.0))] {
                 let whole = simulate(&radar, &scene, floor, 3).unwrap().two_ends(&radar);
-                assert_eq!(simulate_ends_for(&Task::default(), &radar, &scene, floor, 3).unwrap(), whole, "{scene:?} over {floor}");
+                assert_eq!(
+                    simulate_ends_for(&Task::default(), &radar, &scene, floor, 3).unwrap(),
+                    whole,
+                    "{scene:?} over {floor}"
+                );
             }
         }
     }

@@ -1,8 +1,8 @@
 //! The blob of one reflector: its peak, its half-power widths, its first side lobes.
 
+use super::MapPlace;
 use super::response::{Response, ResponseRow};
 use super::squint::cell_seen_from;
-use super::MapPlace;
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;

@@ -1,8 +1,7 @@
 //! Opening, saving and replacing documents, and the unsaved ones that were replaced.
 
-use super::Editor;
-use crate::interact::Selection;
-use crate::interact::document::{self, Document, Restored};
+use crate::interact::document::{self};
+use crate::interact::{Document, Editor, Restored, Selection};
 use crate::scene::file::{SceneFileError, SceneFormat};
 use std::path::Path;
 

@@ -152,7 +152,8 @@ fn a_copy_that_loses_something_saves_nothing() {
     let line = Line { reflectivity: 0.05, ..Line::vertical(0.0, 9.0, 0.1, 40) };
     e.add(Object::Line(line));
     let npz = folder.path().join("s.npz");
-    let losses = ["the reflectivity of one object", "one line or cluster, which becomes 40 points"].map(str::to_owned).to_vec();
+    let losses =
+        ["the reflectivity of one object", "one line or cluster, which becomes 40 points"].map(str::to_owned).to_vec();
     assert_eq!(e.losses(&npz).unwrap(), losses);
     assert_eq!(e.save(&npz).unwrap(), Saved::Copy(losses));
     assert_eq!((count(&npz), e.document().title()), (42, "untitled •".to_owned()));

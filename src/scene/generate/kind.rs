@@ -95,7 +95,9 @@ impl Kind {
             return Ok(Kind::World);
         }
         match name.parse::<Kind>().map_err(|error| format!("{error}, or {WORLD}"))? {
-            Kind::Beyond(kind) => Err(format!("{} makes scenes for tests alone; expected another kind", kind.entry().0)),
+            Kind::Beyond(kind) => {
+                Err(format!("{} makes scenes for tests alone; expected another kind", kind.entry().0))
+            }
             kind => Ok(kind),
         }
     }
