@@ -5,7 +5,6 @@
 
 mod diagrams;
 pub mod draw;
-mod fields;
 mod introduction;
 mod measures;
 mod outputs;
@@ -14,7 +13,6 @@ mod range_angle;
 pub mod sheet;
 mod sketch;
 mod source;
-mod things;
 mod waves;
 
 pub use source::{FigureError, SceneSource};
@@ -218,7 +216,7 @@ pub const ALL: &[Figure] = &[
         "The preset \"gaussian-clusters\"; `live` and `hybrid` are added.",
     ),
     figure(
-        ("5-6", fields::fields_of_view),
+        ("5-6", diagrams::fields_of_view),
         "Fields of view of the two ends, and where they overlap.",
         "The ends are drawn far apart, and 50 degrees are chosen for half the angle.",
     ),
@@ -228,7 +226,7 @@ pub const ALL: &[Figure] = &[
         "Above, points cast no shadows: what hides the point are the line's side lobes, through which the whole array sees it. Below, a wall hides a point from the last end, to which its echo is 40 dB weaker, and not from the first. Every map is normalised by itself, over about 200 dB, so that 40 dB are a fifth of Λ.",
     ),
     figure(
-        ("6-1", things::cylinder_and_cube),
+        ("6-1", outputs::cylinder_and_cube),
         "A cylinder and a cube at an angle.",
         "The printed one is a ray-tracing solver's, at 40 minutes a scene, and its sizes are not given; here physical optics in the plane takes a moment. The preset \"cylinder-and-cube\".",
     ),

@@ -1,8 +1,7 @@
 //! Challenges: "now change it until ...", checked by the engine.
 
 use super::fault::Fault;
-use super::object_number::ObjectNumber;
-use super::quantity::Quantity;
+use super::quantity::{ObjectNumber, Quantity};
 use super::stage::{MapName, Stage};
 use crate::evaluate::squared_error;
 use crate::radar::Radar;

@@ -1,6 +1,7 @@
 //! Lesson files: TOML that a teacher writes without Rust. `docs/lessons.md` describes the format with a worked example.
 
 use super::fault::Fault;
+use super::question::Answer;
 use super::{Challenge, LessonTextError, Question, StepView};
 use crate::files::read_bounded;
 use crate::radar::Radar;
@@ -129,6 +130,38 @@ impl Step {
 
 fn line_of(text: &str, byte: usize) -> usize {
     text.bytes().take(byte).filter(|b| *b == b'\n').count() + 1
+}
+
+/// The parts that a lesson needs beside scene, radar and the maps of ends and whole array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Uses {
+    /// A method's output: a question or a challenge measures it, or a step names a method of its own.
+    pub output: bool,
+    /// A threshold: a question asks for one, or a step detects by a detector.
+    pub threshold: bool,
+}
+
+impl Uses {
+    /// All parts, as without a lesson.
+    pub const ALL: Uses = Uses { output: true, threshold: true };
+}
+
+impl Lesson {
+    /// The parts that the lesson's steps need.
+    pub fn uses(&self) -> Uses {
+        let usual = StepView::default().method;
+        let output = self.steps.iter().any(|step| {
+            step.view.method != usual
+                || step.predict.as_ref().is_some_and(|question| question.needs_output())
+                || step.challenge.as_ref().is_some_and(|c| c.needs_output() || c.needs_hidden_output())
+        });
+        let threshold = self.steps.iter().any(|step| {
+            let asks =
+                step.predict.as_ref().is_some_and(|question| matches!(question.answer, Answer::Threshold { .. }));
+            asks || step.view.cfar.is_some()
+        });
+        Uses { output, threshold }
+    }
 }
 
 #[cfg(test)]

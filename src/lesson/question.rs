@@ -1,8 +1,7 @@
 //! Predictions: questions, and the judgement of a learner's answer.
 
 use super::fault::{Fault, check_tolerance};
-use super::object_number::ObjectNumber;
-use super::quantity::Quantity;
+use super::quantity::{ObjectNumber, Quantity};
 use super::stage::{Cell, MapName, Stage};
 use crate::evaluate::{TARGET_ETA, detection_rates, eta_text};
 use serde::Deserialize;

@@ -9,14 +9,12 @@ mod field;
 mod kind;
 mod laws;
 mod mixture;
-mod room;
 mod things;
 mod world;
 
 pub use beyond::Beyond;
-pub use kind::Kind;
+pub use kind::{Kind, NoRoom};
 pub use mixture::{Mixture, MixtureError};
-pub use room::NoRoom;
 
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;

@@ -36,6 +36,12 @@ pub struct Reflector {
     pub reflectivity: f64,
 }
 
+impl Reflector {
+    pub fn at([x_metres, y_metres]: [f64; 2], reflectivity: f64) -> Self {
+        Reflector { x_metres, y_metres, reflectivity }
+    }
+}
+
 /// Objects before the radar, in the order they were added.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -9,12 +9,11 @@
 //! [`simulate_ends_for`](super::simulate_ends_for). Each chirp has its own noise. An interferer is the same in every chirp.
 
 use super::built::{hear, tolerance};
-use super::floor::{self};
 use super::path::Path;
 use super::phase::{Echo, EchoModel};
 use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::{BeatSignal, Floor, Made, Plan};
+use super::{BeatSignal, Floor, Made, Plan, floor};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::{Echoing, PathEcho, SeenObject, Sources};
 use crate::scene::{Object, Scene, SceneError};

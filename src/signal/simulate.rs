@@ -1,10 +1,9 @@
 //! Samples of a scene over a floor.
 
 use super::built::{simulate_built_for, tolerance};
-use super::floor::{self};
 use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::{BeatSignal, Floor, Made, Plan, TwoEnds, Unfinished};
+use super::{BeatSignal, Floor, Made, Plan, TwoEnds, Unfinished, floor};
 use crate::radar::{BuiltArray, End, Radar};
 use crate::scattering::Echoing;
 use crate::scene::{Scene, SceneError};

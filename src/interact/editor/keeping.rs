@@ -1,7 +1,6 @@
 //! Opening, saving and replacing documents, and the unsaved ones that were replaced.
 
-use crate::interact::document::{self};
-use crate::interact::{Document, Editor, Restored, Selection};
+use crate::interact::{Document, Editor, Restored, Selection, document};
 use crate::scene::file::{SceneFileError, SceneFormat};
 use std::path::Path;
 
