@@ -147,11 +147,9 @@ impl SharedScene {
             return Err(ShareError::Large);
         }
         let letters: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-        let begins = || letters.chars().take(PREFIX.len() + 2).collect();
-        let (version, packed) = letters
-            .strip_prefix(PREFIX)
-            .and_then(|rest| rest.split_once(':'))
-            .ok_or_else(|| ShareError::Prefix(begins()))?;
+        let parts = letters.strip_prefix(PREFIX).and_then(|rest| rest.split_once(':'));
+        let wrong = || ShareError::Prefix(letters.chars().take(PREFIX.len() + 2).collect());
+        let (version, packed) = parts.ok_or_else(wrong)?;
         if version != VERSION {
             return Err(ShareError::Version(version.chars().take(20).collect()));
         }
@@ -236,10 +234,8 @@ impl SharedView {
             let VisiblePart { left, bottom, right, top } = part;
             let inside = |low: f32, high: f32| low >= 0.0 && high <= 1.0 && high - low >= MIN_EXTENT_PART;
             if !(inside(left, right) && inside(bottom, top)) {
-                return wrong(
-                    field,
-                    format!("is {part:?}; expected edges from 0 to 1, the right and the top ones larger"),
-                );
+                let expected = "expected edges from 0 to 1, the right and the top ones larger";
+                return wrong(field, format!("is {part:?}; {expected}"));
             }
         }
         Ok(())

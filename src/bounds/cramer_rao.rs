@@ -53,6 +53,8 @@ impl PositionBound {
     }
 }
 
+type PositionBounds = Result<Vec<PositionBound>, BoundsError>;
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum BoundsError {
     #[error(
@@ -78,12 +80,7 @@ pub fn noise_variance(radar: &Radar, layout: &Layout, reflector: &Reflector, snr
 /// for the whole layout: both ends of a sparse array receive the same reflector coherently. [`cramer_rao_of`] bounds it where they don't.
 /// # Errors
 /// [`BoundsError`] when the parameters can't be distinguished, or the noise is not a positive number.
-pub fn cramer_rao(
-    radar: &Radar,
-    layout: &Layout,
-    reflectors: &[Reflector],
-    noise_variance: f64,
-) -> Result<Vec<PositionBound>, BoundsError> {
+pub fn cramer_rao(radar: &Radar, layout: &Layout, reflectors: &[Reflector], noise_variance: f64) -> PositionBounds {
     cramer_rao_of(radar, layout, reflectors, noise_variance, Gains::One)
 }
 
@@ -96,7 +93,7 @@ pub fn cramer_rao_of(
     reflectors: &[Reflector],
     noise_variance: f64,
     gains: Gains,
-) -> Result<Vec<PositionBound>, BoundsError> {
+) -> PositionBounds {
     if !(noise_variance.is_finite() && noise_variance > 0.0) {
         return Err(BoundsError::Noise);
     }

@@ -27,7 +27,6 @@ impl Amplitudes {
         self.known.iter().map(|(_, bound)| bound).sum()
     }
 
-    /// Drops all kept bounds.
     pub fn forget(&mut self) {
         self.known.clear();
     }

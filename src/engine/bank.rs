@@ -1,17 +1,15 @@
 //! The sums that the engine keeps in one precision: range profiles of the objects at rest and of those being edited.
 
 use super::change::SceneChange;
-use super::frame::MapRequest;
-use super::report::{EngineReport, EngineStage};
+use super::{EngineReport, EngineStage, MapRequest};
 use crate::maps::fast::{FastLogMap, MapMaker, MapNoise, MapSources, silence_decades};
 use crate::platform::Instant;
 use crate::radar::{Radar, counted};
 use crate::scattering::{Echoing, SeenObject};
 use crate::scene::Scene;
-use crate::signal::plan;
 use crate::signal::simd::{Lanes, Real, Simd};
 use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
-use crate::signal::{Algorithm, Floor, Plan, Rows, floor};
+use crate::signal::{Algorithm, Floor, Plan, Rows, floor, plan};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 
@@ -30,10 +28,8 @@ pub(super) struct BankUpdate<'a> {
 
 impl BankUpdate<'_> {
     fn counted(&self, count: usize) -> String {
-        match self.scene.has_bodies() {
-            true => counted(count, "echo", "echoes"),
-            false => counted(count, "reflector", "reflectors"),
-        }
+        let [one, many] = if self.scene.has_bodies() { ["echo", "echoes"] } else { ["reflector", "reflectors"] };
+        counted(count, one, many)
     }
 
     /// Ten standard deviations of a floor with a level of its own, 0 for the others. Only over such a floor can all echoes lie far below the noise.
@@ -87,12 +83,8 @@ pub(super) struct KeptDecades {
 
 impl KeptDecades {
     fn silence(radar: &Radar) -> Self {
-        KeptDecades {
-            decades: FastLogMap::silence(radar),
-            stale: Rows::all(radar.samples),
-            over_noise: false,
-            silence: f32::NAN,
-        }
+        let (decades, stale) = (FastLogMap::silence(radar), Rows::all(radar.samples));
+        KeptDecades { decades, stale, over_noise: false, silence: f32::NAN }
     }
 }
 
@@ -161,15 +153,9 @@ struct Built {
 
 impl<T: Real, const W: usize> Bank<T, W> {
     pub fn new(radar: &Radar) -> Self {
-        Bank {
-            maker: MapMaker::new(radar, Simd::chosen()),
-            syntheses: Vec::new(),
-            rest: Group::empty(radar),
-            active: Group::empty(radar),
-            leaving: Group::empty(radar),
-            built: None,
-            noise: None,
-        }
+        let [rest, active, leaving] = [(); 3].map(|()| Group::empty(radar));
+        let (maker, syntheses) = (MapMaker::new(radar, Simd::chosen()), Vec::new());
+        Bank { maker, syntheses, rest, active, leaving, built: None, noise: None }
     }
 
     pub fn forget(&mut self) {

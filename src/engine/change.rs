@@ -48,12 +48,9 @@ impl SceneChange {
             return stirring;
         }
         // The active objects are added to the sum at rest first; those that are gone or changed then leave it.
-        let mut settling = SceneChange {
-            settles: true,
-            staying: stirring.staying.clone(),
-            leaving: unmatched.into_iter().cloned().collect(),
-            arriving: stirring.arriving.clone(),
-        };
+        let (staying, arriving) = (stirring.staying.clone(), stirring.arriving.clone());
+        let leaving = unmatched.into_iter().cloned().collect();
+        let mut settling = SceneChange { settles: true, staying, leaving, arriving };
         for object in active {
             match settling.arriving.iter().position(|o| o == object) {
                 Some(at) => settling.staying.push(settling.arriving.remove(at)),
@@ -64,7 +61,6 @@ impl SceneChange {
         if at_rest && stirring.cost() <= settling.cost() { stirring } else { settling }
     }
 
-    /// Number of echoes to evaluate.
     pub fn cost(&self) -> usize {
         count(&self.leaving) + count(&self.arriving)
     }

@@ -27,19 +27,11 @@ impl MapRequest {
 
 impl Default for MapRequest {
     fn default() -> Self {
-        MapRequest {
-            floor: Floor::Thesis,
-            seed: 0,
-            normalisation: Normalisation::MinMax,
-            first: true,
-            last: true,
-            full: true,
-            ends: true,
-        }
+        let (floor, normalisation) = (Floor::Thesis, Normalisation::MinMax);
+        MapRequest { floor, seed: 0, normalisation, first: true, last: true, full: true, ends: true }
     }
 }
 
-/// The parts of a scene, and the floor, that maps depend on.
 pub(super) struct Pictured {
     objects: Vec<Object>,
     shadows: bool,

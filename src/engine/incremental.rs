@@ -6,10 +6,9 @@
 
 use super::amplitudes::Amplitudes;
 use super::bank::{Bank, BankUpdate};
-use super::frame::{EngineFrame, MapRequest};
-use super::report::{EngineReport, EngineStage};
 use super::settled::SettledMaps;
 use super::shown::ShownMaps;
+use super::{EngineFrame, EngineReport, EngineStage, MapRequest};
 use crate::maps::tolerance;
 use crate::platform::Instant;
 use crate::radar::Radar;
@@ -17,7 +16,7 @@ use crate::scattering::SeenObject;
 use crate::scene::{Scene, SceneError};
 use crate::signal::plan::Sum;
 use crate::signal::simd::{LANES_F32, LANES_F64};
-use crate::signal::{Algorithm, Plan, Precision, Rows, Unfinished, simulate_ends_for};
+use crate::signal::{Algorithm, Made, Plan, Precision, Rows, Unfinished, simulate_ends_for};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -62,18 +61,11 @@ impl Engine {
     pub fn forget(&mut self) {
         self.settled = None;
         self.amplitudes.forget();
-        if let Some(shown) = &mut self.shown {
-            shown.forget(&self.radar);
-        }
-        if let Some(bank) = &mut self.single {
-            bank.forget();
-        }
-        if let Some(bank) = &mut self.double {
-            bank.forget();
-        }
+        self.shown.iter_mut().for_each(|shown| shown.forget(&self.radar));
+        self.single.iter_mut().for_each(Bank::forget);
+        self.double.iter_mut().for_each(Bank::forget);
     }
 
-    /// The radar of the engine.
     pub fn radar(&self) -> &Radar {
         &self.radar
     }
@@ -86,14 +78,11 @@ impl Engine {
         }
     }
 
-    /// Size of all caches, bytes.
     pub fn cache_bytes(&self) -> usize {
         let banks = self.single.as_ref().map_or(0, Bank::bytes) + self.double.as_ref().map_or(0, Bank::bytes);
         let cells = self.radar.samples * self.radar.elements * size_of::<f32>();
-        let shown = self
-            .shown
-            .as_ref()
-            .map_or(0, |s| s.decades.iter().flatten().count() + s.maps.iter().flatten().count() + s.spare.len());
+        let kept = |s: &ShownMaps| s.decades.iter().flatten().count() + s.maps.iter().flatten().count() + s.spare.len();
+        let shown = self.shown.as_ref().map_or(0, kept);
         // Decades in f64 and Lambda in f32.
         let settled = self.settled.as_ref().map_or(0, SettledMaps::maps) * 3;
         banks + (shown + settled) * cells
@@ -110,7 +99,7 @@ impl Engine {
     /// [`Engine::update`] that `task` can cancel. After that, the next update starts from scratch.
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
+    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
         let begin = Instant::now();
         let is_focused = self.radar.focus_off_line && !self.radar.is_on_line();
         if is_focused || !scene.disturbances.is_none_to(&self.radar) {
@@ -137,7 +126,7 @@ impl Engine {
     /// [`Engine::settle`] that `task` can cancel. Later updates are not affected.
     /// # Errors
     /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
+    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
         let begin = Instant::now();
         let mut report = EngineReport::default();
         let settled = match self.settled.take().filter(|settled| settled.has(scene, wanted)) {
@@ -149,7 +138,7 @@ impl Engine {
         Ok(frame)
     }
 
-    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, Unfinished> {
+    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
         let mut report = EngineReport::default();
         let visible = wanted.visible();
         let mut shown = self.recall(scene, wanted);

@@ -7,7 +7,7 @@ use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transf
 use crate::platform::Instant;
 use crate::radar::{Radar, counted};
 use crate::scene::Scene;
-use crate::signal::{self, TwoEnds, Unfinished};
+use crate::signal::{self, Made, TwoEnds};
 use crate::task::Task;
 use std::sync::Arc;
 
@@ -23,14 +23,8 @@ pub(super) struct SettledMaps {
 impl SettledMaps {
     /// Computes the wanted maps of `scene`, and adds the stages' times to `report`.
     /// # Errors
-    /// [`Unfinished`] when the scene can't be simulated, or `task` was cancelled.
-    pub fn of(
-        task: &Task,
-        radar: &Radar,
-        scene: &Scene,
-        wanted: &MapRequest,
-        report: &mut EngineReport,
-    ) -> Result<SettledMaps, Unfinished> {
+    /// [`signal::Unfinished`] when the scene can't be simulated, or `task` was cancelled.
+    pub fn of(task: &Task, radar: &Radar, scene: &Scene, wanted: &MapRequest, report: &mut EngineReport) -> Made<Self> {
         let start = Instant::now();
         let signal = signal::simulate_for(task, radar, scene, wanted.floor, wanted.seed)?;
         let ends = Arc::new(signal.two_ends(radar));
@@ -58,7 +52,6 @@ impl SettledMaps {
         self.of.is(scene, wanted) && (0..3).all(|i| !visible[i] || self.logs[i].is_some())
     }
 
-    /// Number of kept maps.
     pub fn maps(&self) -> usize {
         self.logs.iter().flatten().count()
     }

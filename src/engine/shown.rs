@@ -36,16 +36,8 @@ impl ShownMaps {
             let excess = spare.len().saturating_sub(6);
             spare.drain(..excess);
         }
-        ShownMaps {
-            of: Pictured::of(scene, wanted),
-            tolerance,
-            normalisation: wanted.normalisation,
-            ends: None,
-            decades,
-            current: [false; 3],
-            maps: [None, None, None],
-            spare,
-        }
+        let (of, normalisation, maps) = (Pictured::of(scene, wanted), wanted.normalisation, [None, None, None]);
+        ShownMaps { of, tolerance, normalisation, ends: None, decades, current: [false; 3], maps, spare }
     }
 
     /// Drops the scene but keeps buffers: no request accepts the infinite tolerance.

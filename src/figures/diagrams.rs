@@ -1,4 +1,4 @@
-//! Figures 3-1, 3-3 and 3-8: the networks, from their modules' own sizes, and the flow of data.
+//! Figures 3-1, 3-3, 3-8 and 5-6: the networks, from their modules' own sizes, the flow of data, and the fields of view of both ends.
 
 use super::sheet::{Ink, Sheet, SheetPanel, SketchShape};
 use super::source::{FigureError, SceneSource};
@@ -48,11 +48,8 @@ pub fn encoder_decoder(source: &SceneSource) -> Result<Sheet, FigureError> {
     for step in 0..levels {
         let (x, level) = (4.0 * (levels + step) as f64 + 4.4, levels - step - 1);
         let channels = if level == 0 { 1 } else { 2 * filters };
-        shapes.push(SketchShape::Block(
-            (x - 1.8, 2.2),
-            (x + 1.8, 3.8),
-            format!("up conv 4×4\n{}", size(channels, level)),
-        ));
+        let text = format!("up conv 4×4\n{}", size(channels, level));
+        shapes.push(SketchShape::Block((x - 1.8, 2.2), (x + 1.8, 3.8), text));
         if step > 0 {
             shapes.push(SketchShape::Arrow((x - 2.2, 3.0), (x - 1.8, 3.0), Ink::Dark));
         }
@@ -88,4 +85,29 @@ pub fn flow(_: &SceneSource) -> Result<Sheet, FigureError> {
             .map(|((x, y), text)| SketchShape::Block((x - 1.6, y - 0.7), (x + 1.6, y + 0.7), (*text).to_owned())),
     );
     Ok(Sheet::of(1, (1240, 330), vec![SheetPanel::sketch("From a scene to the loss", -2.0..22.0, -0.8..4.8, shapes)]))
+}
+
+const HALF_ANGLE_DEGREES: f64 = 50.0;
+
+/// Fields of view of both ends, the distance between them drawn forty times too large.
+pub fn fields_of_view(_: &SceneSource) -> Result<Sheet, FigureError> {
+    let (half_base, reach) = (10.0, 38.0);
+    let sector = |x: f64| {
+        let arc = (0..=40).map(move |i| (f64::from(i) / 20.0 - 1.0) * HALF_ANGLE_DEGREES.to_radians());
+        let mut corners = vec![(x, 0.0)];
+        corners.extend(arc.map(|a| (x + reach * a.sin(), reach * a.cos())));
+        corners
+    };
+    let mut shapes = Vec::new();
+    for (x, ink, name) in [(-half_base, Ink::Accent, "first end"), (half_base, Ink::Second, "last end")] {
+        shapes.push(SketchShape::Area(sector(x), ink));
+        shapes.push(SketchShape::Dot((x, 0.0), 7, ink));
+        shapes.push(SketchShape::Words((x, -2.6), name.to_owned(), ink));
+    }
+    shapes.push(SketchShape::Words((0.0, 24.0), "seen by both".to_owned(), Ink::Dark));
+    shapes.push(SketchShape::Words((-26.0, 21.0), "first end alone".to_owned(), Ink::Dark));
+    shapes.push(SketchShape::Words((26.0, 21.0), "last end alone".to_owned(), Ink::Dark));
+    shapes.push(SketchShape::Words((0.0, 4.0), "neither".to_owned(), Ink::Dark));
+    let panel = SheetPanel::sketch("Fields of view of the two ends", -46.0..46.0, -4.5..40.0, shapes);
+    Ok(Sheet::of(1, (820, 440), vec![panel]))
 }

@@ -65,11 +65,7 @@ pub fn virtual_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
         shapes.push(SketchShape::Dot(at, 8, Ink::Dark));
         shapes.push(SketchShape::Words((at.0, 0.2), format!("{}+{}", v.transmitter + 1, v.receiver + 1), Ink::Dark));
     }
-    let panel = SheetPanel::sketch(
-        "3 transmitters × 4 receivers = 12 virtual elements, half a wavelength apart",
-        -10.5..7.0,
-        0.0..3.5,
-        shapes,
-    );
+    let title = "3 transmitters × 4 receivers = 12 virtual elements, half a wavelength apart";
+    let panel = SheetPanel::sketch(title, -10.5..7.0, 0.0..3.5, shapes);
     Ok(Sheet::of(1, (820, 340), vec![panel]))
 }

@@ -34,11 +34,8 @@ pub fn tables(methods: &[&dyn Reconstructor], scenes: u32) -> Result<String, Cam
     let campaign = Campaign { count: scenes, ..Campaign::default() };
     let mut text = String::from("## Tables 4.1 to 4.3\n\n");
     let _ = writeln!(text, "{scenes} test scenes a set, seed 0; P_D and P_FA at each method's own threshold.");
-    let _ = writeln!(
-        text,
-        "Tables and figures are made over the thesis' floor, with {}.\n",
-        weights(methods, &campaign.radar)
-    );
+    let weights = weights(methods, &campaign.radar);
+    let _ = writeln!(text, "Tables and figures are made over the thesis' floor, with {weights}.\n");
     let sets = Kind::TEST_SETS.map(SceneSet::Generated);
     let rows = campaign.run(&sets, methods, &Task::default(), |_| ())?;
     for (set, scenes) in sets.iter().enumerate() {
@@ -66,14 +63,8 @@ fn weights(methods: &[&dyn Reconstructor], radar: &Radar) -> String {
 
 fn cells(tally: &Tally) -> String {
     let error = tally.squared_error();
-    let percent = |part: f64| 100.0 * part;
-    format!(
-        "{:.0} ± {:.0} | {:.2} | {:.2}",
-        error.mean,
-        error.standard_error,
-        percent(tally.detection().mean),
-        percent(tally.false_alarm().mean)
-    )
+    let [detection, false_alarm] = [tally.detection(), tally.false_alarm()].map(|part| 100.0 * part.mean);
+    format!("{:.0} ± {:.0} | {detection:.2} | {false_alarm:.2}", error.mean, error.standard_error)
 }
 
 #[cfg(test)]

@@ -41,6 +41,11 @@ pub fn radar_matrix(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(2, (620, 460), vec![SheetPanel::cells("Real part of the samples", matrix), ideal]))
 }
 
+/// The map of the four points, chosen as in [`map_of`].
+pub fn four_points_map(source: &SceneSource, of: usize, title: &str) -> Result<Sheet, FigureError> {
+    Ok(map_of(source, &source.preset(FOUR_REFLECTORS)?, of, title))
+}
+
 /// Λ of the first end (0), the last end (1) or the whole array (2).
 pub fn map_of(source: &SceneSource, seen: &ScenePictures, of: usize, title: &str) -> Sheet {
     Sheet::of(1, LARGE_PANEL_PIXELS, vec![source.lambda_panel(title, &seen.lambda[of])])

@@ -101,10 +101,8 @@ impl SceneSource {
     ) -> SheetPanel {
         let x = SheetAxis::new("cos θ", -1.0, 1.0);
         let values = self.radar.left_to_right(&values).to_owned();
-        SheetPanel::cells(
-            title,
-            SheetCells { x, y: self.range_axis(), values, colours, ends_of_bar, rings: Vec::new() },
-        )
+        let cells = SheetCells { x, y: self.range_axis(), values, colours, ends_of_bar, rings: Vec::new() };
+        SheetPanel::cells(title, cells)
     }
 
     pub fn cartesian_panel(&self, title: impl Into<String>, map: &RangeAngleMap, colours: ColourMap) -> SheetPanel {
@@ -125,13 +123,13 @@ impl SceneSource {
     }
 
     pub fn panels_of(&self, seen: &ScenePictures, title: &str) -> Vec<SheetPanel> {
-        let [first, last, full] = &seen.lambda;
-        vec![
-            self.scene_panel(title, &seen.scene),
-            self.lambda_panel("Input 0", first),
-            self.lambda_panel("Input 1", last),
-            self.lambda_panel("Target", full),
-        ]
+        [vec![self.scene_panel(title, &seen.scene)], self.map_panels(seen)].concat()
+    }
+
+    /// The inputs and the target.
+    pub fn map_panels(&self, seen: &ScenePictures) -> Vec<SheetPanel> {
+        let titled = ["Input 0", "Input 1", "Target"].into_iter().zip(&seen.lambda);
+        titled.map(|(title, map)| self.lambda_panel(title, map)).collect()
     }
 }
 

@@ -23,12 +23,8 @@ pub fn chirps(source: &SceneSource) -> Result<Sheet, FigureError> {
     let sent = Series::line("transmitted", ramp(0.0));
     let received = Series::line("received", ramp(delay)).with(Stroke::Dashed);
     let time = || SheetAxis::new("time (µs)", 0.0, chirp + delay);
-    let top = SheetPanel::chart(
-        "Chirp and its echo from 21 m",
-        time(),
-        SheetAxis::new("frequency (GHz)", carrier - 0.1, carrier + bandwidth + 0.4),
-        vec![sent, received],
-    );
+    let sweep = SheetAxis::new("frequency (GHz)", carrier - 0.1, carrier + bandwidth + 0.4);
+    let top = SheetPanel::chart("Chirp and its echo from 21 m", time(), sweep, vec![sent, received]);
     let beat = bandwidth * 1e3 * delay / chirp;
     let mixer = Series::line("", [(delay, beat), (chirp, beat)]);
     let bottom =
@@ -42,12 +38,8 @@ pub fn range_profile(source: &SceneSource) -> Result<Sheet, FigureError> {
     let profile = decibels(profiles.row(source.radar.elements / 2).iter().map(|v| v.norm()));
     let points = profile.into_iter().enumerate().map(|(k, db)| (source.radar.range_of_bin_metres(k as f64), db));
     let y = SheetAxis::new("magnitude (dB)", -120.0, 5.0);
-    let panel = SheetPanel::chart(
-        "One element, Hann window, 512 samples",
-        source.range_axis(),
-        y,
-        vec![Series::line("", points)],
-    );
+    let series = vec![Series::line("", points)];
+    let panel = SheetPanel::chart("One element, Hann window, 512 samples", source.range_axis(), y, series);
     Ok(Sheet::of(1, (760, 380), vec![panel]))
 }
 
@@ -88,12 +80,8 @@ pub fn windows(_: &SceneSource) -> Result<Sheet, FigureError> {
             .push(Series::line(window.name(), values.into_iter().enumerate().map(|(n, w)| (n as f64, w))).with(stroke));
         transforms.push(Series::line(window.name(), shown).with(stroke));
     }
-    let left = SheetPanel::chart(
-        "Windows of 64 points",
-        SheetAxis::new("n", 0.0, 63.0),
-        SheetAxis::new("weight", 0.0, 1.4),
-        weights,
-    );
+    let (x, y) = (SheetAxis::new("n", 0.0, 63.0), SheetAxis::new("weight", 0.0, 1.4));
+    let left = SheetPanel::chart("Windows of 64 points", x, y, weights);
     let (x, y) = (SheetAxis::new("frequency, in bins", 0.0, 16.0), SheetAxis::new("magnitude (dB)", -120.0, 5.0));
     Ok(Sheet::of(2, (560, 380), vec![left, SheetPanel::chart("Their transforms", x, y, transforms)]))
 }

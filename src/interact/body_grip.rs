@@ -1,7 +1,6 @@
 //! The grips of bodies: ends of walls, corners, radius, and a handle that turns.
 
-use super::Place;
-use super::grip_kind::{Grip, GripPlace};
+use super::{Grip, GripPlace, Place};
 use crate::scene::body::{MAX_SIZE_METRES, MIN_RADIUS_METRES, MIN_SIZE_METRES};
 use crate::scene::shape::direction;
 use crate::scene::{Block, Object, Wall};

@@ -3,7 +3,6 @@
 use crate::radar::Radar;
 use crate::scene::{Object, Scene, SceneError};
 
-/// A reason for which text can't be pasted.
 #[derive(Debug, thiserror::Error)]
 pub enum PasteError {
     #[error(
@@ -16,7 +15,6 @@ pub enum PasteError {
     Scene(#[from] SceneError),
 }
 
-/// Text of `objects`.
 pub fn to_text(objects: Vec<Object>) -> String {
     toml::to_string(&Scene { objects, ..Scene::default() }).unwrap_or_default()
 }

@@ -5,7 +5,6 @@ use crate::scene::body::{MAX_ROUGHNESS_MILLIMETRES, MAX_SIZE_METRES, MIN_RADIUS_
 use crate::scene::{MAX_SPEED_METRES_PER_SECOND, Object};
 use serde::{Deserialize, Serialize};
 
-/// Coordinates in which places are shown and entered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coordinates {
@@ -48,7 +47,6 @@ pub enum Field {
 /// The cross section for a reflectivity of 0, dBsm.
 const MIN_DBSM: f64 = -300.0;
 
-/// A change of a field's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FieldChange {
     To(f64),

@@ -11,8 +11,8 @@
 //!     o  near end: more or fewer reflectors, the far end stays          spread in y
 //! ```
 
-use super::grip_kind::{Grip, GripPlace};
-use super::{Place, body_grip};
+use super::{Grip, GripPlace, Place, body_grip};
+use crate::scene::shape::extent;
 use crate::scene::{Line, Object, Scene};
 
 /// Most reflectors a line can be stretched to by hand.
@@ -141,11 +141,9 @@ fn corners(object: &Object) -> [[f64; 2]; 2] {
 
 pub(super) fn bounds(scene: &Scene) -> Option<(Place, Place)> {
     let corners = scene.objects.iter().flat_map(corners).filter(|[x, y]| x.is_finite() && y.is_finite());
-    corners.fold(None, |bounds, [x, y]| {
-        let (low, high) = bounds.unwrap_or((Place::new(x, y), Place::new(x, y)));
-        let low = Place::new(low.x_metres.min(x), low.y_metres.min(y));
-        Some((low, Place::new(high.x_metres.max(x), high.y_metres.max(y))))
-    })
+    let corners: Vec<[f64; 2]> = corners.collect();
+    let (low, high) = extent(&corners);
+    (!corners.is_empty()).then(|| (low.into(), high.into()))
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use super::Place;
 
-/// Part of an object that can be grabbed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Grip {
     Body,
@@ -43,7 +42,6 @@ impl Grip {
     }
 }
 
-/// A grip and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GripPlace {
     pub grip: Grip,

@@ -1,7 +1,6 @@
 //! Undo and redo: whole documents, shared, with labels of the steps.
 
-use super::document::Document;
-use super::selection::Selection;
+use super::{Document, Selection};
 use crate::scene::Scene;
 use std::sync::Arc;
 
@@ -52,17 +51,14 @@ impl History {
         self.sealed = true;
     }
 
-    /// The label of the step that undo takes back.
     pub fn undo_label(&self) -> Option<&str> {
         self.done.last().map(|s| s.label.as_str())
     }
 
-    /// The label of the step that redo does again.
     pub fn redo_label(&self) -> Option<&str> {
         self.undone.last().map(|s| s.label.as_str())
     }
 
-    /// Steps that can be undone.
     pub fn depth(&self) -> usize {
         self.done.len()
     }

@@ -1,15 +1,12 @@
 //! The grip under the pointer, and the objects inside a box.
 
-use super::grip::grips;
-use super::grip_kind::Grip;
-use super::{Place, Selection};
+use super::{Grip, Place, Selection, grips};
 use crate::scene::shape::from_stretch;
 use crate::scene::{Object, Scene};
 
 /// Smallest radius of a target, in points of the view.
 pub const TARGET_RADIUS_POINTS: f64 = 9.0;
 
-/// A grip under the pointer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     pub object: usize,

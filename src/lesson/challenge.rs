@@ -1,8 +1,7 @@
 //! Challenges: "now change it until ...", checked by the engine.
 
 use super::fault::Fault;
-use super::object_number::ObjectNumber;
-use super::quantity::Quantity;
+use super::quantity::{ObjectNumber, Quantity};
 use super::stage::{MapName, Stage};
 use crate::evaluate::squared_error;
 use crate::radar::Radar;
@@ -32,7 +31,6 @@ pub struct Solution {
     #[serde(default, rename = "object")]
     pub objects: Vec<Object>,
     /// The radar; that of the step where there is none.
-    #[serde(default)]
     pub radar: Option<Radar>,
 }
 
@@ -41,9 +39,7 @@ pub struct Solution {
 #[serde(deny_unknown_fields)]
 pub struct Requirement {
     pub measure: Measure,
-    #[serde(default)]
     pub at_least: Option<f64>,
-    #[serde(default)]
     pub at_most: Option<f64>,
 }
 
@@ -52,40 +48,27 @@ pub struct Requirement {
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Measure {
     /// Lambda of an object's blob.
-    Lambda {
-        map: MapName,
-        object: ObjectNumber,
-    },
+    Lambda { map: MapName, object: ObjectNumber },
     /// Fall of Lambda between two objects' blobs, below the weaker of the two.
-    Dip {
-        map: MapName,
-        objects: [ObjectNumber; 2],
-    },
+    Dip { map: MapName, objects: [ObjectNumber; 2] },
+    /// SE of the method's output.
     SquaredError,
     /// SE of the learner's whole-array map against that of the hidden objects.
     Unexplained,
     /// `Unexplained` over the SE of the method's output on both ends of the hidden objects: below 1 the learner is nearer than the method.
     UnexplainedOverMethod,
+    /// Number of the scene's objects.
     Objects,
     /// Distance between two objects, metres.
-    Distance {
-        objects: [ObjectNumber; 2],
-    },
+    Distance { objects: [ObjectNumber; 2] },
+    /// The radar's bandwidth.
     BandwidthGigahertz,
     /// Range of an object from the array's centre, metres.
-    Range {
-        object: ObjectNumber,
-    },
+    Range { object: ObjectNumber },
     /// Part of a map's cells that are brighter than `above`.
-    BrightPart {
-        map: MapName,
-        above: f32,
-    },
-    Quantity {
-        quantity: Quantity,
-        #[serde(default)]
-        object: Option<ObjectNumber>,
-    },
+    BrightPart { map: MapName, above: f32 },
+    /// A quantity of the radar, or of one of the objects.
+    Quantity { quantity: Quantity, object: Option<ObjectNumber> },
 }
 
 impl Challenge {
@@ -197,7 +180,6 @@ impl Measure {
 }
 
 impl MapName {
-    /// Its name in sentences.
     pub fn words(self) -> &'static str {
         match self {
             MapName::Input0 => "input 0",

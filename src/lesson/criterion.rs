@@ -1,7 +1,7 @@
 //! Requirements of a challenge, measured and put into sentences: the wanted and the present value.
 
 use super::challenge::{Challenge, Measure, Requirement};
-use super::object_number::ObjectNumber;
+use super::quantity::ObjectNumber;
 use super::stage::Stage;
 use crate::scene::Scene;
 

@@ -1,9 +1,8 @@
 //! Lesson files: TOML that a teacher writes without Rust. `docs/lessons.md` describes the format with a worked example.
 
-use super::challenge::Challenge;
-use super::fault::{Fault, LessonTextError};
-use super::question::Question;
-use super::stage::StepView;
+use super::fault::Fault;
+use super::question::Answer;
+use super::{Challenge, LessonTextError, Question, StepView};
 use crate::files::read_bounded;
 use crate::radar::Radar;
 use crate::scene::presets::Preset;
@@ -36,7 +35,6 @@ pub struct Lesson {
 pub struct Step {
     pub text: String,
     /// Name of a scene that comes with the program, in place of `object`s.
-    #[serde(default)]
     pub preset: Option<String>,
     #[serde(default, rename = "object")]
     pub objects: Vec<Object>,
@@ -45,13 +43,10 @@ pub struct Step {
     pub radar: Radar,
     #[serde(default)]
     pub view: StepView,
-    #[serde(default)]
     pub predict: Option<Question>,
-    #[serde(default)]
     pub challenge: Option<Challenge>,
 }
 
-/// An error of opening a lesson.
 #[derive(Debug, thiserror::Error)]
 pub enum LessonError {
     #[error("{}: {source}", path.display())]
@@ -135,6 +130,38 @@ impl Step {
 
 fn line_of(text: &str, byte: usize) -> usize {
     text.bytes().take(byte).filter(|b| *b == b'\n').count() + 1
+}
+
+/// The parts that a lesson needs beside scene, radar and the maps of ends and whole array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Uses {
+    /// A method's output: a question or a challenge measures it, or a step names a method of its own.
+    pub output: bool,
+    /// A threshold: a question asks for one, or a step detects by a detector.
+    pub threshold: bool,
+}
+
+impl Uses {
+    /// All parts, as without a lesson.
+    pub const ALL: Uses = Uses { output: true, threshold: true };
+}
+
+impl Lesson {
+    /// The parts that the lesson's steps need.
+    pub fn uses(&self) -> Uses {
+        let usual = StepView::default().method;
+        let output = self.steps.iter().any(|step| {
+            step.view.method != usual
+                || step.predict.as_ref().is_some_and(|question| question.needs_output())
+                || step.challenge.as_ref().is_some_and(|c| c.needs_output() || c.needs_hidden_output())
+        });
+        let threshold = self.steps.iter().any(|step| {
+            let asks =
+                step.predict.as_ref().is_some_and(|question| matches!(question.answer, Answer::Threshold { .. }));
+            asks || step.view.cfar.is_some()
+        });
+        Uses { output, threshold }
+    }
 }
 
 #[cfg(test)]

@@ -13,23 +13,20 @@ pub mod challenge;
 mod criterion;
 mod fault;
 pub mod file;
-pub mod object_number;
 pub mod progress;
 pub mod quantity;
 pub mod question;
 pub mod shipped;
 pub mod stage;
 mod trial;
-mod uses;
 
 pub use challenge::Challenge;
 pub use criterion::Measured;
 pub use fault::LessonTextError;
-pub use file::{Lesson, LessonError, Step};
+pub use file::{Lesson, LessonError, Step, Uses};
 pub use progress::Progress;
 pub use question::{Guess, Judgement, Question, Truth};
 pub use stage::{Cell, MapName, Stage, StepView};
-pub use uses::Uses;
 
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,7 @@
 //! Predictions: questions, and the judgement of a learner's answer.
 
 use super::fault::{Fault, check_tolerance};
-use super::object_number::ObjectNumber;
-use super::quantity::Quantity;
+use super::quantity::{ObjectNumber, Quantity};
 use super::stage::{Cell, MapName, Stage};
 use crate::evaluate::{TARGET_ETA, detection_rates, eta_text};
 use serde::Deserialize;
@@ -21,35 +20,14 @@ pub struct Question {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Answer {
-    /// A click at the place of a peak in a map.
-    Click {
-        map: MapName,
-        /// The object whose blob is meant; without one, the brightest cell of the map.
-        #[serde(default)]
-        object: Option<ObjectNumber>,
-        within_columns: f64,
-        within_bins: f64,
-    },
-    Number {
-        quantity: Quantity,
-        #[serde(default)]
-        object: Option<ObjectNumber>,
-        unit: String,
-        within_percent: f64,
-    },
-    Choice {
-        options: Vec<String>,
-        /// The right one, from 1.
-        right: usize,
-    },
-    /// A threshold that keeps objects and lets few other cells through.
-    Threshold {
-        map: MapName,
-        /// Objects whose blobs must exceed it.
-        keep: Vec<ObjectNumber>,
-        /// Largest part of the cells outside the target's that may exceed it.
-        false_alarm_at_most: f64,
-    },
+    /// A click at the place of a peak in a map: that of an object's blob, or without an object that of the brightest cell.
+    Click { map: MapName, object: Option<ObjectNumber>, within_columns: f64, within_bins: f64 },
+    /// The value of a quantity.
+    Number { quantity: Quantity, object: Option<ObjectNumber>, unit: String, within_percent: f64 },
+    /// One of several options; the right one is counted from 1.
+    Choice { options: Vec<String>, right: usize },
+    /// A threshold that the blobs of the objects to keep exceed, and at most this part of the cells outside the target's.
+    Threshold { map: MapName, keep: Vec<ObjectNumber>, false_alarm_at_most: f64 },
 }
 
 /// A learner's answer.
@@ -67,12 +45,8 @@ pub enum Guess {
 pub enum Truth {
     Place(Cell),
     Number(f64),
-    /// An option, from 1.
     Choice(usize),
-    Etas {
-        low: f32,
-        high: f32,
-    },
+    Etas { low: f32, high: f32 },
 }
 
 /// The verdict on a guess.

@@ -1,7 +1,6 @@
 //! The lessons that come with the program: the files of `assets/lessons`, embedded.
 
-use super::fault::LessonTextError;
-use super::file::Lesson;
+use super::{Lesson, LessonTextError};
 use std::sync::OnceLock;
 
 /// A lesson that comes with the program.

@@ -25,14 +25,9 @@ pub struct StepView {
 impl Default for StepView {
     /// No floor and 100 dB, so that noise hides no effect; `live` reconstructs.
     fn default() -> Self {
-        StepView {
-            floor: Floor::Exact,
-            seed: 0,
-            normalisation: Normalisation::DynamicRange(crate::radar::Decibels(100.0)),
-            one_scale: false,
-            method: "live".to_owned(),
-            cfar: None,
-        }
+        let normalisation = Normalisation::DynamicRange(crate::radar::Decibels(100.0));
+        let (floor, method) = (Floor::Exact, "live".to_owned());
+        StepView { floor, seed: 0, normalisation, one_scale: false, method, cfar: None }
     }
 }
 

@@ -1,11 +1,7 @@
 //! The check of a lesson when it is opened: its questions and challenges are simulated.
 
-use super::challenge::Challenge;
-use super::criterion::Measured;
-use super::fault::{Fault, LessonTextError};
-use super::file::{Lesson, Step};
-use super::question::{Question, Truth};
-use super::stage::Stage;
+use super::fault::Fault;
+use super::{Challenge, Lesson, LessonTextError, Measured, Question, Stage, Step, Truth};
 use crate::scene::Scene;
 
 impl Lesson {

@@ -158,13 +158,9 @@ fn read_budget(archive: &mut Npz) -> Result<Option<LinkBudget>, NpzError> {
         return Ok(None);
     }
     let half_power_width_degrees = optional(archive, WIDTH_KEY)?;
-    let mut of = |key: &str| number(archive, key);
-    Ok(Some(LinkBudget {
-        transmit_power_dbm: of(BUDGET_KEYS[0])?,
-        antenna_gain_dbi: of(BUDGET_KEYS[1])?,
-        noise_figure_db: of(BUDGET_KEYS[2])?,
-        half_power_width_degrees,
-    }))
+    let [power, gain, noise] = BUDGET_KEYS.map(|key| number(archive, key));
+    let (transmit_power_dbm, antenna_gain_dbi, noise_figure_db) = (power?, gain?, noise?);
+    Ok(Some(LinkBudget { transmit_power_dbm, antenna_gain_dbi, noise_figure_db, half_power_width_degrees }))
 }
 
 fn read_antennas(archive: &mut Npz) -> Result<Option<Antennas>, NpzError> {

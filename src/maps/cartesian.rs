@@ -41,12 +41,9 @@ impl Projector {
             let polar = radar.polar_of(x, y);
             let bin = radar.bin_of_range(polar.range_metres);
             let column = radar.column_of_cos(polar.cos_theta);
-            (bin <= radar.samples as f64 - 1.0).then(|| Tap {
-                bin: bin as u32,
-                column: column as u32,
-                bin_part: bin.fract() as f32,
-                column_part: column.fract() as f32,
-            })
+            let [bin_part, column_part] = [bin, column].map(|at| at.fract() as f32);
+            let tap = Tap { bin: bin as u32, column: column as u32, bin_part, column_part };
+            (bin <= radar.samples as f64 - 1.0).then_some(tap)
         };
         let taps = (0..rows).flat_map(|i| (0..2 * rows).map(move |j| (i, j))).map(|(i, j)| tap(i, j)).collect();
         Projector { radar: radar.clone(), rows, taps }

@@ -6,14 +6,12 @@
 //!
 //! Rows are range bins; columns are velocities, 0 in column `chirps / 2`, away from the radar to the right.
 
-use super::log_map::{LogMap, guard};
-use super::transform::channels_range_transform;
+use super::{LogMap, channels_range_transform, guard};
 use crate::files::npz::{NpzError, write_npz};
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError, npz};
-use crate::signal::chirps::{ChirpSamples, simulate_chirps_for};
 use crate::signal::simd::Simd;
-use crate::signal::{Floor, Unfinished};
+use crate::signal::{ChirpSamples, Floor, Made, Unfinished, simulate_chirps_for};
 use crate::task::Task;
 use ndarray::{Array1, Array2, ArrayView3, Axis, s};
 use num_complex::Complex64;
@@ -39,13 +37,7 @@ pub fn range_doppler(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> R
 /// [`range_doppler`], unless `task` is cancelled before it is done.
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after `task` was cancelled.
-pub fn range_doppler_for(
-    task: &Task,
-    radar: &Radar,
-    scene: &Scene,
-    floor: Floor,
-    seed: u64,
-) -> Result<RangeDopplerMap, Unfinished> {
+pub fn range_doppler_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<RangeDopplerMap> {
     let samples = simulate_chirps_for(task, radar, scene, floor, seed)?;
     let map = RangeDopplerMap::of(radar, samples);
     task.check()?;

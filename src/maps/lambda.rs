@@ -28,11 +28,8 @@ impl FromStr for Normalisation {
         if s == "min-max" {
             return Ok(Normalisation::MinMax);
         }
-        s.strip_prefix("db=")
-            .and_then(|db| db.parse::<f64>().ok())
-            .filter(|db| (1.0..=400.0).contains(db))
-            .map(|db| Normalisation::DynamicRange(Decibels(db)))
-            .ok_or_else(|| NormalisationError(s.to_owned()))
+        let range = s.strip_prefix("db=").and_then(|db| db.parse::<f64>().ok()).filter(|db| (1.0..=400.0).contains(db));
+        range.map(|db| Normalisation::DynamicRange(Decibels(db))).ok_or_else(|| NormalisationError(s.to_owned()))
     }
 }
 

@@ -47,30 +47,26 @@ impl CellVerdict {
     /// Its fill on a dark ground or on a light one. From nothing over misses and false alarms to hits each is at least twice as far from the
     /// ground as the one before, in WCAG contrast, also for dichromats.
     pub fn fill(self, dark: bool) -> Rgb {
-        match (self, dark) {
-            (CellVerdict::Nothing, true) => [18, 22, 30],
-            // The fill of a rim is the line around hits, so that both are one quiet band.
-            (CellVerdict::Rim, _) => CellVerdict::Hit.outline(dark),
-            (CellVerdict::Miss, true) => [40, 92, 176],
-            (CellVerdict::FalseAlarm, true) => [232, 152, 40],
-            (CellVerdict::Hit, true) => [255, 255, 252],
-            (CellVerdict::Nothing, false) => [252, 253, 255],
-            (CellVerdict::Miss, false) => [130, 178, 234],
-            (CellVerdict::FalseAlarm, false) => [150, 72, 0],
-            (CellVerdict::Hit, false) => [12, 16, 22],
-        }
+        self.colours(dark)[0]
     }
 
     /// The line around its cells: apart from its fill and from the ground.
     pub fn outline(self, dark: bool) -> Rgb {
+        self.colours(dark)[1]
+    }
+
+    fn colours(self, dark: bool) -> [Rgb; 2] {
         match (self, dark) {
-            (CellVerdict::Nothing | CellVerdict::Rim, _) => self.fill(dark),
-            (CellVerdict::Miss, true) => [128, 180, 246],
-            (CellVerdict::FalseAlarm, true) => [138, 80, 12],
-            (CellVerdict::Hit, true) => [132, 140, 154],
-            (CellVerdict::Miss, false) => [40, 96, 168],
-            (CellVerdict::FalseAlarm, false) => [226, 160, 96],
-            (CellVerdict::Hit, false) => [128, 136, 150],
+            (CellVerdict::Nothing, true) => [[18, 22, 30]; 2],
+            (CellVerdict::Nothing, false) => [[252, 253, 255]; 2],
+            // The fill of a rim is the line around hits, so that both are one quiet band.
+            (CellVerdict::Rim, _) => [CellVerdict::Hit.outline(dark); 2],
+            (CellVerdict::Miss, true) => [[40, 92, 176], [128, 180, 246]],
+            (CellVerdict::Miss, false) => [[130, 178, 234], [40, 96, 168]],
+            (CellVerdict::FalseAlarm, true) => [[232, 152, 40], [138, 80, 12]],
+            (CellVerdict::FalseAlarm, false) => [[150, 72, 0], [226, 160, 96]],
+            (CellVerdict::Hit, true) => [[255, 255, 252], [132, 140, 154]],
+            (CellVerdict::Hit, false) => [[12, 16, 22], [128, 136, 150]],
         }
     }
 }

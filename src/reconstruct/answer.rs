@@ -1,9 +1,8 @@
 //! The request and the answer of a reconstruction.
 
-use super::attempt::Attempt;
-use super::prior::NoisePrior;
+use super::{Attempt, NoisePrior};
 use crate::maps::{Normalisation, RangeAngleMap};
-use crate::radar::{Decibels, Radar};
+use crate::radar::{Decibels, Polar, Radar};
 use crate::scene::Reflector;
 use crate::signal::{LayoutSamples, TwoEnds};
 use crate::task::Task;
@@ -11,7 +10,7 @@ use ndarray::Array2;
 use std::sync::Arc;
 
 /// A request for a reconstruction: all that a method gets beside the samples.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Request {
     /// Noise beneath the samples.
     pub noise: NoisePrior,
@@ -47,19 +46,6 @@ impl LayoutSamples {
             }
         }
         (radar, ends)
-    }
-}
-
-impl Default for Request {
-    fn default() -> Self {
-        Request {
-            noise: NoisePrior::Rounding,
-            normalisation: Normalisation::MinMax,
-            snapshot_range_metres: None,
-            may_follow: false,
-            heard: None,
-            task: Task::default(),
-        }
     }
 }
 
@@ -139,32 +125,21 @@ impl Reconstruction {
     pub fn detections(&self, radar: &Radar) -> Vec<Detection> {
         let amplitude = |r: &Reflector| r.reflectivity.abs() / (r.x_metres.powi(2) + r.y_metres.powi(2));
         let with_amplitude = |(i, r)| (amplitude(r), r, self.confidences.get(i).copied());
-        let mut heard: Vec<(f64, &Reflector, Option<f64>)> = self
-            .reflectors
-            .iter()
-            .enumerate()
-            .map(with_amplitude)
-            .filter(|(a, ..)| a.is_finite() && *a > 0.0)
-            .collect();
+        let heard = self.reflectors.iter().enumerate().map(with_amplitude);
+        let mut heard: Vec<_> = heard.filter(|(a, ..)| a.is_finite() && *a > 0.0).collect();
         heard.sort_by(|a, b| b.0.total_cmp(&a.0));
         let strongest = heard.first().map_or(1.0, |(a, ..)| *a);
-        heard
-            .into_iter()
-            .map(|(amplitude, r, confidence)| {
-                let polar = radar.polar_of(r.x_metres, r.y_metres);
-                // Samples of one range bin have no ranges; else ranges wrap where those of the map do.
-                let range_metres = match radar.samples {
-                    1 => polar.range_metres,
-                    _ => polar.range_metres.rem_euclid(radar.max_range_metres()),
-                };
-                Detection {
-                    cos_theta: polar.cos_theta,
-                    range_metres,
-                    relative_power: Decibels(20.0 * (amplitude / strongest).log10()),
-                    confidence,
-                }
-            })
-            .collect()
+        let detection = |(amplitude, r, confidence): (f64, &Reflector, Option<f64>)| {
+            let Polar { range_metres, cos_theta } = radar.polar_of(r.x_metres, r.y_metres);
+            // Samples of one range bin have no ranges; else ranges wrap where those of the map do.
+            let range_metres = match radar.samples {
+                1 => range_metres,
+                _ => range_metres.rem_euclid(radar.max_range_metres()),
+            };
+            let relative_power = Decibels(20.0 * (amplitude / strongest).log10());
+            Detection { cos_theta, range_metres, relative_power, confidence }
+        };
+        heard.into_iter().map(detection).collect()
     }
 }
 

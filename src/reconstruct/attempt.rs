@@ -15,28 +15,15 @@ pub struct Attempt {
     pub work: usize,
 }
 
-/// The proposal of an attempt. Places are (x, y), metres.
+/// The proposal of an attempt. Places are (x, y), metres. Gains of the ends' elements are told by roots of mean squares: of their differences
+/// from their mean, and of their phases. Several objects together are kept or refused together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tried {
     Nothing,
-    Point {
-        at_metres: [f64; 2],
-    },
-    Line {
-        from_metres: [f64; 2],
-        to_metres: [f64; 2],
-        count: usize,
-    },
-    Gains {
-        /// Root of the mean square of their differences from their mean, decibels.
-        decibels: f64,
-        /// Root of the mean square of their phases, degrees.
-        degrees: f64,
-    },
-    /// Several objects that are kept or refused together.
-    Together {
-        count: usize,
-    },
+    Point { at_metres: [f64; 2] },
+    Line { from_metres: [f64; 2], to_metres: [f64; 2], count: usize },
+    Gains { decibels: f64, degrees: f64 },
+    Together { count: usize },
 }
 
 impl Tried {
@@ -57,23 +44,31 @@ pub enum Verdict {
     Refused(Refusal),
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// No candidate was found, or none was worth an attempt.
+    #[error("found nothing")]
     NothingFound,
     /// An end has more tones than can be paired in the time.
+    #[error("refused: an end hears too many tones")]
     TooManyTones,
     /// Other energy remains, so that other explanations are tried first.
+    #[error("refused: something else is left")]
     LeavesSomething,
     /// The object explains this part, 0 to 1, of the energy in its range bins, which is too little.
+    #[error("refused: explains {:.0} % of the energy in its range bins", 100.0 * .0)]
     ExplainsTooLittle(f64),
     /// The object has different strengths at the two ends: one reflector has one reflectivity.
+    #[error("refused: the ends disagree on its strength")]
     EndsDisagree,
     /// The remaining energy falls too little.
+    #[error("refused: gains too little")]
     GainsTooLittle,
     /// The other objects explain the samples as well without the object.
+    #[error("refused: the others do without it")]
     RestDoesWithout,
     /// The object was exchanged for another explanation, or moved far away.
+    #[error("exchanged for another explanation")]
     Exchanged,
 }
 
@@ -82,23 +77,6 @@ impl fmt::Display for Verdict {
         match self {
             Verdict::Kept => write!(f, "kept"),
             Verdict::Refused(reason) => reason.fmt(f),
-        }
-    }
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Refusal::NothingFound => write!(f, "found nothing"),
-            Refusal::TooManyTones => write!(f, "refused: an end hears too many tones"),
-            Refusal::LeavesSomething => write!(f, "refused: something else is left"),
-            Refusal::ExplainsTooLittle(part) => {
-                write!(f, "refused: explains {:.0} % of the energy in its range bins", 100.0 * part)
-            }
-            Refusal::EndsDisagree => write!(f, "refused: the ends disagree on its strength"),
-            Refusal::GainsTooLittle => write!(f, "refused: gains too little"),
-            Refusal::RestDoesWithout => write!(f, "refused: the others do without it"),
-            Refusal::Exchanged => write!(f, "exchanged for another explanation"),
         }
     }
 }

@@ -1,8 +1,7 @@
 //! The thesis' baseline: one end's own map, thresholded.
 
-use super::answer::{Reconstruction, Request};
-use super::error::ReconstructError;
-use super::reconstructor::{About, Reconstructor};
+use super::error::Result;
+use super::{About, Reconstruction, Reconstructor, Request};
 use crate::maps::channels_map;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
@@ -33,11 +32,11 @@ impl Reconstructor for Baseline {
         false
     }
 
-    fn check_hearing(&self, _: &TwoEnds) -> Result<(), ReconstructError> {
+    fn check_hearing(&self, _: &TwoEnds) -> Result<()> {
         Ok(())
     }
 
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         let log = channels_map(radar, ends.first.view()).log_magnitude();
         Ok(Reconstruction::of_map(log.normalise(request.normalisation)))
     }

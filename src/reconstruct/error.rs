@@ -15,6 +15,17 @@ pub enum ReconstructError {
     Unusable { method: &'static str, reason: String },
 }
 
+pub(super) type Result<T, E = ReconstructError> = std::result::Result<T, E>;
+
+impl ReconstructError {
+    pub(super) fn check_shape(what: &'static str, found: &[usize], expected: [usize; 2]) -> Result<()> {
+        match found == expected {
+            true => Ok(()),
+            false => Err(ReconstructError::Shape { what, found: found.to_vec(), expected: expected.to_vec() }),
+        }
+    }
+}
+
 impl From<Cancelled> for ReconstructError {
     fn from(_: Cancelled) -> Self {
         ReconstructError::Cancelled

@@ -1,11 +1,14 @@
 //! Lists of detections: a method's reflectors, or the peaks of its map.
 
-use super::beam::Beam;
-use super::{Detection, ReconstructError, Reconstruction, Reconstructor, Request};
-use crate::maps::Normalisation;
+use super::error::Result;
+use super::{Detection, Reconstruction, Reconstructor, Request};
 use crate::maps::peaks::peaks;
-use crate::radar::{Decibels, Radar};
+use crate::maps::{Normalisation, channels_range_transform};
+use crate::radar::{Decibels, End, Radar};
 use crate::signal::TwoEnds;
+use ndarray::{Array2, Axis, concatenate};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
 
 /// Level below its strongest to which a map's peaks are listed.
 const SPAN: Decibels = Decibels(20.0);
@@ -30,7 +33,7 @@ pub fn reconstruct_and_find(
     radar: &Radar,
     ends: &TwoEnds,
     request: &Request,
-) -> Result<(Reconstruction, Vec<Detection>), ReconstructError> {
+) -> Result<(Reconstruction, Vec<Detection>)> {
     let answer = method.reconstruct(radar, ends, request)?;
     let found = find(method, radar, ends, request, &answer)?;
     Ok((answer, found))
@@ -47,7 +50,7 @@ pub fn find(
     ends: &TwoEnds,
     request: &Request,
     answer: &Reconstruction,
-) -> Result<Vec<Detection>, ReconstructError> {
+) -> Result<Vec<Detection>> {
     let normalisation = Normalisation::DynamicRange(MAP_RANGE);
     // Beside another layout the ends have no samples.
     let heard = request.heard.is_none().then_some(ends);
@@ -87,13 +90,13 @@ fn between_columns(radar: &Radar, ends: &TwoEnds, peaks: impl Iterator<Item = De
     let column = (radar.cos_of_column(1.0) - radar.cos_of_column(0.0)).abs();
     let mut found: Vec<(f64, Detection)> = Vec::new();
     for peak in peaks {
-        let cos_theta = beam.strongest_near(peak.range_metres, peak.cos_theta, 1.5 * column);
+        let (cos_theta, power) = beam.strongest_near(peak.range_metres, peak.cos_theta, 1.5 * column);
         let is_new = |(_, f): &(f64, Detection)| {
             let bins = (f.range_metres - peak.range_metres).abs() / radar.range_resolution_metres();
             bins > 1.5 || (f.cos_theta - cos_theta).abs() > ONE_PEAK * column
         };
         if found.iter().all(is_new) {
-            found.push((beam.power_at(peak.range_metres, cos_theta), Detection { cos_theta, ..peak }));
+            found.push((power, Detection { cos_theta, ..peak }));
         }
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -101,6 +104,47 @@ fn between_columns(radar: &Radar, ends: &TwoEnds, peaks: impl Iterator<Item = De
     let level = |power: f64| Decibels(10.0 * (power / strongest).max(f64::MIN_POSITIVE).log10());
     let all = found.into_iter().map(|(power, f)| Detection { relative_power: level(power), ..f });
     all.filter(|f| f.relative_power.0 > -SPAN.0).collect()
+}
+
+const BEAM_STEPS: i32 = 48;
+
+/// The beam of both ends together, between the columns of a map.
+struct Beam<'a> {
+    radar: &'a Radar,
+    elements: Vec<usize>,
+    profiles: Array2<Complex64>,
+}
+
+impl<'a> Beam<'a> {
+    fn new(radar: &'a Radar, ends: &TwoEnds) -> Self {
+        let elements = End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).collect();
+        let rows = concatenate(Axis(0), &[ends.first.view(), ends.last.view()]).unwrap_or_else(|_| ends.first.clone());
+        Beam { radar, elements, profiles: channels_range_transform(radar, rows.view()).profiles }
+    }
+
+    /// The cosine within `within` of `about` from which the power at this range is largest, all elements added in phase; and that power.
+    fn strongest_near(&self, range_metres: f64, about: f64, within: f64) -> (f64, f64) {
+        let bin = self.radar.bin_of_range(range_metres).round().rem_euclid(self.radar.samples as f64) as usize;
+        let cosine = |step: i32| (about + within * f64::from(step) / f64::from(BEAM_STEPS)).clamp(-1.0, 1.0);
+        let power = |step: i32| self.power(bin, range_metres, cosine(step));
+        // The nearest of equal cosines: silence keeps `about`.
+        let (step, power) = (1..=BEAM_STEPS).flat_map(|n| [n, -n]).fold((0, power(0)), |best, step| {
+            let found = power(step);
+            if found > best.1 { (step, found) } else { best }
+        });
+        (cosine(step), power)
+    }
+
+    fn power(&self, bin: usize, range_metres: f64, cosine: f64) -> f64 {
+        let (x, y) = (range_metres * cosine, range_metres * (1.0 - cosine * cosine).max(0.0).sqrt());
+        let turns = self.radar.middle_turns_per_metre();
+        let heard = self.elements.iter().zip(self.profiles.outer_iter()).map(|(element, profile)| {
+            let ways = self.radar.pair(*element).places_metres().map(|[px, py]| (x - px).hypot(y - py));
+            let longer = (ways[0] + ways[1]) / 2.0 - range_metres;
+            profile.get(bin).copied().unwrap_or_default() * Complex64::from_polar(1.0, -TAU * turns * longer)
+        });
+        heard.sum::<Complex64>().norm_sqr()
+    }
 }
 
 #[cfg(test)]

@@ -1,12 +1,10 @@
 //! A search that draws its objects, a network, and the rule that weighs them cell by cell.
 
-use super::answer::{Reconstruction, Request};
-use super::error::ReconstructError;
-use super::family::Family;
-use super::judge::{blended, network_weight, scales_joined};
+use super::error::Result;
+use super::judge::scales_joined;
 use super::own_threshold::own_threshold;
-use super::reconstructor::{About, Reconstructor, Weights};
 use super::search::{Found, Settings, find, find_from};
+use super::{About, Family, Reconstruction, Reconstructor, Request, Weights, blended, network_weight};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::signal::TwoEnds;
@@ -35,13 +33,7 @@ impl Hybrid {
     }
 
     /// The map of the objects in `found`, weighed against the network's map by the judge.
-    fn judged(
-        &self,
-        found: &Found,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
+    fn judged(&self, found: &Found, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         // Where rounding alone is left, the objects are right; white noise hides much that they may lack.
         let is_certain = found.complete && !request.noise.is_white();
         if is_certain || found.atoms.is_empty() || self.network.check_array(radar).is_err() {
@@ -84,7 +76,7 @@ impl Reconstructor for Hybrid {
         }
     }
 
-    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+    fn check_radar(&self, radar: &Radar) -> Result<()> {
         super::search::no_snapshot(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
@@ -96,7 +88,7 @@ impl Reconstructor for Hybrid {
         true
     }
 
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         let Some(memory) = &self.last else {
             return self.judged(&find(radar, ends, request, &self.settings)?, radar, ends, request);
         };

@@ -14,7 +14,6 @@
 mod answer;
 mod attempt;
 mod baseline;
-mod beam;
 mod coherent;
 mod confidence;
 mod echoes;

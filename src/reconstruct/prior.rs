@@ -15,11 +15,8 @@ pub enum NoisePrior {
     Rounding,
     /// No noise at all.
     Nothing,
-    /// White complex noise.
-    White {
-        /// Root of the noise's mean square in a sample, in the samples' unit; `None` where it is unknown and methods measure it.
-        sigma: Option<f64>,
-    },
+    /// White complex noise, and the root of its mean square in a sample, in the samples' unit; `None` where it is unknown and methods measure it.
+    White { sigma: Option<f64> },
 }
 
 impl From<Floor> for NoisePrior {

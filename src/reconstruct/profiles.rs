@@ -2,7 +2,7 @@
 
 use crate::maps::Spectrum;
 use crate::radar::{Radar, chirp_window};
-use crate::signal::simd::{ComplexLanes, Lanes, Real, phasor};
+use crate::signal::simd::{ComplexLanes, Lanes, Real, horner, phasor};
 use ndarray::ArrayView1;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -25,19 +25,16 @@ impl Profiles {
         let rows = rows_per_bin * radar.samples;
         let spectrum = Spectrum::new(rows);
         let middle = (radar.samples / 2) as f64;
-        let profiles = channels
-            .par_iter()
-            .map(|channel| {
-                let mut profile = spectrum.of(channel.iter().zip(&window).map(|(v, w)| v * (w / weight)));
-                for (row, v) in profile.iter_mut().enumerate() {
-                    *v *= Complex64::cis(TAU * (row as f64 * middle / rows as f64).fract());
-                }
-                profile.push(profile[0]);
-                profile
-            })
-            .collect();
+        let profile = |channel: &ArrayView1<'_, Complex64>| {
+            let mut profile = spectrum.of(channel.iter().zip(&window).map(|(v, w)| v * (w / weight)));
+            for (row, v) in profile.iter_mut().enumerate() {
+                *v *= Complex64::cis(TAU * (row as f64 * middle / rows as f64).fract());
+            }
+            profile.push(profile[0]);
+            profile
+        };
         Profiles {
-            profiles,
+            profiles: channels.par_iter().map(profile).collect(),
             rows_per_metre: rows as f64 / radar.max_range_metres(),
             turns_per_metre: radar.turns_per_metre(middle),
         }
@@ -66,11 +63,8 @@ impl Profiles {
 
     /// [`Profiles::phase`] of several distances.
     #[inline(always)]
-    pub fn phases<T: Real, const W: usize, const FMA: bool>(
-        &self,
-        distances_metres: Lanes<f64, W>,
-    ) -> ComplexLanes<T, W> {
-        phasor::<T, W, FMA>(distances_metres * Lanes::splat(self.turns_per_metre))
+    pub fn phases<T: Real, const W: usize, const FMA: bool>(&self, metres: Lanes<f64, W>) -> ComplexLanes<T, W> {
+        phasor::<T, W, FMA>(metres * Lanes::splat(self.turns_per_metre))
     }
 
     /// Profile of `channel` at `distance_metres`, linear between rows, without the phase of that distance. It is 1 for a reflector there whose
@@ -118,12 +112,7 @@ const NEAR_SERIES: [f64; 9] = {
 /// [`range_response`] of several lanes, up to one bin off.
 #[inline(always)]
 pub(super) fn range_response_near<const W: usize, const FMA: bool>(bins: Lanes<f64, W>) -> Lanes<f64, W> {
-    let square = bins * bins;
-    let mut value = Lanes::splat(0.0);
-    for term in NEAR_SERIES.iter().rev() {
-        value = value.mul_add::<FMA>(square, Lanes::splat(*term));
-    }
-    value
+    horner::<f64, W, FMA>(&NEAR_SERIES, bins * bins)
 }
 
 #[cfg(test)]

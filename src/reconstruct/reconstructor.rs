@@ -1,11 +1,10 @@
 //! The trait of every reconstruction method, and the steps that all of them share.
 
-use super::answer::{Reconstruction, Request, halves};
-use super::error::ReconstructError;
-use super::family::Family;
+use super::answer::halves;
+use super::error::Result;
 use super::hearing::ends_noise_variance;
 use super::significance::tested;
-use super::trained::TrainedNoise;
+use super::{Family, ReconstructError, Reconstruction, Request, TrainedNoise};
 use crate::radar::{End, Radar, check_layout};
 use crate::signal::{LayoutSamples, TwoEnds};
 use ndarray::{Array2, Array3};
@@ -59,7 +58,7 @@ pub trait Reconstructor: Send + Sync {
     /// Checks at once whether the method can work on samples of `radar`.
     /// # Errors
     /// [`ReconstructError::Unusable`] with the reason.
-    fn check_radar(&self, _radar: &Radar) -> Result<(), ReconstructError> {
+    fn check_radar(&self, _radar: &Radar) -> Result<()> {
         Ok(())
     }
 
@@ -76,7 +75,7 @@ pub trait Reconstructor: Send + Sync {
     /// [`Reconstructor::check_array`] where the ends are the `halves` of an array, of which so many elements have samples.
     /// # Errors
     /// [`ReconstructError::Unusable`] with the reason.
-    fn check_halves(&self, halves: &Radar, _heard: usize) -> Result<(), ReconstructError> {
+    fn check_halves(&self, halves: &Radar, _heard: usize) -> Result<()> {
         self.check_array(halves)
     }
 
@@ -94,7 +93,7 @@ pub trait Reconstructor: Send + Sync {
     /// and whether the method accounts for such antennas.
     /// # Errors
     /// [`ReconstructError::Unusable`] with the reason.
-    fn check_array(&self, radar: &Radar) -> Result<(), ReconstructError> {
+    fn check_array(&self, radar: &Radar) -> Result<()> {
         let (fewest, found) = (self.fewest_end_elements(), radar.end_elements);
         if found < fewest {
             let reason = format!("it needs {fewest} elements of each end or more, and this radar's ends have {found}");
@@ -111,7 +110,7 @@ pub trait Reconstructor: Send + Sync {
     /// Checks at once whether the method can make maps of the samples of these elements, in place of the two ends.
     /// # Errors
     /// [`ReconstructError::Unusable`] with the reason.
-    fn check_elements(&self, radar: &Radar, layout: &[usize]) -> Result<(), ReconstructError> {
+    fn check_elements(&self, radar: &Radar, layout: &[usize]) -> Result<()> {
         check_layout(layout, radar.elements).map_err(|reason| self.unusable(reason))?;
         match self.hears() {
             Hears::Layouts => self.check_array(radar),
@@ -128,7 +127,7 @@ pub trait Reconstructor: Send + Sync {
     /// Checks whether a method that joins the halves of the array can work where these halves are silent.
     /// # Errors
     /// [`ReconstructError::Unusable`] names a half that is silent while the other is not.
-    fn check_both_halves(&self, is_silent: [bool; 2]) -> Result<(), ReconstructError> {
+    fn check_both_halves(&self, is_silent: [bool; 2]) -> Result<()> {
         let half = match is_silent {
             [true, false] => "first",
             [false, true] => "last",
@@ -144,7 +143,7 @@ pub trait Reconstructor: Send + Sync {
     /// part lies between 1 and 2. Reflectivities are relative to those samples.
     /// # Errors
     /// [`ReconstructError`] when cancelled, or where the method fails.
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError>;
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction>;
 
     /// Estimates the whole array's map from `ends`: checks them, scales them for [`Reconstructor::estimate`], removes the scale from the answer,
     /// and raises the answer's threshold above the noise (`significance`). The answer to silence is [`Reconstruction::silence`]. Where the
@@ -152,12 +151,7 @@ pub trait Reconstructor: Send + Sync {
     /// # Errors
     /// [`ReconstructError`], on a radar or a layout the method can't work on, on samples of the wrong shape or not finite, when cancelled, or
     /// where the method fails.
-    fn reconstruct(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        request: &Request,
-    ) -> Result<Reconstruction, ReconstructError> {
+    fn reconstruct(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         request.task.check()?;
         if let Some(heard) = &request.heard {
             return reconstruct_layout(self, radar, heard, request);
@@ -182,7 +176,7 @@ pub trait Reconstructor: Send + Sync {
     /// Checks whether the method can work on ends of which one is silent: by default none can, as it joins both.
     /// # Errors
     /// [`ReconstructError::Unusable`] names the silent end.
-    fn check_hearing(&self, ends: &TwoEnds) -> Result<(), ReconstructError> {
+    fn check_hearing(&self, ends: &TwoEnds) -> Result<()> {
         match End::BOTH.map(|end| is_silent(ends.end(end))) {
             [false, false] | [true, true] => Ok(()),
             [is_first, _] => {
@@ -196,7 +190,7 @@ pub trait Reconstructor: Send + Sync {
     /// ([`mag_phase`](crate::maps::network_input::mag_phase)).
     /// # Errors
     /// [`ReconstructError::Unusable`] from every method that needs the samples themselves; [`ReconstructError::Shape`].
-    fn reconstruct_mag_phase(&self, _: &Radar, _: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
+    fn reconstruct_mag_phase(&self, _: &Radar, _: &Array3<f64>) -> Result<Reconstruction> {
         let reason =
             "it needs sub0 and sub1; polar_partial_mag_phase is the input of the thesis' networks alone".into();
         Err(self.unusable(reason))
@@ -249,15 +243,11 @@ fn reconstruct_layout<M: Reconstructor + ?Sized>(
     radar: &Radar,
     heard: &LayoutSamples,
     request: &Request,
-) -> Result<Reconstruction, ReconstructError> {
+) -> Result<Reconstruction> {
     check_layout(&heard.layout, radar.elements).map_err(|reason| method.unusable(reason))?;
-    let (found, expected) = (heard.samples.shape(), [heard.layout.len(), radar.samples]);
-    if found != expected {
-        let (what, found) = ("samples of the layout", found.to_vec());
-        return Err(ReconstructError::Shape { what, found, expected: expected.to_vec() });
-    }
-    let is_finite = |v: &Complex64| v.re.is_finite() && v.im.is_finite();
-    if let Some(((place, sample), _)) = heard.samples.indexed_iter().find(|(_, v)| !is_finite(v)) {
+    let expected = [heard.layout.len(), radar.samples];
+    ReconstructError::check_shape("samples of the layout", heard.samples.shape(), expected)?;
+    if let Some(((place, sample), _)) = heard.samples.indexed_iter().find(|(_, v)| !v.is_finite()) {
         return Err(method.unusable(format!("sample {sample} of element {} is not finite", heard.layout[place])));
     }
     let (halves, ends) = heard.as_halves(radar);
@@ -276,7 +266,7 @@ fn answer<M: Reconstructor + ?Sized>(
     radar: &Radar,
     (hearing, ends): (&Radar, &TwoEnds),
     request: &Request,
-) -> Result<Reconstruction, ReconstructError> {
+) -> Result<Reconstruction> {
     let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
     let heard = request.heard.as_ref().map(|heard| {
         Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
@@ -303,15 +293,10 @@ fn is_silent(samples: &Array2<Complex64>) -> bool {
 /// Checks that both ends have the radar's shape and hold finite samples only.
 /// # Errors
 /// [`ReconstructError::Shape`] or [`ReconstructError::NotFinite`].
-pub fn check_ends(radar: &Radar, ends: &TwoEnds) -> Result<(), ReconstructError> {
+pub fn check_ends(radar: &Radar, ends: &TwoEnds) -> Result<()> {
     for (end, what, samples) in [("first", "first end", &ends.first), ("last", "last end", &ends.last)] {
-        let expected = [radar.end_elements, radar.samples];
-        if samples.shape() != expected {
-            return Err(ReconstructError::Shape { what, found: samples.shape().to_vec(), expected: expected.to_vec() });
-        }
-        if let Some(((element, sample), _)) =
-            samples.indexed_iter().find(|(_, v)| !(v.re.is_finite() && v.im.is_finite()))
-        {
+        ReconstructError::check_shape(what, samples.shape(), [radar.end_elements, radar.samples])?;
+        if let Some(((element, sample), _)) = samples.indexed_iter().find(|(_, v)| !v.is_finite()) {
             return Err(ReconstructError::NotFinite { end, element, sample });
         }
     }

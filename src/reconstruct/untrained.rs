@@ -1,7 +1,6 @@
 //! The test for noise on which a method was not trained.
 
-use super::reconstructor::Reconstructor;
-use super::trained::TrainedNoise;
+use super::{Reconstructor, TrainedNoise};
 use crate::radar::Radar;
 use crate::scattering::Sources;
 use crate::signal::Floor;

@@ -169,21 +169,9 @@ impl<'a> From<&'a Echoing> for Sources<'a> {
     }
 }
 
-impl<'a> From<&'a [Reflector]> for Sources<'a> {
-    fn from(points: &'a [Reflector]) -> Self {
-        Sources { points, scatterers: &[] }
-    }
-}
-
-impl<'a> From<&'a Vec<Reflector>> for Sources<'a> {
-    fn from(points: &'a Vec<Reflector>) -> Self {
-        Sources { points, scatterers: &[] }
-    }
-}
-
-impl<'a, const N: usize> From<&'a [Reflector; N]> for Sources<'a> {
-    fn from(points: &'a [Reflector; N]) -> Self {
-        Sources { points, scatterers: &[] }
+impl<'a, T: AsRef<[Reflector]> + ?Sized> From<&'a T> for Sources<'a> {
+    fn from(points: &'a T) -> Self {
+        Sources { points: points.as_ref(), scatterers: &[] }
     }
 }
 

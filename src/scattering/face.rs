@@ -65,13 +65,9 @@ impl Face {
         // The same comparisons as for the glint, so that rounding can't separate them.
         let signs = [if foot > low { -1.0 } else { 1.0 }, if foot <= high { -1.0 } else { 1.0 }];
         let [a, b] = [(low, signs[0]), (high, signs[1])].map(|(u, sign)| {
-            let edge = seen.edge(u, range_metres, wave);
-            PathEcho {
-                range_metres: edge.range_metres,
-                amplitude: edge.value * (sign * scale),
-                cos_incidence: edge.cos_incidence,
-                ..silent(u, EchoKind::Edge)
-            }
+            let Edge { range_metres, value, cos_incidence } = seen.edge(u, range_metres, wave);
+            let amplitude = value * (sign * scale);
+            PathEcho { range_metres, amplitude, cos_incidence, ..silent(u, EchoKind::Edge) }
         });
         [glint, a, b]
     }

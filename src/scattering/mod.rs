@@ -82,12 +82,8 @@ pub struct Wave {
 impl Wave {
     pub fn of(radar: &Radar) -> Self {
         let turns = radar.middle_turns_per_metre();
-        Wave {
-            power_watts: radar.transmit_power_watts,
-            radians_per_metre: TAU * turns.abs(),
-            is_conjugate: turns > 0.0,
-            pattern: radar.pattern(),
-        }
+        let (power_watts, pattern) = (radar.transmit_power_watts, radar.pattern());
+        Wave { power_watts, radians_per_metre: TAU * turns.abs(), is_conjugate: turns > 0.0, pattern }
     }
 }
 
@@ -137,14 +133,8 @@ pub struct PathEcho {
 
 impl PathEcho {
     pub(crate) fn silent(place_metres: [f64; 2], kind: EchoKind) -> Self {
-        PathEcho {
-            range_metres: 0.0,
-            amplitude: Complex64::default(),
-            place_metres,
-            cos_incidence: 1.0,
-            kind,
-            is_mirrored: false,
-        }
+        let amplitude = Complex64::default();
+        PathEcho { range_metres: 0.0, amplitude, place_metres, cos_incidence: 1.0, kind, is_mirrored: false }
     }
 
     pub fn is_heard(&self) -> bool {

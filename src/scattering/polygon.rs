@@ -16,18 +16,15 @@ pub struct Outline {
     faces: Vec<Face>,
     /// Corners that point inwards.
     inner: Vec<usize>,
-    is_inner: Vec<bool>,
 }
 
 impl Outline {
     /// The outline with these corners, counter-clockwise with y up, (x, y) in metres.
     pub fn new(corners_metres: &[[f64; 2]], reflectivity: f64) -> Self {
-        let inner = inner_corners(corners_metres);
         let next = corners_metres.iter().cycle().skip(1);
         Outline {
             faces: corners_metres.iter().zip(next).map(|(a, b)| Face::new([*a, *b], false, reflectivity)).collect(),
-            is_inner: (0..corners_metres.len()).map(|i| inner.contains(&i)).collect(),
-            inner,
+            inner: inner_corners(corners_metres),
         }
     }
 
@@ -61,24 +58,24 @@ impl Outline {
                 }
             }
         }
-        for (corner, _) in self.is_inner.iter().enumerate().filter(|(_, inner)| **inner) {
+        for corner in &self.inner {
             // The two orders of a right inner corner are its whole echo: its apex has none of its own.
             out[begin + count + corner].amplitude = Complex64::default();
-        }
-        for corner in &self.inner {
             let (first, second) = (&self.faces[(corner + count - 1) % count], &self.faces[*corner]);
             out.extend(corner::echoes(wave, antennas, first, second));
         }
-        if !self.inner.is_empty() {
-            for echo in out[begin..].iter_mut().filter(|e| e.is_heard()) {
-                if self.hides(echo.place_metres.into(), antennas) {
-                    echo.amplitude = Complex64::default();
-                }
-            }
+        self.silence_hidden(antennas, &mut out[begin..]);
+    }
+
+    /// Silences those of `echoes` that a face hides from an antenna. None does where no corner points inwards.
+    pub(super) fn silence_hidden(&self, antennas: &AntennaPlaces, echoes: &mut [PathEcho]) {
+        let heard = echoes.iter_mut().filter(|e| !self.inner.is_empty() && e.is_heard());
+        for echo in heard.filter(|e| self.hides(e.place_metres.into(), antennas)) {
+            echo.amplitude = Complex64::default();
         }
     }
 
-    pub(super) fn hides(&self, place: V, antennas: &AntennaPlaces) -> bool {
+    fn hides(&self, place: V, antennas: &AntennaPlaces) -> bool {
         let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
         self.faces.iter().any(|face| {
             let (a, b) = (face.from, face.place(face.length_metres));
@@ -86,9 +83,5 @@ impl Outline {
             let is_apart = (place - face.place(along)).norm() > ON_METRES;
             is_apart && (crosses(t, place, a, b) || crosses(r, place, a, b))
         })
-    }
-
-    pub(super) fn has_inner_corners(&self) -> bool {
-        !self.inner.is_empty()
     }
 }

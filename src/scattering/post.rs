@@ -43,12 +43,9 @@ impl Circle {
         let strength = wave.power_watts * reflectivity / (root(REFERENCE_LENGTH_METRES * spread) * leg_t * leg_r);
         let over = wave.radians_per_metre * radius;
         let second = if refined && over / 2.0 >= MIN_REFINED_SIZE { -5.0 / (8.0 * over) } else { 0.0 };
-        PathEcho {
-            range_metres: (leg_t + leg_r) / 2.0,
-            amplitude: Complex64::new(strength, strength * second),
-            cos_incidence: cos,
-            ..PathEcho::silent((centre + nearest).into(), EchoKind::Post)
-        }
+        let silent = PathEcho::silent((centre + nearest).into(), EchoKind::Post);
+        let amplitude = Complex64::new(strength, strength * second);
+        PathEcho { range_metres: (leg_t + leg_r) / 2.0, amplitude, cos_incidence: cos, ..silent }
     }
 }
 

@@ -67,12 +67,8 @@ impl RoughFace {
             let cos = (cos_t * cos_r).sqrt();
             let lost = 1.0 - coherent(wave, self.deviation_metres, cos).powi(2);
             let strength = self.face.reflectivity * cos * (lost * self.share_metres / REFERENCE_LENGTH_METRES).sqrt();
-            PathEcho {
-                range_metres: (leg_t + leg_r) / 2.0,
-                amplitude: grain.phase * (wave.power_watts * strength / (leg_t * leg_r)),
-                cos_incidence: cos,
-                ..silent
-            }
+            let amplitude = grain.phase * (wave.power_watts * strength / (leg_t * leg_r));
+            PathEcho { range_metres: (leg_t + leg_r) / 2.0, amplitude, cos_incidence: cos, ..silent }
         }));
     }
 }

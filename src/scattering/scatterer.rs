@@ -124,14 +124,8 @@ impl Scatterer {
         for face in &self.rough {
             face.echoes(wave, antennas, out);
         }
-        if let Source::Outline(outline) = &self.source
-            && outline.has_inner_corners()
-        {
-            for echo in out[smooth..].iter_mut().filter(|e| e.is_heard()) {
-                if outline.hides(echo.place_metres.into(), antennas) {
-                    echo.amplitude = Complex64::default();
-                }
-            }
+        if let Source::Outline(outline) = &self.source {
+            outline.silence_hidden(antennas, &mut out[smooth..]);
         }
         for echo in out[begin..].iter_mut().filter(|e| e.is_heard()) {
             *echo = behind(&self.obstacles, wave, antennas, *echo);

@@ -54,10 +54,8 @@ pub fn transition(w: f64) -> Complex64 {
             (b, a) = (a, next);
         }
         let x = x2 / 2.0;
-        return Complex64::new(
-            CHEBYSHEV_COEFFICIENTS[0][0] + x * a[0] - b[0],
-            CHEBYSHEV_COEFFICIENTS[0][1] + x * a[1] - b[1],
-        );
+        let [re, im] = [0, 1].map(|i| CHEBYSHEV_COEFFICIENTS[0][i] + x * a[i] - b[i]);
+        return Complex64::new(re, im);
     }
     // erfcx(z) = (1 - 1/(2 z^2) + 3/(2 z^2)^2 - ...) / (sqrt(pi) z); z^2 = j w^2.
     let over = 0.5 / (w * w);

@@ -105,13 +105,12 @@ impl Mirror {
         // Elements of a pattern send one way and hear the other; a point in one of the two directions would have the pattern twice.
         let left = |y: f64, range: f64| radar.pattern().map_or(1.0, |pattern| pattern.amplitude(y / range));
         let both = left(of.y_metres, there.range_metres) * left(y, image.range_metres);
-        let towards = |x: f64, y: f64, range: f64| Reflector {
-            x_metres: x * mean / range,
-            y_metres: y * mean / range,
-            reflectivity: one_way * (both / left(y, range).powi(2)),
+        let towards = |x: f64, y: f64, range: f64| {
+            let reflectivity = one_way * (both / left(y, range).powi(2));
+            Reflector::at([x * mean / range, y * mean / range], reflectivity)
         };
         vec![
-            Reflector { x_metres: x, y_metres: y, reflectivity: of.reflectivity * self.reflection.powi(2) },
+            Reflector::at([x, y], of.reflectivity * self.reflection.powi(2)),
             towards(x, y, image.range_metres),
             towards(of.x_metres, of.y_metres, there.range_metres),
         ]
@@ -159,7 +158,7 @@ impl Disturbances {
             ] {
                 check("interferer", field, value, low, high)?;
             }
-            let at = Reflector { x_metres: i.x_metres, y_metres: i.y_metres, reflectivity: 1.0 };
+            let at = Reflector::at([i.x_metres, i.y_metres], 1.0);
             if super::touched_element(radar, &at).is_some() {
                 check("interferer", "y_metres", i.y_metres, MIN_ELEMENT_DISTANCE_METRES, 1e6)?;
             }

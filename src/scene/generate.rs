@@ -9,14 +9,12 @@ mod field;
 mod kind;
 mod laws;
 mod mixture;
-mod room;
 mod things;
 mod world;
 
 pub use beyond::Beyond;
-pub use kind::Kind;
+pub use kind::{Kind, NoRoom};
 pub use mixture::{Mixture, MixtureError};
-pub use room::NoRoom;
 
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;
@@ -78,14 +76,8 @@ const LINE_POINTS: usize = 75;
 impl Generator {
     /// Scenes for `radar`; the same arguments give the same scenes on every machine.
     pub fn new(radar: &Radar, reading: Reading, purpose: Purpose, seed: u64) -> Self {
-        Generator {
-            max_range: radar.max_range_metres(),
-            bin: radar.range_resolution_metres(),
-            world: World::new(radar),
-            reading,
-            purpose,
-            seed,
-        }
+        let (max_range, bin) = (radar.max_range_metres(), radar.range_resolution_metres());
+        Generator { max_range, bin, world: World::new(radar), reading, purpose, seed }
     }
 
     /// Random stream of one scene. Purposes get different keys, kinds and numbers different streams of that key.

@@ -36,6 +36,12 @@ pub struct Reflector {
     pub reflectivity: f64,
 }
 
+impl Reflector {
+    pub fn at([x_metres, y_metres]: [f64; 2], reflectivity: f64) -> Self {
+        Reflector { x_metres, y_metres, reflectivity }
+    }
+}
+
 /// Objects before the radar, in the order they were added.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -183,13 +189,8 @@ impl Scene {
             }
             for r in object.reflectors() {
                 if let Some(element) = touched_element(radar, &r) {
-                    return Err(SceneError::OnElement {
-                        object: index,
-                        kind: object.kind(),
-                        x_metres: r.x_metres,
-                        y_metres: r.y_metres,
-                        element,
-                    });
+                    let (kind, Reflector { x_metres, y_metres, .. }) = (object.kind(), r);
+                    return Err(SceneError::OnElement { object: index, kind, x_metres, y_metres, element });
                 }
             }
         }

@@ -1,9 +1,8 @@
 //! The objects of a scene: points, lines of points, Gaussian clusters of points, and bodies.
 
-use super::Reflector;
-use super::body::{Block, Body, Polygon, Post, Wall, one};
-use super::common::{is_default, moving, of_each};
-use super::shape::Shape;
+use super::body::one;
+use super::common::{moving, of_each};
+use super::{Block, Body, Polygon, Post, Reflector, Shape, Wall, is_default};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -189,25 +188,13 @@ impl Object {
     /// The reflectors this object stands for, in a fixed order; a body is none.
     pub fn reflectors(&self) -> Vec<Reflector> {
         match self {
-            Object::Point(p) => {
-                vec![Reflector { x_metres: p.x_metres, y_metres: p.y_metres, reflectivity: p.reflectivity }]
-            }
-            Object::Line(l) => (0..l.count)
-                .map(|i| {
-                    let [x_metres, y_metres] = l.place_metres(i as f64);
-                    Reflector { x_metres, y_metres, reflectivity: l.reflectivity }
-                })
-                .collect(),
+            Object::Point(p) => vec![Reflector::at([p.x_metres, p.y_metres], p.reflectivity)],
+            Object::Line(l) => (0..l.count).map(|i| Reflector::at(l.place_metres(i as f64), l.reflectivity)).collect(),
             Object::Gaussian(g) => {
                 let mut rng = ChaCha8Rng::seed_from_u64(g.seed);
                 let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
-                (0..g.count)
-                    .map(|_| Reflector {
-                        x_metres: g.x_metres + g.x_std_metres * normal(),
-                        y_metres: g.y_metres + g.y_std_metres * normal(),
-                        reflectivity: g.reflectivity,
-                    })
-                    .collect()
+                let mut place = || [g.x_metres + g.x_std_metres * normal(), g.y_metres + g.y_std_metres * normal()];
+                (0..g.count).map(|_| Reflector::at(place(), g.reflectivity)).collect()
             }
             Object::Wall(_) | Object::Box(_) | Object::Post(_) | Object::Polygon(_) => Vec::new(),
         }
@@ -216,9 +203,8 @@ impl Object {
     /// Its reflectors, or the places of a body's echoes at the array's middle, each with its reflectivity.
     pub fn marks(&self) -> Vec<Reflector> {
         let Some(body) = self.body() else { return self.reflectors() };
-        let reflectivity = self.reflectivity();
         let places = body.echo_places_metres([0.0, 0.0]).into_iter();
-        places.map(|[x_metres, y_metres]| Reflector { x_metres, y_metres, reflectivity }).collect()
+        places.map(|place| Reflector::at(place, body.reflectivity)).collect()
     }
 
     /// Sets the reflectivity sigma of each of its reflectors, or the reflection coefficient of a body.

@@ -13,10 +13,8 @@ pub enum Shape {
     Wall([[f64; 2]; 2]),
     /// Corners of a closed outline, counter-clockwise with y up, (x, y) in metres.
     Outline(Vec<[f64; 2]>),
-    Circle {
-        centre_metres: [f64; 2],
-        radius_metres: f64,
-    },
+    /// A circle; its middle is (x, y) in metres.
+    Circle { centre_metres: [f64; 2], radius_metres: f64 },
 }
 
 /// Unit vector at an angle from +x, counter-clockwise: exact at multiples of 90 degrees.
@@ -138,7 +136,7 @@ pub fn from_stretch(place: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     (a[0] + along * dx - place[0]).hypot(a[1] + along * dy - place[1])
 }
 
-pub(super) fn extent(corners: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
+pub(crate) fn extent(corners: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
     let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     corners.iter().fold(start, |(low, high), c| ([0, 1].map(|i| low[i].min(c[i])), [0, 1].map(|i| high[i].max(c[i]))))
 }

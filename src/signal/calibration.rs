@@ -1,9 +1,9 @@
 //! Calibrating a built array on a reflector of known place.
 
-use super::echo::ArrayEcho;
-use super::samples::BeatSignal;
+use super::{ArrayEcho, BeatSignal};
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, chirp_window};
 use crate::scene::Reflector;
+use ndarray::ArrayView1;
 use num_complex::Complex64;
 
 /// Element errors estimated from one reflector.
@@ -22,22 +22,18 @@ pub fn calibrate(radar: &Radar, signal: &BeatSignal, reflector: &Reflector) -> O
     let (mut energy, mut left) = (0.0, 0.0);
     let window = chirp_window(radar.samples);
     let mean_weight = window.iter().sum::<f64>() / radar.samples as f64;
-    let responses: Vec<Complex64> = signal
-        .samples
-        .outer_iter()
-        .enumerate()
-        .map(|(n, samples)| {
-            let echo = ArrayEcho::heard_by(radar, &[radar.pair(n)], polar.range_metres, polar.cos_theta);
-            let samples: Vec<Complex64> = samples.iter().copied().collect();
-            let weighted: Vec<Complex64> = samples.iter().zip(&window).map(|(v, w)| v * w).collect();
-            let share = echo.correlate(&weighted) / mean_weight;
-            let all: f64 = samples.iter().map(Complex64::norm_sqr).sum();
-            energy += all;
-            let explained = 2.0 * (share.conj() * echo.correlate(&samples)).re - share.norm_sqr();
-            left += (all - explained).max(0.0);
-            share / echo.norm()
-        })
-        .collect();
+    let response = |(n, samples): (usize, ArrayView1<'_, Complex64>)| {
+        let echo = ArrayEcho::heard_by(radar, &[radar.pair(n)], polar.range_metres, polar.cos_theta);
+        let samples = samples.to_vec();
+        let weighted: Vec<Complex64> = samples.iter().zip(&window).map(|(v, w)| v * w).collect();
+        let share = echo.correlate(&weighted) / mean_weight;
+        let all: f64 = samples.iter().map(Complex64::norm_sqr).sum();
+        energy += all;
+        let explained = 2.0 * (share.conj() * echo.correlate(&samples)).re - share.norm_sqr();
+        left += (all - explained).max(0.0);
+        share / echo.norm()
+    };
+    let responses: Vec<Complex64> = signal.samples.outer_iter().enumerate().map(response).collect();
     let heard: Vec<&Complex64> = responses.iter().filter(|r| r.norm_sqr() > 0.0 && r.is_finite()).collect();
     // Gains are compared as decibels; phases with that of the sum, which no single element can turn far.
     let mean_decades = heard.iter().map(|r| r.norm().log10()).sum::<f64>() / heard.len() as f64;

@@ -9,13 +9,11 @@
 //! [`simulate_ends_for`](super::simulate_ends_for). Each chirp has its own noise. An interferer is the same in every chirp.
 
 use super::built::{hear, tolerance};
-use super::floor::{self, Floor};
 use super::path::Path;
 use super::phase::{Echo, EchoModel};
-use super::plan::{Plan, amplitude_bound};
+use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::samples::BeatSignal;
-use super::unfinished::Unfinished;
+use super::{BeatSignal, Floor, Made, Plan, floor};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::{Echoing, PathEcho, SeenObject, Sources};
 use crate::scene::{Object, Scene, SceneError};
@@ -62,14 +60,8 @@ pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
 
 /// Samples of every chirp of `radar` over the named floor, unless `task` is cancelled before they are done; `seed` picks its noise.
 /// # Errors
-/// [`Unfinished`] when the scene can't be simulated, at the first chirp or at the last, and soon after the task was cancelled.
-pub fn simulate_chirps_for(
-    task: &Task,
-    radar: &Radar,
-    scene: &Scene,
-    floor: Floor,
-    seed: u64,
-) -> Result<ChirpSamples, Unfinished> {
+/// [`Unfinished`](super::Unfinished) when the scene can't be simulated, at the first chirp or at the last, and soon after the task was cancelled.
+pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<ChirpSamples> {
     scene.validate(radar)?;
     let array = &*scene.disturbances.elements_of(radar);
     array.validate(radar).map_err(SceneError::from)?;

@@ -123,12 +123,7 @@ impl<T: Real> ClosedForm<T> {
     }
 
     #[inline(always)]
-    fn add<const W: usize, const FMA: bool>(
-        &self,
-        echo: &EchoLanes<W>,
-        reach: isize,
-        cells: &mut [ComplexLanes<T, W>],
-    ) {
+    fn add<const W: usize, const FMA: bool>(&self, echo: &EchoLanes<W>, reach: isize, out: &mut [ComplexLanes<T, W>]) {
         let of = Lanes::<f64, W>::splat;
         let bins = self.samples as f64;
         let position = echo.position_in(bins);
@@ -165,7 +160,7 @@ impl<T: Real> ClosedForm<T> {
                     }
                 }
             }
-            cells[bin] = cells[bin] + value;
+            out[bin] = out[bin] + value;
             bin = if bin + 1 == self.samples { 0 } else { bin + 1 };
             turn = if turn + 1 == self.samples { 0 } else { turn + 1 };
         }

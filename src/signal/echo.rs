@@ -52,23 +52,14 @@ impl ArrayEcho {
     /// The echo of a unit reflector at (`range_metres`, `cos_theta`), as `pairs` hear it.
     pub fn heard_by(radar: &Radar, pairs: &[Pair], range_metres: f64, cos_theta: f64) -> Self {
         let cos = cos_theta.clamp(-1.0, 1.0);
-        let reflector = Reflector {
-            x_metres: range_metres * cos,
-            y_metres: range_metres * (1.0 - cos * cos).sqrt(),
-            reflectivity: 1.0,
-        };
+        let reflector = Reflector::at([range_metres * cos, range_metres * (1.0 - cos * cos).sqrt()], 1.0);
         let model = EchoModel::new(radar);
-        let series: Vec<Series> = pairs
-            .iter()
-            .map(|pair| {
-                let echo = model.echo(*pair, &reflector);
-                Series {
-                    start: echo.sample(0),
-                    step: Complex64::cis(TAU * (echo.turns_at(1) - echo.turns_at(0))),
-                    last: Complex64::cis(TAU * (echo.turns_at(radar.samples) - echo.turns_at(0))),
-                }
-            })
-            .collect();
+        let of_pair = |pair: &Pair| {
+            let echo = model.echo(*pair, &reflector);
+            let turned = |sample: usize| Complex64::cis(TAU * (echo.turns_at(sample) - echo.turns_at(0)));
+            Series { start: echo.sample(0), step: turned(1), last: turned(radar.samples) }
+        };
+        let series = pairs.iter().map(of_pair).collect();
         ArrayEcho { reflector, series, samples: radar.samples, norm: 0.0 }.with_norm()
     }
 
@@ -110,22 +101,15 @@ impl ArrayEcho {
 
     /// Inner product of the unit samples of two echoes, `sum conj(self) other`: a geometric series for each element.
     pub fn inner(&self, other: &ArrayEcho) -> Complex64 {
-        let sum: Complex64 = self
-            .series
-            .iter()
-            .zip(&other.series)
-            .map(|(a, b)| {
-                let ratio = a.step.conj() * b.step;
-                let off = Complex64::from(1.0) - ratio;
-                let series = if off.norm_sqr() < 1e-16 {
-                    Complex64::from(self.samples as f64)
-                } else {
-                    (Complex64::from(1.0) - a.last.conj() * b.last) / off
-                };
-                a.start.conj() * b.start * series
-            })
-            .sum();
-        sum / (self.norm * other.norm)
+        let of_pair = |(a, b): (&Series, &Series)| {
+            let off = Complex64::from(1.0) - a.step.conj() * b.step;
+            let series = match off.norm_sqr() < 1e-16 {
+                true => Complex64::from(self.samples as f64),
+                false => (Complex64::from(1.0) - a.last.conj() * b.last) / off,
+            };
+            a.start.conj() * b.start * series
+        };
+        self.series.iter().zip(&other.series).map(of_pair).sum::<Complex64>() / (self.norm * other.norm)
     }
 }
 

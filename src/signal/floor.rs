@@ -198,7 +198,7 @@ impl Kernel for BlockPowers<'_> {
         let pairs = PairBlocks::new(|i| self.radar.pair(self.first_element + i));
         let mut total = Lanes::splat(0.0);
         for r in self.reflectors {
-            let (range, mut amplitude) = plain_path(self.radar, &pairs, r);
+            let [range, mut amplitude] = plain_path(self.radar, &pairs, r);
             if let Some(rate) = self.radians_per_metre {
                 amplitude = amplitude * range.map(|range| ulp(rate * range));
             }

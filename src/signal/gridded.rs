@@ -172,16 +172,13 @@ pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
     }
 }
 
-/// Adds `more` to `total`; returns the rounding error (Knuth's two-sum).
+/// Adds `more` to `to`; returns the rounding error (Knuth's two-sum).
 #[inline(always)]
-fn add_exactly<T: Real, const W: usize>(
-    total: &mut ComplexLanes<T, W>,
-    more: ComplexLanes<T, W>,
-) -> ComplexLanes<T, W> {
-    let before = *total;
+fn add_exactly<T: Real, const W: usize>(to: &mut ComplexLanes<T, W>, more: ComplexLanes<T, W>) -> ComplexLanes<T, W> {
+    let before = *to;
     let sum = before + more;
     let added = sum - before;
-    *total = sum;
+    *to = sum;
     (before - (sum - added)) + (more - added)
 }
 

@@ -152,11 +152,7 @@ fn leg<const W: usize, const FMA: bool>(
 }
 
 #[inline(always)]
-pub(super) fn plain_path<const W: usize>(
-    radar: &Radar,
-    pairs: &PairBlocks<W>,
-    r: &Reflector,
-) -> (Lanes<f64, W>, Lanes<f64, W>) {
+pub(super) fn plain_path<const W: usize>(radar: &Radar, pairs: &PairBlocks<W>, r: &Reflector) -> [Lanes<f64, W>; 2] {
     let scale = radar.transmit_power_watts * r.reflectivity;
     let pattern = radar.pattern();
     let ahead = pairs.y_metres;
@@ -171,11 +167,11 @@ pub(super) fn plain_path<const W: usize>(
     let there = square(pairs.x_metres[0], ahead[0]);
     if pairs.is_monostatic {
         let range = there.sqrt();
-        return (range, through(pattern, there.map(|s| scale / s), [range, range], ahead, r));
+        return [range, through(pattern, there.map(|s| scale / s), [range, range], ahead, r)];
     }
     let (there, back) = (there.sqrt(), square(pairs.x_metres[1], ahead[1]).sqrt());
     let amplitude = there.zip(back, |t, r| scale / (t * r));
-    ((there + back) * Lanes::splat(0.5), through(pattern, amplitude, [there, back], ahead, r))
+    [(there + back) * Lanes::splat(0.5), through(pattern, amplitude, [there, back], ahead, r)]
 }
 
 /// Range in metres and amplitude of a point for one pair, rounded as the thesis' program rounds them.
@@ -344,7 +340,7 @@ mod tests {
             .flat_map(|r| [SEPARATE_PAIR, BENT, Pair::at(0.3)].map(|p| (r.clone(), p)))
         {
             let echo = EchoModel::new(&radar).echo(pair, &r);
-            let (range, amplitude) = plain_path(&radar, &PairBlocks::from(pair), &r);
+            let [range, amplitude] = plain_path(&radar, &PairBlocks::from(pair), &r);
             let thesis = thesis_path(&radar, pair, &r);
             for (range, amplitude) in [(range.0[0], amplitude.0[0]), thesis] {
                 assert!((range - echo.distance_metres).abs() < 1e-14 * range);

@@ -1,9 +1,8 @@
 //! The choice of algorithm and precision, as a value that tests can examine before it runs.
 
-use super::algorithm::{Algorithm, Precision};
-use super::closed_form;
 use super::path::largest_amplitude;
 use super::simd::Simd;
+use super::{Algorithm, Precision, closed_form};
 use crate::radar::Radar;
 use crate::scattering::{Echoing, SeenObject, Sources};
 use rayon::prelude::*;
@@ -50,12 +49,8 @@ impl Plan {
         let gridded = count >= GRIDDED_FROM && tolerance >= FLOOR_TOLERANCE;
         let algorithm = if gridded { Algorithm::Gridded } else { Algorithm::Split };
         let single = tolerance >= F32_TOLERANCE && holds(amplitude) && count <= most_in_f32(algorithm);
-        Plan {
-            algorithm,
-            precision: if single { Precision::F32 } else { Precision::F64 },
-            tolerance,
-            simd: Simd::chosen(),
-        }
+        let precision = if single { Precision::F32 } else { Precision::F64 };
+        Plan { algorithm, precision, tolerance, simd: Simd::chosen() }
     }
 
     /// The plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.

@@ -1,11 +1,8 @@
 //! Running a plan.
 
-use super::algorithm::{Algorithm, Precision};
-use super::plan::Plan;
-use super::samples::BeatSignal;
 use super::simd::{LANES_F32, LANES_F64};
 use super::synthesis::Synthesis;
-use super::{direct, exact};
+use super::{Algorithm, BeatSignal, Plan, Precision, direct, exact};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Sources;
 use crate::task::Task;

@@ -1,11 +1,9 @@
 //! Samples of a scene over a floor.
 
 use super::built::{simulate_built_for, tolerance};
-use super::floor::{self, Floor};
-use super::plan::{Plan, amplitude_bound};
+use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::samples::{BeatSignal, TwoEnds};
-use super::unfinished::Unfinished;
+use super::{BeatSignal, Floor, Made, Plan, TwoEnds, Unfinished, floor};
 use crate::radar::{BuiltArray, End, Radar};
 use crate::scattering::Echoing;
 use crate::scene::{Scene, SceneError};
@@ -25,26 +23,14 @@ pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result
 /// [`simulate`], unless `task` is cancelled before it is done.
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
-pub fn simulate_for(
-    task: &Task,
-    radar: &Radar,
-    scene: &Scene,
-    floor: Floor,
-    seed: u64,
-) -> Result<BeatSignal, Unfinished> {
+pub fn simulate_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<BeatSignal> {
     simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed)
 }
 
 /// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them, unless `task` is cancelled before they are done.
 /// # Errors
 /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
-pub fn simulate_ends_for(
-    task: &Task,
-    radar: &Radar,
-    scene: &Scene,
-    floor: Floor,
-    seed: u64,
-) -> Result<TwoEnds, Unfinished> {
+pub fn simulate_ends_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<TwoEnds> {
     if !scene.disturbances.is_none_to(radar) {
         return Ok(simulate_for(task, radar, scene, floor, seed)?.two_ends(radar));
     }

@@ -1,17 +1,15 @@
 //! Runs a block algorithm over the whole array: elements in blocks of one vector, blocks in parallel. Results do not depend on the number of
 //! threads.
 
-use super::algorithm::Algorithm;
 use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
 use super::heard::HeardEchoes;
 use super::lane_fft::LaneFft;
 use super::phase::EchoModel;
-use super::plan::{BEST_TOLERANCE, Plan};
-use super::rows::Rows;
+use super::plan::BEST_TOLERANCE;
 use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
-use super::split;
+use super::{Algorithm, Plan, Rows, split};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Sources;
 use crate::task::Task;

@@ -12,6 +12,8 @@ pub enum Unfinished {
     Cancelled(#[from] Cancelled),
 }
 
+pub type Made<T> = Result<T, Unfinished>;
+
 impl Unfinished {
     /// The fault of the scene, for work on a task without another owner.
     pub(crate) fn of_scene(self) -> SceneError {

@@ -23,18 +23,8 @@ pub type Generation = u64;
 /// The reply to a request.
 #[derive(Debug)]
 pub enum Reply<T> {
-    /// The work is finished.
-    Done {
-        generation: Generation,
-        /// Result of the work.
-        result: T,
-        elapsed: Duration,
-    },
-    Panicked {
-        generation: Generation,
-        /// Message of the panic.
-        message: String,
-    },
+    Done { generation: Generation, result: T, elapsed: Duration },
+    Panicked { generation: Generation, message: String },
 }
 
 struct Running {

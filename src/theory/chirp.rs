@@ -5,7 +5,7 @@
 //! names, which rises from the carrier. That of the thesis' formula falls from half of it ([`crate::radar::Convention`]); its beats are as high.
 
 use crate::radar::{Radar, SPEED_OF_LIGHT};
-use crate::scene::{Interferer, Scene};
+use crate::scene::{Interferer, Reflector, Scene};
 
 /// A linear chirp.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,20 +68,16 @@ pub fn delay_seconds(range_metres: f64) -> f64 {
 /// The beats of all objects at a pair of antennas, nearest first: one for each reflector of a line, a cluster or a body.
 pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<BeatTone> {
     let pair = radar.pair(element);
-    let mut all: Vec<BeatTone> = scene
-        .objects
-        .iter()
-        .enumerate()
-        .flat_map(|(object, o)| o.marks().into_iter().map(move |r| (object, r)))
-        .map(|(object, r)| {
-            let ways = pair.places_metres().map(|[x, y]| ((r.x_metres - x).hypot(r.y_metres - y), r.y_metres - y));
-            let left = |(way, ahead): (f64, f64)| radar.pattern().map_or(1.0, |p| p.amplitude(ahead / way));
-            let [(there, _), (back, _)] = ways;
-            let amplitude =
-                left(ways[0]) * left(ways[1]) * radar.transmit_power_watts * r.reflectivity / (there * back);
-            BeatTone { object, range_metres: (there + back) / 2.0, amplitude }
-        })
-        .collect();
+    let tone = |(object, r): (usize, Reflector)| {
+        let ways = pair.places_metres().map(|[x, y]| ((r.x_metres - x).hypot(r.y_metres - y), r.y_metres - y));
+        let left = |(way, ahead): (f64, f64)| radar.pattern().map_or(1.0, |p| p.amplitude(ahead / way));
+        let [(there, _), (back, _)] = ways;
+        let amplitude = left(ways[0]) * left(ways[1]) * radar.transmit_power_watts * r.reflectivity / (there * back);
+        BeatTone { object, range_metres: (there + back) / 2.0, amplitude }
+    };
+    let objects = scene.objects.iter().enumerate();
+    let marks = objects.flat_map(|(object, o)| o.marks().into_iter().map(move |r| (object, r)));
+    let mut all: Vec<BeatTone> = marks.map(tone).collect();
     all.sort_by(|a, b| a.range_metres.total_cmp(&b.range_metres));
     all
 }

@@ -39,12 +39,9 @@ impl Response {
             let echo = model.echo(radar.pair(n), reflector);
             (radar.bin_of_range(echo.distance_metres), echo.sample(0) * (weight * scale))
         };
-        Response {
-            samples: radar.samples,
-            columns: radar.elements,
-            over_range: WindowPattern::new(radar.window, radar.samples),
-            elements: elements.zip(window).map(heard).collect(),
-        }
+        let over_range = WindowPattern::new(radar.window, radar.samples);
+        let elements = elements.zip(window).map(heard).collect();
+        Response { samples: radar.samples, columns: radar.elements, over_range, elements }
     }
 
     pub fn row(&self, bin: f64) -> ResponseRow {

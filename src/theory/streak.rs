@@ -5,8 +5,7 @@
 //! blob is smeared along a path of such cells.
 
 use super::blob::path;
-use super::response::Response;
-use super::{Blob, MapPlace};
+use super::{Blob, MapPlace, Response};
 use crate::maps::{Aperture, Spectrum};
 use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;

@@ -11,10 +11,8 @@
 
 mod store;
 
-use super::Editor;
-use super::document::Restored;
-use crate::platform::Instant;
-use crate::platform::{self, Claim, fs};
+use super::{Editor, Restored};
+use crate::platform::{self, Claim, Instant, fs};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
@@ -112,7 +110,6 @@ impl Autosave {
         problems
     }
 
-    /// Whether files are being written.
     pub fn is_busy(&self) -> bool {
         self.pending > 0
     }
@@ -138,10 +135,7 @@ impl Drop for Autosave {
 }
 
 /// Starts the thread that writes files. Only the latest plan of those that wait matters; each has an answer.
-fn writer(
-    mut store: AutosaveStore,
-    answer: Sender<Result<(), String>>,
-) -> std::io::Result<(Sender<StartPlan>, JoinHandle<()>)> {
+fn writer(mut store: AutosaveStore, answer: Sender<Answer>) -> std::io::Result<(Sender<StartPlan>, JoinHandle<()>)> {
     let (jobs, asked) = channel::<StartPlan>();
     let work = move || {
         while let Ok(plan) = asked.recv() {

@@ -1,8 +1,7 @@
 //! The files of one slot: reading them, and writing the documents of a plan.
 
 use crate::files::read_bounded;
-use crate::interact::Editor;
-use crate::interact::document::{Document, Restored};
+use crate::interact::{Document, Editor, Restored};
 use crate::platform::fs;
 use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,6 @@
 //! Opening, saving and replacing documents, and the unsaved ones that were replaced.
 
-use super::Editor;
-use crate::interact::Selection;
-use crate::interact::document::{self, Document, Restored};
+use crate::interact::{Document, Editor, Restored, Selection, document};
 use crate::scene::file::{SceneFileError, SceneFormat};
 use std::path::Path;
 

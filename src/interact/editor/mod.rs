@@ -6,10 +6,9 @@ mod keeping;
 pub use keeping::Saved;
 
 use super::blob::BlobHit;
-use super::document::Document;
 use super::history::Snapshot;
 use super::hit::{self, Hit};
-use super::{Grip, History, Place, Selection, SelectionMode, Snap, clipboard, grip};
+use super::{Document, Grip, History, Place, Selection, SelectionMode, Snap, clipboard, grip};
 use crate::radar::{Radar, RadarError};
 use crate::scene::file::SceneFile;
 use crate::scene::{Object, Scene, SceneError};
@@ -44,37 +43,30 @@ impl Editor {
         Editor::of(Document::shipped(SceneFile { scene, ..SceneFile::default() }))
     }
 
-    /// Starts from a document.
     pub fn of(document: Document) -> Self {
         Editor { document, ..Editor::default() }
     }
 
-    /// The document as it is now.
     pub fn document(&self) -> &Document {
         &self.document
     }
 
-    /// The scene as it is now.
     pub fn scene(&self) -> &Arc<Scene> {
         self.document.scene()
     }
 
-    /// The radar that looks at it.
     pub fn radar(&self) -> &Arc<Radar> {
         self.document.radar()
     }
 
-    /// The selected objects.
     pub fn selection(&self) -> &Selection {
         &self.selection
     }
 
-    /// The steps that can be undone and redone.
     pub fn history(&self) -> &History {
         &self.history
     }
 
-    /// Whether the document differs from what is on disk.
     pub fn is_modified(&self) -> bool {
         self.document.is_modified()
     }
@@ -88,14 +80,9 @@ impl Editor {
         Snapshot { document: self.document.clone(), selection: self.selection.clone() }
     }
 
-    /// Changes the scene as one undo step, or as part of the last one where both carry the same `merge_key`. Nothing is recorded
+    /// Changes the scene as one undo step, or as part of the last one where both carry the same `key`. Nothing is recorded
     /// where nothing changed. Returns whether something did.
-    pub fn edit(
-        &mut self,
-        label: &str,
-        merge_key: Option<&str>,
-        change: impl FnOnce(&mut Scene, &mut Selection),
-    ) -> bool {
+    pub fn edit(&mut self, label: &str, key: Option<&str>, change: impl FnOnce(&mut Scene, &mut Selection)) -> bool {
         let before = self.snapshot();
         change(self.document.scene_mut(), &mut self.selection);
         self.selection.clamp(self.scene().objects.len());
@@ -103,7 +90,7 @@ impl Editor {
             self.document = before.document;
             return false;
         }
-        self.history.push(label, merge_key, before);
+        self.history.push(label, key, before);
         true
     }
 
@@ -134,7 +121,6 @@ impl Editor {
         Ok(true)
     }
 
-    /// Adds an object and selects it.
     pub fn add(&mut self, object: Object) {
         let label = format!("add {}", object.noun());
         self.edit(&label, None, |scene, selection| {
@@ -143,7 +129,6 @@ impl Editor {
         });
     }
 
-    /// Deletes the selected objects.
     pub fn delete_selected(&mut self) {
         self.edit("delete", None, |scene, selection| {
             for index in std::mem::take(selection).iter().rev() {
@@ -215,12 +200,10 @@ impl Editor {
         self.select(next, SelectionMode::Replace);
     }
 
-    /// Selects every object.
     pub fn select_all(&mut self) {
         self.select(0..self.scene().objects.len(), SelectionMode::Replace);
     }
 
-    /// The grip under `at`.
     pub fn hit(&self, at: Place, metres_per_point: f64) -> Option<Hit> {
         hit::test(self.scene(), &self.selection, at, metres_per_point)
     }

@@ -180,10 +180,8 @@ impl Cfar {
         self.check_map([bins, columns])?;
         let window = window::Window::new(self.guard, self.training);
         let mut known = BTreeMap::new();
-        let of_bin: Vec<(usize, f64)> = (0..bins)
-            .map(|bin| window.cells(bin, bins))
-            .map(|n| (n, *known.entry(n).or_insert_with(|| self.factor(n))))
-            .collect();
+        let of_count = |n: usize| (n, *known.entry(n).or_insert_with(|| self.factor(n)));
+        let of_bin: Vec<(usize, f64)> = (0..bins).map(|bin| window.cells(bin, bins)).map(of_count).collect();
         let cells = match self.statistic {
             Statistic::CellAveraging => window.above_sum(power, |bin| of_bin[bin].1 / of_bin[bin].0 as f64),
             Statistic::OrderedStatistics => window.above_rank(power, |bin| (rank(of_bin[bin].0), of_bin[bin].1)),
@@ -203,21 +201,16 @@ impl Cfar {
     /// As [`Cfar::check_map`].
     /// # Panics
     /// Where the map has no such cell.
-    pub fn level(
-        &self,
-        power: impl Fn([usize; 2]) -> f64,
-        map: [usize; 2],
-        cell: [usize; 2],
-    ) -> Result<Level, CfarError> {
+    pub fn level(&self, of: impl Fn([usize; 2]) -> f64, map: [usize; 2], cell: [usize; 2]) -> Result<Level, CfarError> {
         self.check_map(map)?;
         let mut training: Vec<f64> =
-            window::Window::new(self.guard, self.training).around(cell, map).map(&power).collect();
+            window::Window::new(self.guard, self.training).around(cell, map).map(&of).collect();
         let n = training.len();
         let noise = match self.statistic {
             Statistic::CellAveraging => training.iter().sum::<f64>() / n as f64,
             Statistic::OrderedStatistics => *training.select_nth_unstable_by(rank(n) - 1, f64::total_cmp).1,
         };
-        Ok(Level { training: n, noise, threshold: self.factor(n) * noise, power: power(cell) })
+        Ok(Level { training: n, noise, threshold: self.factor(n) * noise, power: of(cell) })
     }
 }
 

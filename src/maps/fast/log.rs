@@ -17,12 +17,8 @@ pub(super) struct LogScale {
 impl LogScale {
     pub(super) fn new(bound: f64) -> Self {
         let factor = if bound > 0.0 { 1e15 / bound.max(1e-35) } else { 1.0 };
-        LogScale {
-            factor,
-            guard: (guard(bound) * factor) as f32,
-            decades: factor.log10() as f32,
-            silence: silence_decades(bound),
-        }
+        let (guard, decades) = ((guard(bound) * factor) as f32, factor.log10() as f32);
+        LogScale { factor, guard, decades, silence: silence_decades(bound) }
     }
 
     /// `log10(|v| + guard)`.

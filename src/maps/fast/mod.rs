@@ -12,8 +12,7 @@ mod whole;
 pub use normalise::normalise_into;
 pub use whole::whole_map;
 
-use super::lambda::{LambdaScale, Normalisation};
-use super::log_map::LOG_GUARD;
+use super::{LOG_GUARD, LambdaScale, Normalisation};
 use crate::radar::{End, Radar};
 use crate::signal::Rows;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
@@ -46,12 +45,8 @@ impl FastLogMap {
     /// An empty scene's map.
     pub fn silence(radar: &Radar) -> Self {
         let guard = LOG_GUARD.log10() as f32;
-        FastLogMap {
-            cells: Array2::from_elem((radar.samples, radar.elements), guard),
-            min: guard,
-            max: guard,
-            rows: vec![(guard, guard); radar.samples],
-        }
+        let cells = Array2::from_elem((radar.samples, radar.elements), guard);
+        FastLogMap { cells, min: guard, max: guard, rows: vec![(guard, guard); radar.samples] }
     }
 
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
@@ -93,13 +88,9 @@ pub struct MapMaker<T: Real, const W: usize> {
 impl<T: Real, const W: usize> MapMaker<T, W> {
     pub fn new(radar: &Radar, simd: Simd) -> Self {
         let scale = (radar.elements as f64).sqrt().recip();
-        MapMaker {
-            radar: radar.clone(),
-            simd,
-            window: radar.window.weights(radar.elements).into_iter().map(|w| T::of(w * scale)).collect(),
-            fft: simd.forward_fft(radar.elements),
-            ends: Pruned::new(radar, simd),
-        }
+        let window = radar.window.weights(radar.elements).into_iter().map(|w| T::of(w * scale)).collect();
+        let (fft, ends) = (simd.forward_fft(radar.elements), Pruned::new(radar, simd));
+        MapMaker { radar: radar.clone(), simd, window, fft, ends }
     }
 
     /// Fills `rows` of the maps that are given: first end, last end, whole array.

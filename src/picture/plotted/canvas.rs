@@ -21,6 +21,8 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for Pictu
     }
 }
 
+pub(super) type Painted = Result<(), PictureError>;
+
 pub(super) type PanelArea<B> = DrawingArea<B, Shift>;
 
 pub(super) const INK: RGBColor = RGBColor(28, 32, 38);
@@ -36,5 +38,5 @@ pub trait Drawing {
     /// Draws itself.
     /// # Errors
     /// [`PictureError`] when plotters can't draw.
-    fn draw<B: DrawingBackend>(&self, root: &DrawingArea<B, Shift>) -> Result<(), PictureError>;
+    fn draw<B: DrawingBackend>(&self, root: &DrawingArea<B, Shift>) -> Painted;
 }

@@ -1,8 +1,7 @@
 //! The bytes of a picture from a signal: maps, reconstruction, panels.
 
-use super::error::ComposeError;
-use super::inputs::InputMap;
-use super::{DetectedCells, Drawing, Panels, PictureError, encode_png, render, render_svg};
+use super::error::Composed;
+use super::{DetectedCells, Drawing, InputMap, Panels, PictureError, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
 use crate::evaluate::failure::Footprints;
 use crate::maps::cfar::{Cfar, DETECTED};
@@ -58,21 +57,14 @@ pub struct Style {
 
 impl Default for Style {
     fn default() -> Self {
-        Style {
-            floor: Floor::default(),
-            layout: None,
-            normalisation: Normalisation::default(),
-            colours: ColourMap::default(),
-            eta: None,
-            target_eta: TARGET_ETA,
-            cfar: None,
-        }
+        let (floor, normalisation, colours) = Default::default();
+        Style { floor, layout: None, normalisation, colours, eta: None, target_eta: TARGET_ETA, cfar: None }
     }
 }
 
 /// Reconstructs and draws all panels; the bytes of a file.
 /// # Errors
-/// [`ComposeError`] when the method fails or the panels can't be drawn.
+/// [`ComposeError`](super::ComposeError) when the method fails or the panels can't be drawn.
 pub fn compose(
     radar: &Radar,
     scene: &Scene,
@@ -80,7 +72,7 @@ pub fn compose(
     method: &dyn Reconstructor,
     style: &Style,
     format: PictureFormat,
-) -> Result<Vec<u8>, ComposeError> {
+) -> Composed {
     let Style { floor, normalisation, .. } = *style;
     let elements = &scene.disturbances.elements;
     let maps = LogMaps::heard_by(radar, elements, signal);
@@ -97,7 +89,7 @@ pub fn compose(
     };
     let target = maps.full.normalise(normalisation);
     let scale = maps.full.scale(normalisation);
-    let detect = |cfar| DetectedCells::of(cfar, scale, &target, &output.lambda);
+    let detect = |cfar| DetectedCells::of(cfar, scale, [&target, &output.lambda]);
     let detected = style.cfar.map(detect).transpose()?;
     let eta = style.eta.unwrap_or_else(|| method.eta_of(&output));
     let above = detected.as_ref().map_or_else(|| output.lambda.above(eta), |cells| cells.output.above(DETECTED));

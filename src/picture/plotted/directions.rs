@@ -1,6 +1,6 @@
 //! A snapshot as curves over direction: of all elements, of one end, and of a method.
 
-use super::canvas::{Drawing, FAINT_INK, HAIRLINE, INK, PAPER, PanelArea, PictureError};
+use super::canvas::{Drawing, FAINT_INK, HAIRLINE, INK, PAPER, Painted, PanelArea};
 use super::text::{self, Weight};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -40,7 +40,7 @@ impl Drawing for DirectionAxis<'_> {
         (WIDTH, HEIGHT)
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
+    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Painted {
         root.fill(&PAPER)?;
         let name = text::fitted(root, self.name, 32, Weight::Bold, WIDTH - 60)?;
         text::line(root, (30, 18), &name, 32, Weight::Bold, &INK)?;
@@ -75,7 +75,7 @@ impl Drawing for DirectionAxis<'_> {
 type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 impl DirectionAxis<'_> {
-    fn draw_marks<B: DrawingBackend>(&self, chart: &mut Chart<'_, B>) -> Result<(), PictureError> {
+    fn draw_marks<B: DrawingBackend>(&self, chart: &mut Chart<'_, B>) -> Painted {
         let (left, right) = self.span_degrees();
         for mark in self.found.iter().filter(|m| m.below_strongest_db > LOWEST_DB) {
             let stem = [(mark.angle_degrees, LOWEST_DB), (mark.angle_degrees, mark.below_strongest_db)];
@@ -89,11 +89,7 @@ impl DirectionAxis<'_> {
         Ok(())
     }
 
-    fn draw_curves<B: DrawingBackend>(
-        &self,
-        root: &PanelArea<B>,
-        chart: &mut Chart<'_, B>,
-    ) -> Result<(), PictureError> {
+    fn draw_curves<B: DrawingBackend>(&self, root: &PanelArea<B>, chart: &mut Chart<'_, B>) -> Painted {
         let (left, right) = self.span_degrees();
         let mut at = 30;
         for (number, curve) in self.curves.iter().enumerate() {

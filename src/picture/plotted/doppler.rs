@@ -1,7 +1,7 @@
 //! A range-Doppler map as a picture.
 
 use super::PictureFormat;
-use super::canvas::{Drawing, PAPER, PanelArea, PictureError};
+use super::canvas::{Drawing, PAPER, Painted, PanelArea, PictureError};
 use super::map_panel::{MapAxes, MapCells, MapPanel};
 use crate::maps::doppler::RangeDopplerMap;
 use crate::maps::{Normalisation, RangeAngleMap};
@@ -36,7 +36,7 @@ impl Drawing for Picture<'_> {
         SIZE
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
+    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Painted {
         root.fill(&PAPER)?;
         let radar = self.radar;
         let velocity = |column: f64| radar.velocity_of_column_metres_per_second(column);
@@ -44,11 +44,8 @@ impl Drawing for Picture<'_> {
         let x = [velocity(-0.5), velocity(radar.chirps as f64 - 0.5)];
         let y = [range(-0.5), range(radar.samples as f64 - 0.5)];
         let axes = MapAxes { x, y, x_title: "radial velocity (m/s)", x_digits: usize::from(x[1] < 5.0) };
-        let title = format!(
-            "Range-Doppler, {} chirps, unambiguous \u{b1}{:.1} m/s",
-            radar.chirps,
-            radar.unambiguous_velocity_metres_per_second()
-        );
+        let most = radar.unambiguous_velocity_metres_per_second();
+        let title = format!("Range-Doppler, {} chirps, unambiguous \u{b1}{most:.1} m/s", radar.chirps);
         MapPanel { title, cells: MapCells::Lambda(self.lambda.lambda.view().into(), self.colours) }
             .draw_over(root, &axes)
     }

@@ -5,6 +5,8 @@ use crate::maps::cfar::CfarError;
 use crate::radar::LayoutError;
 use crate::reconstruct::ReconstructError;
 
+pub(super) type Composed = Result<Vec<u8>, ComposeError>;
+
 /// The reason why a picture could not be composed.
 #[derive(Debug, thiserror::Error)]
 pub enum ComposeError {

@@ -115,7 +115,7 @@ impl<S: BackendTextStyle> BackendTextStyle for Lettering<'_, S> {
     }
 }
 
-type Drawn<B> = Result<(), DrawingErrorKind<<B as DrawingBackend>::ErrorType>>;
+type Drawn<B, T = ()> = Result<T, DrawingErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 impl<B: DrawingBackend> DrawingBackend for Lettered<B> {
     type ErrorType = B::ErrorType;
@@ -152,12 +152,8 @@ impl<B: DrawingBackend> DrawingBackend for Lettered<B> {
         self.backend.draw_circle(centre, radius, style, fill)
     }
 
-    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
-        &mut self,
-        corners: I,
-        style: &S,
-    ) -> Drawn<B> {
-        self.backend.fill_polygon(corners, style)
+    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Drawn<B> {
+        self.backend.fill_polygon(path, style)
     }
 
     fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, at: BackendCoord) -> Drawn<B> {
@@ -165,11 +161,7 @@ impl<B: DrawingBackend> DrawingBackend for Lettered<B> {
         self.backend.draw_text(text, &Lettering { style, font }, at)
     }
 
-    fn estimate_text_size<S: BackendTextStyle>(
-        &self,
-        text: &str,
-        style: &S,
-    ) -> Result<(u32, u32), DrawingErrorKind<Self::ErrorType>> {
+    fn estimate_text_size<S: BackendTextStyle>(&self, text: &str, style: &S) -> Drawn<B, (u32, u32)> {
         self.backend.estimate_text_size(text, &Lettering { style, font: self.font(style.style()) })
     }
 

@@ -1,6 +1,6 @@
 //! One range-angle map with title, axes and colour bar.
 
-use super::canvas::{FAINT_INK, HAIRLINE, INK, PanelArea, PictureError};
+use super::canvas::{FAINT_INK, HAIRLINE, INK, Painted, PanelArea, PictureError};
 use super::text::{self, Weight};
 use crate::picture::colour::{ColourMap, Rgb};
 use crate::picture::detections::CellVerdict;
@@ -42,19 +42,15 @@ pub(super) struct MapAxes {
 }
 
 impl MapPanel<'_> {
-    pub(super) fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>, radar: &Radar) -> Result<(), PictureError> {
+    pub(super) fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>, radar: &Radar) -> Painted {
         // A column stands for the direction in its middle; half of one counts where there are few.
         let half = if radar.elements < FEW_COLUMNS { 0.0 } else { 0.5 };
-        let axes = MapAxes {
-            x: [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across) + half)),
-            y: [0.0, radar.max_range_metres()],
-            x_title: "cos \u{3b8}",
-            x_digits: 1,
-        };
+        let x = [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across) + half));
+        let axes = MapAxes { x, y: [0.0, radar.max_range_metres()], x_title: "cos \u{3b8}", x_digits: 1 };
         self.draw_over(area, &axes)
     }
 
-    pub(super) fn draw_over<B: DrawingBackend>(&self, area: &PanelArea<B>, axes: &MapAxes) -> Result<(), PictureError> {
+    pub(super) fn draw_over<B: DrawingBackend>(&self, area: &PanelArea<B>, axes: &MapAxes) -> Painted {
         let (width, height) = area.dim_in_pixel();
         let (width, height) = (width as i32, height as i32);
         text::line(area, (62, 8), &self.title, 21, Weight::Bold, &INK)?;
@@ -136,12 +132,7 @@ impl MapCells<'_> {
     }
 }
 
-fn colour_bar<B: DrawingBackend>(
-    area: &PanelArea<B>,
-    (x, y): (i32, i32),
-    height: i32,
-    colours: ColourMap,
-) -> Result<(), PictureError> {
+fn colour_bar<B: DrawingBackend>(area: &PanelArea<B>, (x, y): (i32, i32), height: i32, colours: ColourMap) -> Painted {
     const WIDTH: i32 = 14;
     for row in 0..height {
         let [r, g, b] = colours.colour(1.0 - row as f32 / (height - 1).max(1) as f32);
@@ -155,7 +146,7 @@ fn colour_bar<B: DrawingBackend>(
     text::line(area, (x, y - 24), "\u{39b}", 17, Weight::Normal, &INK)
 }
 
-fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Result<(), PictureError> {
+fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Painted {
     // The legend takes the space of the colour bar in other panels: the title stands left of it.
     let (width, _) = area.dim_in_pixel();
     let mut x = width as i32 - LEGEND_MARGIN;

@@ -1,11 +1,10 @@
 //! The picture of all panels, drawn by [`render`] and [`render_svg`].
 
-use super::canvas::{Drawing, FAINT_INK, INK, PAPER, PanelArea, PictureError};
-use super::inputs::InputMap;
+use super::canvas::{FAINT_INK, INK, PAPER, Painted, PanelArea};
 use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
-use super::text;
+use super::{Drawing, InputMap, PictureError, text};
 use crate::evaluate::failure::Ghost;
 use crate::evaluate::{Metrics, eta_text, squared_error};
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
@@ -55,12 +54,7 @@ impl DetectedCells {
     /// Detects in both maps. `scale` is that of their Lambda.
     /// # Errors
     /// [`Cfar::check_map`].
-    pub fn of(
-        cfar: Cfar,
-        scale: LambdaScale,
-        target: &RangeAngleMap,
-        output: &RangeAngleMap,
-    ) -> Result<Self, CfarError> {
+    pub fn of(cfar: Cfar, scale: LambdaScale, [target, output]: [&RangeAngleMap; 2]) -> Result<Self, CfarError> {
         let detect = |map| Ok(cfar.detect_lambda(map, scale)?.as_map());
         Ok(DetectedCells { cfar, target: detect(target)?, output: detect(output)? })
     }
@@ -98,7 +92,7 @@ impl Drawing for Panels<'_> {
         (WIDTH, HEIGHT)
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
+    fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Painted {
         root.fill(&PAPER)?;
         self.header(root)?;
         let (field_width, field_height) = (LEFT - MARGIN - 8, 396);
@@ -129,7 +123,7 @@ impl Drawing for Panels<'_> {
 }
 
 impl<'a> Panels<'a> {
-    fn header<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Result<(), PictureError> {
+    fn header<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Painted {
         let name = if self.scene.name.is_empty() { "Unnamed scene" } else { &self.scene.name };
         let name: String = name.chars().filter(|c| !c.is_control()).take(200).collect();
         let name = text::fitted(root, &name, 34, text::Weight::Bold, (LEFT - MARGIN) as u32)?;
@@ -187,7 +181,7 @@ impl<'a> Panels<'a> {
     }
 
     /// The three figures of the tables for this scene, or the echoes found in a recording, then the notes.
-    fn figures_and_notes<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Result<(), PictureError> {
+    fn figures_and_notes<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Painted {
         if let Some(found) = self.found {
             text::line(area, (0, 0), &strongest_of(found), 20, text::Weight::Bold, &INK)?;
             return text::paragraphs(area, (0, 40), &self.scene.notes, 18, &INK);

@@ -1,10 +1,9 @@
 //! Pictures of recordings: the panels of a scene, or curves over direction where there is one snapshot.
 
-use super::compose::{PictureFormat, Style, carrier_words};
-use super::directions::{Curve, DirectionAxis, Mark};
-use super::error::ComposeError;
-use super::inputs::{InputMap, layout_samples};
-use super::{DetectedCells, Panels};
+use super::compose::carrier_words;
+use super::error::Composed;
+use super::inputs::layout_samples;
+use super::{ComposeError, Curve, DetectedCells, DirectionAxis, InputMap, Mark, Panels, PictureFormat, Style};
 use crate::maps::{LogMap, LogMaps, Normalisation, Spectrum, channels_map};
 use crate::radar::{BuiltArray, Decibels, End, LayoutKind, Radar};
 use crate::reconstruct::found::reconstruct_and_find;
@@ -48,31 +47,17 @@ pub fn compose_recording(
     method: &dyn Reconstructor,
     style: &Style,
     format: PictureFormat,
-) -> Result<Vec<u8>, ComposeError> {
-    if recording.is_snapshot() {
-        curves(recording, method, style, format)
-    } else {
-        panels(recording, method, style, format)
-    }
+) -> Composed {
+    let composed = if recording.is_snapshot() { curves } else { panels };
+    composed(recording, method, style, format)
 }
 
 fn request(recording: &Recording, style: &Style, heard: Option<Arc<LayoutSamples>>) -> Request {
-    let snapshot_range_metres = recording.range_metres;
-    Request {
-        noise: NoisePrior::UNKNOWN,
-        normalisation: style.normalisation,
-        snapshot_range_metres,
-        heard,
-        ..Request::default()
-    }
+    let (normalisation, snapshot_range_metres) = (style.normalisation, recording.range_metres);
+    Request { noise: NoisePrior::UNKNOWN, normalisation, snapshot_range_metres, heard, ..Request::default() }
 }
 
-fn panels(
-    recording: &Recording,
-    method: &dyn Reconstructor,
-    style: &Style,
-    format: PictureFormat,
-) -> Result<Vec<u8>, ComposeError> {
+fn panels(recording: &Recording, method: &dyn Reconstructor, style: &Style, format: PictureFormat) -> Composed {
     let radar = &recording.radar;
     let ([first, last], full) = maps_of(recording);
     let shown = (style.layout.as_ref(), style.normalisation);
@@ -82,15 +67,12 @@ fn panels(
     let target = full.as_ref().map(|map| map.normalise(style.normalisation));
     let detect = |cfar| {
         let (Some(full), Some(target)) = (&full, &target) else { return Err(ComposeError::DetectorAlone) };
-        Ok(DetectedCells::of(cfar, full.scale(style.normalisation), target, &output.lambda)?)
+        Ok(DetectedCells::of(cfar, full.scale(style.normalisation), [target, &output.lambda])?)
     };
     let detected = style.cfar.map(detect).transpose()?;
-    let scene = Scene {
-        name: recording.name.clone(),
-        notes: recording.notes.clone(),
-        objects: found.iter().take(MAX_DRAWN_DETECTIONS).map(|f| Object::Point(point(f))).collect(),
-        ..Scene::default()
-    };
+    let (name, notes) = (recording.name.clone(), recording.notes.clone());
+    let objects = found.iter().take(MAX_DRAWN_DETECTIONS).map(|f| Object::Point(point(f))).collect();
+    let scene = Scene { name, notes, objects, ..Scene::default() };
     let carrier = carrier_words(radar);
     let missing = match recording.missing.len() {
         0 => String::new(),
@@ -120,12 +102,7 @@ fn point(found: &Detection) -> Point {
     Point::new(x_metres, y_metres)
 }
 
-fn curves(
-    recording: &Recording,
-    method: &dyn Reconstructor,
-    style: &Style,
-    format: PictureFormat,
-) -> Result<Vec<u8>, ComposeError> {
+fn curves(recording: &Recording, method: &dyn Reconstructor, style: &Style, format: PictureFormat) -> Composed {
     let radar = &recording.radar;
     let ends = recording.two_ends();
     let in_decibels = Style { normalisation: Normalisation::DynamicRange(CURVE_RANGE), ..style.clone() };
@@ -148,10 +125,8 @@ fn curves(
     let name = format!("{} of {} + {} elements", method.name(), radar.end_elements, radar.end_elements);
     curves.push(Curve { name, points: over_degrees(radar, decibels), colour: METHOD });
     let range = recording.range_metres.unwrap_or_default();
-    let found: Vec<Mark> = found
-        .iter()
-        .map(|f| Mark { angle_degrees: degrees(f.cos_theta), below_strongest_db: f.relative_power.0 })
-        .collect();
+    let mark = |f: &Detection| Mark { angle_degrees: degrees(f.cos_theta), below_strongest_db: f.relative_power.0 };
+    let found: Vec<Mark> = found.iter().map(mark).collect();
     let about =
         format!("one snapshot at about {range} m, {} elements; found by {}: stems", radar.elements, method.name());
     let picture = DirectionAxis { name: &recording.name, about: &about, curves: &curves, found: &found };

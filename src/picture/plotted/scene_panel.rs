@@ -1,6 +1,6 @@
 //! The half plane ahead of the array from above, in metres: the scene, or a map projected onto it (thesis figure 2-12).
 
-use super::canvas::{FAINT_INK, HAIRLINE, INK, PAPER, PanelArea, PictureError};
+use super::canvas::{FAINT_INK, HAIRLINE, INK, PAPER, Painted, PanelArea, PictureError};
 use super::text::{self, Weight};
 use crate::maps::{RangeAngleMap, cartesian::project};
 use crate::picture::ColourMap;
@@ -20,12 +20,7 @@ pub(super) enum SceneContent<'a> {
 }
 
 /// Draws the half plane out to the maximum range, equal scale on both axes, with range rings, angle spokes and the array.
-pub(super) fn draw<B: DrawingBackend>(
-    area: &PanelArea<B>,
-    radar: &Radar,
-    title: &str,
-    content: SceneContent,
-) -> Result<(), PictureError> {
+pub(super) fn draw<B: DrawingBackend>(area: &PanelArea<B>, radar: &Radar, title: &str, shown: SceneContent) -> Painted {
     text::line(area, (8, 0), title, 21, Weight::Bold, &INK)?;
     let max = radar.max_range_metres();
     let (width, height) = area.dim_in_pixel();
@@ -40,7 +35,7 @@ pub(super) fn draw<B: DrawingBackend>(
         .x_label_area_size(labels_x)
         .y_label_area_size(labels_y)
         .build_cartesian_2d(-max..max, -behind..tall - behind)?;
-    if let SceneContent::Map(map, colours) = content {
+    if let SceneContent::Map(map, colours) = shown {
         draw_map(&mut chart, radar, map, colours, metres)?;
     }
     chart
@@ -57,13 +52,13 @@ pub(super) fn draw<B: DrawingBackend>(
         .axis_style(HAIRLINE)
         .draw()?;
 
-    let line = match content {
+    let line = match shown {
         SceneContent::Scene(_) => HAIRLINE.mix(1.0),
         SceneContent::Map(..) => HAIRLINE.mix(0.35),
     };
     draw_rings_and_spokes(&mut chart, max, line)?;
     draw_array(&mut chart, radar)?;
-    if let SceneContent::Scene(scene) = content {
+    if let SceneContent::Scene(scene) = shown {
         draw_objects(&mut chart, scene, max)?;
     }
     Ok(())
@@ -77,7 +72,7 @@ fn draw_map<B: DrawingBackend>(
     map: &RangeAngleMap,
     colours: ColourMap,
     metres: f64,
-) -> Result<(), PictureError> {
+) -> Painted {
     let max = radar.max_range_metres();
     let rows = (max / metres) as usize;
     let lambda = project(radar, map, rows).lambda;
@@ -90,11 +85,7 @@ fn draw_map<B: DrawingBackend>(
     Ok(())
 }
 
-fn draw_rings_and_spokes<B: DrawingBackend>(
-    chart: &mut Chart<B>,
-    max: f64,
-    line: RGBAColor,
-) -> Result<(), PictureError> {
+fn draw_rings_and_spokes<B: DrawingBackend>(chart: &mut Chart<B>, max: f64, line: RGBAColor) -> Painted {
     let arc = |range: f64, style: ShapeStyle| {
         let at = move |degree: i32| {
             let angle = f64::from(degree) * PI / 180.0;
@@ -113,7 +104,7 @@ fn draw_rings_and_spokes<B: DrawingBackend>(
     Ok(())
 }
 
-fn draw_array<B: DrawingBackend>(chart: &mut Chart<B>, radar: &Radar) -> Result<(), PictureError> {
+fn draw_array<B: DrawingBackend>(chart: &mut Chart<B>, radar: &Radar) -> Painted {
     let element = |n: usize| (radar.element_x_metres(n), 0.0);
     let whole = LineSeries::new([element(0), element(radar.elements - 1)], ARRAY.stroke_width(5));
     chart.draw_series(whole)?;
@@ -123,7 +114,7 @@ fn draw_array<B: DrawingBackend>(chart: &mut Chart<B>, radar: &Radar) -> Result<
     Ok(())
 }
 
-fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64) -> Result<(), PictureError> {
+fn draw_objects<B: DrawingBackend>(chart: &mut Chart<B>, scene: &Scene, max: f64) -> Painted {
     for object in &scene.objects {
         let (radius, [red, green, blue]) = match object {
             Object::Point(_) => (5, [24, 92, 168]),

@@ -1,6 +1,6 @@
 //! Text on pictures, in fonts that come with the program: a picture looks the same on every machine.
 
-use super::canvas::{PanelArea, PictureError};
+use super::canvas::{Painted, PanelArea, PictureError};
 use super::lettering::{BOLD, NORMAL};
 use crate::platform::register_font;
 use plotters::prelude::*;
@@ -18,8 +18,8 @@ pub(super) const FAMILY: &str = "sans-serif";
 /// Makes the embedded fonts known to plotters; does nothing the second time.
 /// # Errors
 /// [`PictureError`] when an embedded font can't be read.
-pub fn register_fonts() -> Result<(), PictureError> {
-    static DONE: OnceLock<Result<(), PictureError>> = OnceLock::new();
+pub fn register_fonts() -> Painted {
+    static DONE: OnceLock<Painted> = OnceLock::new();
     DONE.get_or_init(|| {
         let broken = |_| PictureError::new("the embedded font is broken");
         register_font(FAMILY, FontStyle::Normal, NORMAL).map_err(broken)?;
@@ -43,7 +43,7 @@ pub(super) fn line<B: DrawingBackend>(
     size: i32,
     weight: Weight,
     colour: &RGBColor,
-) -> Result<(), PictureError> {
+) -> Painted {
     Ok(area.draw(&Text::new(text.to_owned(), at, style(size, weight, colour)))?)
 }
 
@@ -70,7 +70,7 @@ pub(super) fn paragraphs<B: DrawingBackend>(
     text: &str,
     size: i32,
     colour: &RGBColor,
-) -> Result<(), PictureError> {
+) -> Painted {
     let (width, height) = area.dim_in_pixel();
     let style = style(size, Weight::Normal, colour);
     let step = size * 4 / 3;

@@ -45,8 +45,7 @@ impl<'a> GridCells<'a> {
     /// The reflector in `cell`, where it is in the grid and a reflector can stand there: not at the array's centre, nor on an element.
     fn reflector(&self, cell: GridCell) -> Option<Reflector> {
         let (range, cos) = (*self.range_metres.get(cell.bin)?, self.directions.get(cell.direction)?.cos_theta);
-        let place =
-            Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt(), reflectivity: 1.0 };
+        let place = Reflector::at([range * cos, range * (1.0 - cos * cos).max(0.0).sqrt()], 1.0);
         (range > 0.0 && touched_element(self.radar, &place).is_none()).then_some(place)
     }
 

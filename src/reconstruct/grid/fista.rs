@@ -3,14 +3,13 @@
 use super::backprojector::{Backprojector, RangeWindow, no_tables};
 use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
-use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
-use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::family::Family;
+use crate::reconstruct::error::Result;
 use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
 use crate::reconstruct::significance::decades_above_cells;
+use crate::reconstruct::{About, Family, Hears, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{ArrayEcho, TwoEnds};
+use crate::task::Task;
 use ndarray::{Array2, Zip};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -103,22 +102,16 @@ enum Penalty {
 }
 
 impl Problem {
-    fn new(
-        cells: &GridCells<'_>,
-        chosen: &[GridCell],
-        ends: &TwoEnds,
-        penalty: Penalty,
-        request: &Request,
-    ) -> Result<Self, ReconstructError> {
+    fn new(cells: &GridCells<'_>, chosen: &[GridCell], ends: &TwoEnds, penalty: Penalty, task: &Task) -> Result<Self> {
         let atoms: Vec<ArrayEcho> = chosen.par_iter().filter_map(|cell| cells.echo(*cell)).collect();
-        request.task.check()?;
-        request.task.set_progress(0.1);
+        task.check()?;
+        task.set_progress(0.1);
         let samples = ends.flat();
         let heard: Vec<Complex64> = atoms.par_iter().map(|a| a.correlate(&samples)).collect();
         let count = atoms.len();
         let mut gram = vec![Complex64::default(); count * count];
         gram.par_chunks_mut(count.max(1)).enumerate().try_for_each(|(i, row)| {
-            request.task.check()?;
+            task.check()?;
             for (j, cell) in row.iter_mut().enumerate() {
                 *cell = atoms[i].inner(&atoms[j]);
             }
@@ -171,12 +164,7 @@ impl Problem {
     }
 
     /// Monotone FISTA; `watch` is called with the objective after every iteration.
-    fn solve(
-        &self,
-        iterations: usize,
-        request: &Request,
-        mut watch: impl FnMut(f64),
-    ) -> Result<Vec<Complex64>, ReconstructError> {
+    fn solve(&self, iterations: usize, request: &Request, mut watch: impl FnMut(f64)) -> Result<Vec<Complex64>> {
         let n = self.atoms.len();
         let step = 1.0 / self.lipschitz();
         let (mut x, mut gram_x) = (vec![Complex64::default(); n], vec![Complex64::default(); n]);
@@ -186,12 +174,9 @@ impl Problem {
         for iteration in 0..iterations {
             request.task.check()?;
             request.task.set_progress(0.2 + 0.7 * iteration as f32 / iterations as f32);
-            let next: Vec<Complex64> = ahead
-                .iter()
-                .zip(&gram_ahead)
-                .zip(&self.heard)
-                .map(|((a, g), h)| shrink(a - (g - h) * step, self.penalty * step))
-                .collect();
+            let slopes = gram_ahead.iter().zip(&self.heard).map(|(g, h)| g - h);
+            let stepped = ahead.iter().zip(slopes).map(|(a, slope)| a - slope * step);
+            let next: Vec<Complex64> = stepped.map(|v| shrink(v, self.penalty * step)).collect();
             let gram_next = self.gram_times(&next);
             let objective = self.objective(&next, &gram_next);
             let next_momentum = (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) / 2.0;
@@ -243,11 +228,11 @@ impl Reconstructor for Fista {
         Hears::Halves
     }
 
-    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+    fn check_radar(&self, radar: &Radar) -> Result<()> {
         no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         let cells = GridCells::heard_by(radar, ends);
         let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
         let count = self.candidates.min(MOST_CANDIDATES);
@@ -258,7 +243,7 @@ impl Reconstructor for Fista {
         let (bins, directions) = cells.dim();
         let least = 10f64.powf(decades_above_cells(noise_variance, bins * directions));
         let penalty = Penalty::Part { part: self.penalty, least };
-        let mut problem = Problem::new(&cells, &chosen, ends, penalty, request)?;
+        let mut problem = Problem::new(&cells, &chosen, ends, penalty, &request.task)?;
         let mut x = problem.solve(self.iterations, request, |_| {})?;
         for _ in 0..ADDING_ROUNDS {
             let left = backprojector.amplitudes(&problem.left(radar, ends, &x));
@@ -268,16 +253,12 @@ impl Reconstructor for Fista {
                 break;
             }
             chosen.extend(more);
-            problem = Problem::new(&cells, &chosen, ends, Penalty::Known(penalty), request)?;
+            problem = Problem::new(&cells, &chosen, ends, Penalty::Known(penalty), &request.task)?;
             x = problem.solve(self.iterations, request, |_| {})?;
         }
-        let mut found: Vec<Gained> = problem
-            .atoms
-            .iter()
-            .zip(&x)
-            .filter(|(_, x)| x.norm_sqr() > 0.0)
-            .map(|(atom, x)| Gained { reflector: atom.reflector, gain: x / atom.norm() })
-            .collect();
+        let gained = |(atom, x): (&ArrayEcho, &Complex64)| Gained { reflector: atom.reflector, gain: x / atom.norm() };
+        let kept = problem.atoms.iter().zip(&x).filter(|(_, x)| x.norm_sqr() > 0.0);
+        let mut found: Vec<Gained> = kept.map(gained).collect();
         found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
         found.truncate(MOST_REFLECTORS_DRAWN);
         Ok(of_echoes(radar, ends, &found, noise_variance, request))
@@ -317,7 +298,8 @@ mod tests {
         let cells = GridCells::heard_by(&radar, &ends);
         let heard = Backprojector::new(&radar, &cells, RangeWindow::None).amplitudes(&ends);
         let chosen = candidates(&radar, &cells, heard, 300, &[], 0.0);
-        let problem = Problem::new(&cells, &chosen, &ends, Penalty::Part { part: 0.02, least: 0.0 }, &request).unwrap();
+        let problem =
+            Problem::new(&cells, &chosen, &ends, Penalty::Part { part: 0.02, least: 0.0 }, &request.task).unwrap();
         let mut objectives = vec![0.0];
         let x = problem.solve(150, &request, |o| objectives.push(o)).unwrap();
         assert!(objectives.windows(2).all(|w| w[1] <= w[0]), "{objectives:?}");

@@ -4,7 +4,7 @@ use super::cells::GridCells;
 use crate::maps::RangeAngleMap;
 use crate::radar::{Layout, Pair, Radar};
 use crate::reconstruct::answer::Request;
-use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::error::{ReconstructError, Result};
 use crate::reconstruct::noise::noise_variance;
 use crate::reconstruct::power::{focused_gain, lambda_of_power};
 use crate::reconstruct::profiles::Profiles;
@@ -29,15 +29,8 @@ pub fn layout_matched_filter(
     layout: &Layout,
     samples: ArrayView2<'_, Complex64>,
     request: &Request,
-) -> Result<RangeAngleMap, ReconstructError> {
-    let expected = [layout.len(), radar.samples];
-    if samples.shape() != expected {
-        return Err(ReconstructError::Shape {
-            what: "samples of the layout",
-            found: samples.shape().to_vec(),
-            expected: expected.to_vec(),
-        });
-    }
+) -> Result<RangeAngleMap> {
+    ReconstructError::check_shape("samples of the layout", samples.shape(), [layout.len(), radar.samples])?;
     let peak = samples.iter().fold(0.0f64, |m, v| m.max(v.norm()));
     if peak == 0.0 || layout.is_empty() {
         return Ok(RangeAngleMap { lambda: Array2::zeros((radar.samples, radar.elements)) });

@@ -2,13 +2,11 @@
 
 use super::backprojector::{Backprojector, RangeWindow, no_tables};
 use super::cells::GridCells;
-use super::layout_filter::layout_matched_filter;
 use crate::radar::{Layout, Radar};
-use crate::reconstruct::answer::{Reconstruction, Request};
-use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::error::Result;
 use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::power::{focused_gain, of_power};
-use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
+use crate::reconstruct::{About, Hears, Reconstruction, Reconstructor, Request, layout_matched_filter};
 use crate::signal::TwoEnds;
 use ndarray::Zip;
 
@@ -52,7 +50,7 @@ impl Reconstructor for MatchedFilter {
         if *self == MatchedFilter::Coherent { 1 } else { 2 }
     }
 
-    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+    fn check_radar(&self, radar: &Radar) -> Result<()> {
         no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
@@ -60,7 +58,7 @@ impl Reconstructor for MatchedFilter {
         if *self == MatchedFilter::Coherent { Hears::Layouts } else { Hears::Ends }
     }
 
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         if let Some(heard) = &request.heard {
             let layout = Layout::of_numbers(radar, &heard.layout);
             let lambda = layout_matched_filter(radar, &layout, heard.samples.view(), request)?;

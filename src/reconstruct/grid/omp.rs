@@ -4,13 +4,11 @@ use super::backprojector::{Backprojector, RangeWindow, no_tables};
 use super::cells::GridCells;
 use super::pursuit::{MOST_RELAXED, Pick, Pursuit, energy, unit_gains};
 use crate::radar::Radar;
-use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
-use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::family::Family;
+use crate::reconstruct::error::Result;
 use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
 use crate::reconstruct::significance::decades_above_cells;
+use crate::reconstruct::{About, Family, Hears, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip, s};
 use num_complex::Complex64;
@@ -49,13 +47,7 @@ const ROUNDING_ENERGY: f64 = 1e-22;
 const LEAST_OF_ALL: f64 = 1e-10;
 
 impl Omp {
-    fn pursue(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        noise_variance: f64,
-        request: &Request,
-    ) -> Result<Vec<Gained>, ReconstructError> {
+    fn pursue(&self, radar: &Radar, ends: &TwoEnds, noise_variance: f64, request: &Request) -> Result<Vec<Gained>> {
         let samples = ends.flat();
         let heard = ends.hears().into_iter().filter(|hears| *hears).count() * radar.samples;
         let noise = noise_variance * heard as f64 * 1.1;
@@ -150,11 +142,11 @@ impl Reconstructor for Omp {
         Hears::Halves
     }
 
-    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+    fn check_radar(&self, radar: &Radar) -> Result<()> {
         no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         let noise_variance = ends_noise_variance(radar, ends, request.noise);
         let found = self.pursue(radar, ends, noise_variance, request)?;
         Ok(of_echoes(radar, ends, &found, noise_variance, request))

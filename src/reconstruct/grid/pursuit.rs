@@ -3,7 +3,7 @@
 use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
 use crate::reconstruct::answer::Request;
-use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::error::Result;
 use crate::signal::ArrayEcho;
 use faer::Mat;
 use faer::linalg::solvers::SolveLstsq;
@@ -67,11 +67,9 @@ impl<'a> Pursuit<'a> {
 
     /// The free cell with the largest value of `heard`.
     pub fn strongest(&self, heard: &Array2<f64>) -> Option<Pick> {
-        let (cell, _) = heard
-            .indexed_iter()
-            .map(|((bin, direction), power)| (GridCell { bin, direction }, power))
-            .filter(|(cell, _)| !self.is_taken(*cell) && self.cells.may_hold(*cell))
-            .max_by(|a, b| a.1.total_cmp(b.1))?;
+        let cells = heard.indexed_iter().map(|((bin, direction), power)| (GridCell { bin, direction }, power));
+        let free = cells.filter(|(cell, _)| !self.is_taken(*cell) && self.cells.may_hold(*cell));
+        let (cell, _) = free.max_by(|a, b| a.1.total_cmp(b.1))?;
         Some(Pick { cell, atom: self.cells.echo(cell)? })
     }
 
@@ -122,7 +120,7 @@ impl<'a> Pursuit<'a> {
     }
 
     /// Moves all picks until they stay where they are, or the residual's energy is at most `enough`.
-    pub fn settle(&mut self, samples: &[Complex64], enough: f64, request: &Request) -> Result<(), ReconstructError> {
+    pub fn settle(&mut self, samples: &[Complex64], enough: f64, request: &Request) -> Result<()> {
         for round in 0..MOST_ROUNDS {
             request.task.check()?;
             let before = energy(&self.residual);

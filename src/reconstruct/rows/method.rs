@@ -6,14 +6,13 @@ use super::row::RowSnapshot;
 use crate::maps::peaks::{Peak as MapPeak, peaks as map_peaks};
 use crate::maps::{Spectrum, range_transform};
 use crate::radar::{End, Radar};
-use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::coherent::{Peak, explained, gains};
 use crate::reconstruct::echoes::of_echoes;
-use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::error::Result;
 use crate::reconstruct::hearing::{Hearing, ends_noise_variance};
 use crate::reconstruct::power::of_power;
-use crate::reconstruct::reconstructor::{About, Reconstructor};
 use crate::reconstruct::seen::{Direction, directions, no_plane_waves, row_ranges_metres, too_many_folds};
+use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
@@ -70,12 +69,12 @@ impl Reconstructor for RowMethod {
         About { name, description, told: if render == Render::Peaks { TOLD_PEAKS } else { ASSUMPTIONS }, eta }
     }
 
-    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
+    fn check_radar(&self, radar: &Radar) -> Result<()> {
         let why = no_plane_waves(radar).or_else(|| too_many_folds(radar));
         why.map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
+    fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         let noise_variance = ends_noise_variance(radar, ends, request.noise);
         if self.render == Render::Spectrum {
             return Ok(of_power(radar, self.power(radar, ends, noise_variance, request)?, noise_variance, request));
@@ -83,7 +82,7 @@ impl Reconstructor for RowMethod {
         // The task reports the progress of all looks, not of one.
         let quiet = Request { task: request.task.quiet(), ..request.clone() };
         let hearing = Hearing::beneath(radar, ends, request.noise);
-        let look = |left: &TwoEnds| -> Result<Vec<Peak>, ReconstructError> {
+        let look = |left: &TwoEnds| -> Result<Vec<Peak>> {
             let noise_variance = hearing.ends_noise_variance(radar, left);
             Ok(self.peaks(radar, &self.power(radar, left, noise_variance, &quiet)?, noise_variance))
         };
@@ -116,13 +115,7 @@ fn not_plane(radar: &Radar) -> f64 {
 }
 
 impl RowMethod {
-    fn power(
-        &self,
-        radar: &Radar,
-        ends: &TwoEnds,
-        noise_variance: f64,
-        request: &Request,
-    ) -> Result<Array2<f64>, ReconstructError> {
+    fn power(&self, radar: &Radar, ends: &TwoEnds, noise_variance: f64, request: &Request) -> Result<Array2<f64>> {
         let [first, last] = End::BOTH.map(|end| self.end_power(radar, ends, end, noise_variance, request));
         Ok(joined(radar, &[first?, last?]))
     }
@@ -162,7 +155,7 @@ impl RowMethod {
         end: End,
         sample_noise_variance: f64,
         request: &Request,
-    ) -> Result<Array2<f64>, ReconstructError> {
+    ) -> Result<Array2<f64>> {
         let signal = BeatSignal { samples: ends.end(end).clone() };
         let snapshots = range_transform(radar, &signal).profiles.t().as_standard_layout().into_owned();
         let (bins, columns, elements) = (radar.samples, radar.elements, radar.end_elements);

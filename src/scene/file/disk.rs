@@ -1,8 +1,7 @@
 //! Scene files on disk.
 
-use super::content::{MAX_FILE_BYTES, SceneFile, SceneFileError, SceneFormat};
 use super::read::from_bytes;
-use super::write::{to_toml, to_toml_beside};
+use super::{MAX_FILE_BYTES, SceneFile, SceneFileError, SceneFormat, to_toml, to_toml_beside};
 use crate::files::{read_bounded, write_bytes};
 use crate::radar::Radar;
 use crate::scene::npz;

@@ -77,10 +77,8 @@ fn cross_section(table: &mut DeTable<'_>, kind: &str) -> Result<Option<f64>, (Op
     }
     let dbsm = f64::deserialize(ValueDeserializer::from(value)).map_err(|e| (span.clone(), one_line(e.message())))?;
     if dbsm.is_nan() || dbsm.abs() > MAX_DBSM {
-        return Err((
-            span,
-            format!("{KEY} is {dbsm}; expected -2000 to 2000 dBsm: 0 is 1 square metre, reflectivity 1"),
-        ));
+        let expected = "expected -2000 to 2000 dBsm: 0 is 1 square metre, reflectivity 1";
+        return Err((span, format!("{KEY} is {dbsm}; {expected}")));
     }
     Ok(Some(dbsm))
 }

@@ -14,6 +14,8 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 /// The latest format of scenes that this program knows.
 pub(super) const FORMAT: i64 = 2;
 
+type ReadScene<T> = Result<(SceneFile, Option<T>), SceneTextError>;
+
 /// Most values and tables of a text, counted by the punctuation marks that come with each: the largest scene needs some three million.
 const MAX_MARKS: usize = 4_000_000;
 
@@ -24,7 +26,7 @@ pub fn from_toml(text: &str) -> Result<SceneFile, SceneTextError> {
     Ok(checked::<IgnoredAny>(text, None)?.0)
 }
 
-fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneTextError> {
+fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> ReadScene<T> {
     let (file, other) = parse(text, beside)?;
     file.scene.validate(&file.radar).map_err(|error| {
         let span = match &error {
@@ -46,16 +48,13 @@ fn checked<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Sce
 /// The scene need not be one that can be simulated: a user may have left a point on an element of the array.
 /// # Errors
 /// As [`from_toml`].
-pub fn from_toml_beside<T: DeserializeOwned>(text: &str, key: &str) -> Result<(SceneFile, Option<T>), SceneTextError> {
+pub fn from_toml_beside<T: DeserializeOwned>(text: &str, key: &str) -> ReadScene<T> {
     let (file, other) = parse(text, Some(key))?;
     file.scene.check_count().map_err(|e| SceneTextError::at(text, 0, e.to_string()))?;
     Ok((file, other))
 }
 
-pub(super) fn from_bytes<T: DeserializeOwned>(
-    bytes: &[u8],
-    beside: Option<&str>,
-) -> Result<(SceneFile, Option<T>), SceneTextError> {
+pub(super) fn from_bytes<T: DeserializeOwned>(bytes: &[u8], beside: Option<&str>) -> ReadScene<T> {
     checked(utf8(bytes)?, beside)
 }
 
@@ -68,7 +67,7 @@ fn table(text: &str) -> Result<Spanned<DeTable<'_>>, SceneTextError> {
     DeTable::parse(text).map_err(|e| of_toml(text, &e, 0))
 }
 
-fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(SceneFile, Option<T>), SceneTextError> {
+fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> ReadScene<T> {
     /// All keys but the objects, which are read one by one. The field of objects stands here for the message about an unknown key. So does the field
     /// of the recording under a scene, which belongs to the app.
     #[derive(Deserialize)]
@@ -108,20 +107,9 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> Result<(Scene
         SceneTextError::at(text, span_of(text, "radar", None, error.field()).start, error.to_string())
     })?;
     let objects = entries.map(|e| objects(text, e)).transpose()?.unwrap_or_default();
-    Ok((
-        SceneFile {
-            scene: Scene {
-                name: head.name,
-                notes: head.notes,
-                noise_seed: head.noise_seed,
-                shadows: head.shadows,
-                disturbances: head.disturbances,
-                objects,
-            },
-            radar: head.radar,
-        },
-        other,
-    ))
+    let Head { name, notes, noise_seed, shadows, radar, disturbances, .. } = head;
+    let scene = Scene { name, notes, noise_seed, shadows, disturbances, objects };
+    Ok((SceneFile { scene, radar }, other))
 }
 
 /// Refuses a scene of a later format before its unknown keys.

@@ -156,12 +156,9 @@ impl PlacementField {
         loop {
             let first = self.line(rng.random_range(0.0..360.0), self.spacing(rng, 2.0), 20..=80, rng);
             let Object::Line(first) = first else { continue };
-            let second = Line {
-                direction_degrees: (first.direction_degrees + 90.0) % 360.0,
-                spacing_metres: self.spacing(rng, 2.0),
-                count: rng.random_range(20..=80),
-                ..first.clone()
-            };
+            let direction_degrees = (first.direction_degrees + 90.0) % 360.0;
+            let (spacing_metres, count) = (self.spacing(rng, 2.0), rng.random_range(20..=80));
+            let second = Line { direction_degrees, spacing_metres, count, ..first.clone() };
             if self.holds(first.end_metres()) && self.holds(second.end_metres()) {
                 return vec![Object::Line(first), Object::Line(second)];
             }

@@ -15,17 +15,9 @@ pub(super) type GroundPlace = [f64; 2];
 pub(super) enum Strengths {
     Equal,
     Rayleigh,
-    LogNormal {
-        deviation_decibels: f64,
-    },
-    /// A few strong points among many weak ones.
-    FewStrong {
-        share: f64,
-        weak_decibels: f64,
-    },
-    Uniform {
-        range_decibels: f64,
-    },
+    LogNormal { deviation_decibels: f64 },
+    FewStrong { share: f64, weak_decibels: f64 },
+    Uniform { range_decibels: f64 },
 }
 
 impl Strengths {

@@ -28,11 +28,7 @@ pub enum SimdError {
     #[error("{SIMD_VARIABLE} is \"{0}\"; expected portable, avx2 or avx512")]
     Unknown(String),
     #[error("{SIMD_VARIABLE} asks for {asked}, which this processor lacks; it has {}", names(has))]
-    Missing {
-        asked: Simd,
-        /// All that there is, slowest first.
-        has: Vec<Simd>,
-    },
+    Missing { asked: Simd, has: Vec<Simd> },
 }
 
 fn names(sets: &[Simd]) -> String {

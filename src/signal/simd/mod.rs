@@ -266,7 +266,7 @@ impl<T: Real, const W: usize> Sub for ComplexLanes<T, W> {
 
 /// The sum of `terms[k] * x^k`, by Horner's rule.
 #[inline(always)]
-pub(super) fn horner<T: Real, const W: usize, const FMA: bool>(terms: &[f64], x: Lanes<T, W>) -> Lanes<T, W> {
+pub(crate) fn horner<T: Real, const W: usize, const FMA: bool>(terms: &[f64], x: Lanes<T, W>) -> Lanes<T, W> {
     let mut value = Lanes::splat(T::of(terms[terms.len() - 1]));
     for term in terms[..terms.len() - 1].iter().rev() {
         value = value.mul_add::<FMA>(x, Lanes::splat(T::of(*term)));
