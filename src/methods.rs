@@ -112,6 +112,9 @@ pub struct UnknownMethod {
 }
 
 /// The method called `name`.
+///
+/// # Errors
+/// [`UnknownMethod`] lists the known names.
 pub fn by_name(name: &str) -> Result<Arc<dyn Reconstructor>, UnknownMethod> {
     let all = all();
     let known = || all.iter().map(|m| m.name()).collect::<Vec<_>>().join(", ");

@@ -51,6 +51,7 @@ pub struct SharedView {
     pub range_angle_part: VisiblePart,
     pub cartesian_part: VisiblePart,
     pub target_eta: f32,
+    /// The detector in place of the thresholds, if one is in use.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cfar: Option<Cfar>,
     /// eta of the method, where it isn't the method's own.
@@ -92,6 +93,7 @@ impl Default for VisiblePart {
 pub struct LessonPlace {
     /// Name of the lesson.
     pub id: String,
+    /// The step, from 1.
     pub step: usize,
 }
 

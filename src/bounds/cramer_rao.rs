@@ -18,8 +18,11 @@ use num_complex::Complex64;
 /// Standard deviations below which no unbiased estimate of one reflector's position can stay.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionBound {
+    /// Standard deviation of the range from the array's centre, metres.
     pub range_metres: f64,
+    /// Standard deviation of cos(theta).
     pub cos_theta: f64,
+    /// Standard deviation of x, metres.
     pub x_metres: f64,
     /// Standard deviation of y, metres; infinite on the array's axis, where a line array can't tell a small y from none.
     pub y_metres: f64,
@@ -55,6 +58,7 @@ impl PositionBound {
 
 type PositionBounds = Result<Vec<PositionBound>, BoundsError>;
 
+/// A reason for which there is no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum BoundsError {
     #[error(

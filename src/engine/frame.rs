@@ -58,15 +58,20 @@ impl Pictured {
 pub struct ReadyMap {
     /// Lambda, `[range bins, columns]`.
     pub lambda: Arc<RangeAngleMap>,
+    /// Scale from decades of amplitude to Lambda.
     pub scale: LambdaScale,
 }
 
 /// The requested maps and samples of one scene.
 #[derive(Debug, Clone)]
 pub struct EngineFrame {
+    /// Map of the first end, if wanted.
     pub first: Option<ReadyMap>,
+    /// Map of the last end, if wanted.
     pub last: Option<ReadyMap>,
+    /// Map of the whole array, if wanted.
     pub full: Option<ReadyMap>,
+    /// Samples of both ends, if wanted.
     pub ends: Option<Arc<TwoEnds>>,
     /// Whether the maps have the same bits as a command's ([`super::Engine::settle`]), so that figures may be made of them.
     pub settled: bool,

@@ -37,12 +37,14 @@ impl fmt::Display for EngineStage {
     }
 }
 
+/// The outcome of a stage.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StageOutcome {
     Computed(String),
     Skipped(&'static str),
 }
 
+/// One stage of an update.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StageReport {
     pub stage: EngineStage,
@@ -51,6 +53,7 @@ pub struct StageReport {
     pub outcome: StageOutcome,
 }
 
+/// All stages of an update.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct EngineReport {
     pub stages: Vec<StageReport>,
@@ -76,6 +79,7 @@ impl EngineReport {
         }
     }
 
+    /// Whether a stage ran.
     pub fn ran(&self, stage: EngineStage) -> bool {
         self.stages.iter().any(|s| s.stage == stage && matches!(s.outcome, StageOutcome::Computed(_)))
     }

@@ -179,6 +179,9 @@ impl Campaign {
 
     /// [`Campaign::run`] without the rows that exist already: `is_done` tells whether the row of a set, scene and method exists. `empty` are
     /// [`Campaign::empty_rows`].
+    ///
+    /// # Errors
+    /// As [`Campaign::run`].
     pub fn run_rest(
         &self,
         sets: &[SceneSet],
@@ -234,6 +237,9 @@ impl Campaign {
     }
 
     /// Sentences, one a set and method, with the number of scenes whose noise the method was not trained on; none where that number is 0.
+    ///
+    /// # Errors
+    /// [`CampaignError`] names a scene that can't be read.
     pub fn untrained(&self, sets: &[SceneSet], methods: &[&dyn Reconstructor]) -> Result<Vec<String>, CampaignError> {
         let generator = self.generator();
         let mut told = Vec::new();
@@ -267,6 +273,9 @@ impl Campaign {
     }
 
     /// Reads or generates scene `index` of a set, and simulates it.
+    ///
+    /// # Errors
+    /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
         let Case { radar, mut scene } = set.case(&self.radar, generator, index)?;
         let fits = |layout: &Vec<usize>| check_layout(layout, radar.elements).map_err(CampaignError::Refused);

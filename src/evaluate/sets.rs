@@ -40,6 +40,9 @@ pub struct Listed {
 
 impl Listed {
     /// A set called `name` in rows.
+    ///
+    /// # Errors
+    /// [`toml::ser::Error`] for a scene that can't be written as a file.
     pub fn new(name: String, cases: Vec<Case>) -> Result<Listed, toml::ser::Error> {
         let of = |case: &Case| file::to_toml(&SceneFile { scene: case.scene.clone(), radar: case.radar.clone() });
         let texts: Vec<String> = cases.iter().map(of).collect::<Result<_, _>>()?;
@@ -77,6 +80,9 @@ impl FolderError {
 
 impl Folder {
     /// Lists the scene files of `path` without reading them. Files whose names begin with a dot are left out.
+    ///
+    /// # Errors
+    /// [`FolderError`] where there is none.
     pub fn open(path: &Path) -> Result<Folder, FolderError> {
         let mut files = Vec::new();
         for entry in fs::read_dir(path).map_err(FolderError::on(path))? {
@@ -96,6 +102,9 @@ impl Folder {
     }
 
     /// The fingerprint of the files' names and contents, equal only where all are equal.
+    ///
+    /// # Errors
+    /// [`FolderError::Io`] names the file that can't be read.
     pub fn fingerprint(&self) -> Result<String, FolderError> {
         let mut pieces = Vec::new();
         for path in &self.files {
@@ -124,6 +133,9 @@ pub struct Case {
 
 impl SceneSet {
     /// The set called `name` in rows: a kind of scenes, or else a folder.
+    ///
+    /// # Errors
+    /// [`FolderError`] for a folder without a scene.
     pub fn by_name(name: &str) -> Result<SceneSet, FolderError> {
         match name.parse() {
             Ok(kind) => Ok(SceneSet::Generated(kind)),
@@ -146,6 +158,9 @@ impl SceneSet {
     }
 
     /// Scene `index`. `radar` and `generator` are those of generated scenes; a file names its own radar.
+    ///
+    /// # Errors
+    /// [`SceneFileError`] for a file that can't be read as a scene.
     pub fn case(&self, radar: &Radar, generator: &Generator, index: u32) -> Result<Case, SceneFileError> {
         match self {
             SceneSet::Generated(kind) => Ok(Case { radar: radar.clone(), scene: generator.scene(*kind, index) }),

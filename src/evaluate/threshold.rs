@@ -105,6 +105,9 @@ impl ThresholdSearch {
     }
 
     /// The rates at `eta` on `count` further scenes of each kind, which did not choose it.
+    ///
+    /// # Errors
+    /// As [`ThresholdSearch::run`].
     pub fn try_further(
         &self,
         method: &dyn Reconstructor,
@@ -152,6 +155,9 @@ impl ThresholdSearch {
     }
 
     /// Checks the settings before any scene is tried.
+    ///
+    /// # Errors
+    /// [`ThresholdError`] of the first setting that can't be used.
     pub fn check(&self) -> Result<(), ThresholdError> {
         let percent = self.false_alarm_percent;
         if !(percent > 0.0 && percent < 100.0) {

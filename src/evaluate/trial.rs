@@ -44,11 +44,17 @@ pub struct TimedAnswer {
 
 impl Trial {
     /// Simulates `scene` over `floor`; the scene's seed picks the noise.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
         Trial::against(Target::Measured, None, radar, scene, floor, normalisation)
     }
 
     /// [`Trial::new`] with another target, and with the samples of the elements of `layout` beside those of the ends.
+    ///
+    /// # Errors
+    /// As [`Trial::new`].
     pub fn against(
         target: Target,
         layout: Option<&[usize]>,
@@ -75,6 +81,9 @@ impl Trial {
     }
 
     /// Runs `method` on the scene, and judges its answer.
+    ///
+    /// # Errors
+    /// [`ReconstructError`] of the method.
     pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
         request.task.check()?;
         let start = Instant::now();

@@ -7,6 +7,7 @@ use crate::scene::{Reflector, Scene};
 /// Radius around the middle of a blob within which it can be grabbed, in points of the view: blobs are wider than points of the scene.
 pub const BLOB_RADIUS_POINTS: f64 = 12.0;
 
+/// A blob that was hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlobHit {
     pub object: usize,

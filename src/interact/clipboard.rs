@@ -3,6 +3,7 @@
 use crate::radar::Radar;
 use crate::scene::{Object, Scene, SceneError};
 
+/// A reason for which text can't be pasted.
 #[derive(Debug, thiserror::Error)]
 pub enum PasteError {
     #[error(
@@ -15,6 +16,7 @@ pub enum PasteError {
     Scene(#[from] SceneError),
 }
 
+/// Text of `objects`.
 pub fn to_text(objects: Vec<Object>) -> String {
     toml::to_string(&Scene { objects, ..Scene::default() }).unwrap_or_default()
 }

@@ -216,10 +216,12 @@ impl Document {
         self.id
     }
 
+    /// The scene.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.content.scene
     }
 
+    /// The radar that looks at it.
     pub fn radar(&self) -> &Arc<Radar> {
         &self.content.radar
     }
@@ -244,6 +246,7 @@ impl Document {
         format!("{}{}", self.name(), if self.is_modified() { " •" } else { "" })
     }
 
+    /// Whether it differs from what is on disk.
     pub fn is_modified(&self) -> bool {
         !self.saved.as_ref().is_some_and(|saved| saved.same(&self.content))
     }
@@ -255,6 +258,7 @@ impl Document {
         fs::exists(path) && !Document::read(path).is_ok_and(|on_disk| on_disk.content.same(saved))
     }
 
+    /// The document as a file holds it.
     pub fn to_file(&self) -> SceneFile {
         SceneFile { scene: Scene::clone(self.scene()), radar: Radar::clone(self.radar()) }
     }

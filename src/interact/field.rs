@@ -5,6 +5,7 @@ use crate::scene::body::{MAX_ROUGHNESS_MILLIMETRES, MAX_SIZE_METRES, MIN_RADIUS_
 use crate::scene::{MAX_SPEED_METRES_PER_SECOND, Object};
 use serde::{Deserialize, Serialize};
 
+/// Coordinates in which places are shown and entered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coordinates {
@@ -19,6 +20,7 @@ pub enum Coordinates {
 pub enum Field {
     X,
     Y,
+    /// Distance from the array's middle, metres.
     Range,
     /// Cosine of the angle between the array's axis and the direction from its middle.
     CosTheta,
@@ -27,13 +29,16 @@ pub enum Field {
     Spacing,
     /// Direction of a line, degrees: 0 straight ahead, 90 along the array to the right.
     Direction,
+    /// Standard deviation of a cluster along x, metres.
     SpreadX,
+    /// Standard deviation of a cluster along y, metres.
     SpreadY,
     Length,
     Width,
     /// Direction of the length of a wall or a box, degrees from +x, counter-clockwise.
     Angle,
     Radius,
+    /// Height deviation of a body's surface, millimetres.
     Roughness,
     Count,
     Seed,
@@ -47,6 +52,7 @@ pub enum Field {
 /// The cross section for a reflectivity of 0, dBsm.
 const MIN_DBSM: f64 = -300.0;
 
+/// A change of a field's value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FieldChange {
     To(f64),

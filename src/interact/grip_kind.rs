@@ -2,6 +2,7 @@
 
 use super::Place;
 
+/// Part of an object that can be grabbed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Grip {
     Body,
@@ -11,7 +12,9 @@ pub enum Grip {
     Spacing,
     /// The direction of a line.
     Turn,
+    /// The standard deviation of a cluster along x.
     SpreadX,
+    /// The standard deviation of a cluster along y.
     SpreadY,
     /// An end of a wall or a corner of an outline, by its number.
     Corner(usize),
@@ -42,6 +45,7 @@ impl Grip {
     }
 }
 
+/// A grip and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GripPlace {
     pub grip: Grip,

@@ -51,14 +51,17 @@ impl History {
         self.sealed = true;
     }
 
+    /// The label of the step that undo takes back.
     pub fn undo_label(&self) -> Option<&str> {
         self.done.last().map(|s| s.label.as_str())
     }
 
+    /// The label of the step that redo does again.
     pub fn redo_label(&self) -> Option<&str> {
         self.undone.last().map(|s| s.label.as_str())
     }
 
+    /// Steps that can be undone.
     pub fn depth(&self) -> usize {
         self.done.len()
     }

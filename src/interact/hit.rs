@@ -7,6 +7,7 @@ use crate::scene::{Object, Scene};
 /// Smallest radius of a target, in points of the view.
 pub const TARGET_RADIUS_POINTS: f64 = 9.0;
 
+/// A grip under the pointer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     pub object: usize,

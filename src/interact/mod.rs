@@ -45,6 +45,7 @@ impl Place {
         Place { x_metres, y_metres }
     }
 
+    /// Distance to another place, metres.
     pub fn distance_metres(self, other: Place) -> f64 {
         (self.x_metres - other.x_metres).hypot(self.y_metres - other.y_metres)
     }

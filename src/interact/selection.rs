@@ -37,18 +37,22 @@ impl Selection {
         selection
     }
 
+    /// Whether object `index` is selected.
     pub fn contains(&self, index: usize) -> bool {
         self.picked.contains(&index)
     }
 
+    /// Number of selected objects.
     pub fn len(&self) -> usize {
         self.picked.len()
     }
 
+    /// Whether nothing is selected.
     pub fn is_empty(&self) -> bool {
         self.picked.is_empty()
     }
 
+    /// The selected indices, rising.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = usize> + '_ {
         self.picked.iter().copied()
     }
@@ -58,6 +62,7 @@ impl Selection {
         if self.picked.len() == 1 { self.picked.first().copied() } else { None }
     }
 
+    /// The object that was picked last.
     pub fn latest(&self) -> Option<usize> {
         self.latest
     }
@@ -73,6 +78,7 @@ impl Selection {
         })
     }
 
+    /// Picks `indices`.
     pub fn pick(&mut self, indices: impl IntoIterator<Item = usize>, mode: SelectionMode) {
         if mode == SelectionMode::Range {
             let Some(to) = indices.into_iter().last() else { return };

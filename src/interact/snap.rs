@@ -4,6 +4,7 @@ use super::Place;
 use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
 
+/// Grid that dragged objects snap to.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Snap {

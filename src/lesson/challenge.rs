@@ -180,6 +180,7 @@ impl Measure {
 }
 
 impl MapName {
+    /// Its name in sentences.
     pub fn words(self) -> &'static str {
         match self {
             MapName::Input0 => "input 0",

@@ -1,5 +1,6 @@
 //! Mistakes in a lesson's step, with their lines.
 
+/// A fault in a lesson's text, with its line.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {message}")]
 pub struct LessonTextError {

@@ -21,6 +21,7 @@ pub const MAX_LESSON_BYTES: u64 = 1 << 20;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lesson {
+    /// Version of the format, [`FORMAT`].
     pub format: u32,
     pub title: String,
     /// The lesson's aim: the learner's new knowledge, one sentence.
@@ -47,6 +48,7 @@ pub struct Step {
     pub challenge: Option<Challenge>,
 }
 
+/// An error of opening a lesson.
 #[derive(Debug, thiserror::Error)]
 pub enum LessonError {
     #[error("{}: {source}", path.display())]

@@ -19,6 +19,9 @@ impl ObjectNumber {
         }
     }
 
+    /// The quantity's value, in its unit.
+    /// # Errors
+    /// A sentence where the quantity needs an object that is not named or not there.
     pub fn of(self, scene: &Scene) -> Result<&Object, String> {
         self.index(scene.objects.len()).map(|index| &scene.objects[index])
     }

@@ -45,8 +45,12 @@ pub enum Guess {
 pub enum Truth {
     Place(Cell),
     Number(f64),
+    /// An option, from 1.
     Choice(usize),
-    Etas { low: f32, high: f32 },
+    Etas {
+        low: f32,
+        high: f32,
+    },
 }
 
 /// The verdict on a guess.

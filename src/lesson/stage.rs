@@ -19,6 +19,7 @@ pub struct StepView {
     /// Whether all maps have one scale of brightness.
     pub one_scale: bool,
     pub method: String,
+    /// The detector in the place of thresholds, if one is in use.
     pub cfar: Option<Cfar>,
 }
 
@@ -57,6 +58,7 @@ pub struct Cell {
 #[derive(Debug, Clone)]
 pub struct Stage {
     pub radar: Radar,
+    /// The scene; its [`Scene::noise_seed`] picks the floor's noise.
     pub scene: Scene,
     maps: [RangeAngleMap; 3],
     output: Result<RangeAngleMap, String>,

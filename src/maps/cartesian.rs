@@ -8,6 +8,7 @@ use rayon::prelude::*;
 /// A map over x (columns, from -max range to +max range) and y (rows, from 0 to max range).
 #[derive(Debug, Clone, PartialEq)]
 pub struct CartesianMap {
+    /// Lambda, `[rows, columns]`; NaN beyond the maximum range, where the radar sees nothing.
     pub lambda: Array2<f32>,
     /// Half the width, and the height, in metres.
     pub extent_metres: f64,
@@ -49,6 +50,7 @@ impl Projector {
         Projector { radar: radar.clone(), rows, taps }
     }
 
+    /// Whether this is the projection for `radar` onto `rows` rows.
     pub fn fits(&self, radar: &Radar, rows: usize) -> bool {
         self.rows == rows && self.radar == *radar
     }

@@ -70,6 +70,7 @@ impl RangeDopplerMap {
         map
     }
 
+    /// Decades of amplitude of every cell.
     pub fn log_magnitude(&self) -> LogMap {
         let guard = guard(self.power.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max).sqrt());
         LogMap::new(self.power.mapv(|power| (power.sqrt() + guard).log10()))

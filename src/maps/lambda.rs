@@ -17,6 +17,7 @@ pub enum Normalisation {
     DynamicRange(Decibels),
 }
 
+/// A normalisation's name that could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown normalisation \"{0}\"; expected min-max or db=RANGE with RANGE between 1 and 400")]
 pub struct NormalisationError(String);
@@ -106,6 +107,7 @@ impl RangeAngleMap {
 }
 
 impl Mask {
+    /// Number of cells above the threshold.
     pub fn count(&self) -> usize {
         self.cells.iter().filter(|&&c| c).count()
     }

@@ -35,14 +35,17 @@ impl LogMap {
         LogMap { decades, min, max }
     }
 
+    /// The cells, `[range bins, columns]`.
     pub fn decades(&self) -> &Array2<f64> {
         &self.decades
     }
 
+    /// Smallest cell.
     pub fn min(&self) -> f64 {
         self.min
     }
 
+    /// Largest cell.
     pub fn max(&self) -> f64 {
         self.max
     }
@@ -54,10 +57,12 @@ impl LogMap {
         *cells.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
+    /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         LambdaScale::new(self.min, self.max, normalisation)
     }
 
+    /// Lambda of every cell.
     pub fn normalise(&self, normalisation: Normalisation) -> RangeAngleMap {
         let scale = self.scale(normalisation);
         RangeAngleMap { lambda: self.decades.mapv(|v| scale.lambda(v) as f32) }

@@ -14,14 +14,17 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
+    /// The transform of `len` points.
     pub fn new(len: usize) -> Self {
         Spectrum { fft: Simd::chosen().forward_fft(len) }
     }
 
+    /// Number of points.
     pub fn len(&self) -> usize {
         self.fft.len()
     }
 
+    /// Whether the transform has no points.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

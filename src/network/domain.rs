@@ -49,6 +49,9 @@ type Difference = [String; 2];
 
 impl Domain {
     /// The domain as JSON, for an entry of a weight file.
+    ///
+    /// # Errors
+    /// [`serde_json::Error`] for numbers that JSON can't express.
     pub fn json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string(self)
     }
@@ -64,6 +67,9 @@ impl Domain {
     }
 
     /// Refuses a radar whose samples differ from those that `method` was trained with, since the network's answer for them has no meaning.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] names the quantities that differ.
     pub fn check(&self, method: &'static str, radar: &Radar) -> Result<(), ReconstructError> {
         let differences = self.differences(radar);
         if differences.is_empty() {

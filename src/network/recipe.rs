@@ -135,6 +135,9 @@ type Check<'a> = (bool, &'static str, &'a dyn Display, &'static str);
 
 impl Recipe {
     /// Reads and checks a recipe; messages call it `name`.
+    ///
+    /// # Errors
+    /// [`RecipeError`] names the fault and its place.
     pub fn parse(name: &str, text: &str) -> Result<Recipe, RecipeError> {
         let recipe: Recipe = toml::from_str(text).map_err(|error| RecipeError(format!("{name}: {error}")))?;
         recipe.check(name)?;

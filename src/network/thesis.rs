@@ -158,6 +158,9 @@ impl Student for Thesis {
 
 impl Thesis {
     /// Width and depth of the network whose weights `file` holds.
+    ///
+    /// # Errors
+    /// [`WeightsError::Tensor`] when it lacks the first convolution.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
         let stage = |level: usize| {
             let ours = file.shape(&format!("down.layer3x3.{level}.conv.weight"));
@@ -175,6 +178,9 @@ impl Thesis {
     }
 
     /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()`.
+    ///
+    /// # Errors
+    /// [`WeightsError`] when they don't fit.
     pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
         let mut network = Thesis::fresh(config, device);
         let renamed = Thesis::in_our_names(file)?;
@@ -183,6 +189,9 @@ impl Thesis {
     }
 
     /// The bytes of `file` with this crate's tensor names. The names of the author's PyTorch program are replaced.
+    ///
+    /// # Errors
+    /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {
         file.renamed(from_pytorch)
     }

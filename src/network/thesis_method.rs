@@ -83,6 +83,9 @@ impl Network {
 impl ThesisMethod {
     /// The network with the weights of `file`, whose tensors decide its width and depth: computed by an engine of its own, or by burn where
     /// `backend` is not the default one.
+    ///
+    /// # Errors
+    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(
         name: &'static str,
         description: &'static str,
@@ -162,6 +165,9 @@ pub struct UnetMethod {
 
 impl UnetMethod {
     /// The shipped architecture with the weights of `file`, computed by `backend`.
+    ///
+    /// # Errors
+    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
         let device = backend.device();
         let config = UnetConfig::default();

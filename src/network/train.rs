@@ -21,6 +21,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Trains by `recipe` until the recipe or a limit of `run` ends it. `resume` continues from the folder's checkpoint; `watch` is called after every step.
+///
+/// # Errors
+/// [`TrainError`].
 pub fn train<S: Student>(
     recipe: &Recipe,
     config: &S::Config,

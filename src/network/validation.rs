@@ -72,6 +72,9 @@ pub fn validate<S: Student>(
 }
 
 /// Writes `weights.safetensors`, with its record, into the run's folder.
+///
+/// # Errors
+/// [`TrainError::Checkpoint`] when it can't be written.
 pub fn export<S: Student>(
     network: &S,
     recipe: &Recipe,

@@ -46,6 +46,9 @@ impl Provenance {
     }
 
     /// The radars of the training scenes: those of the entry [`DOMAIN_ENTRY`], else that of [`RADAR_ENTRY`], else table 3.1's.
+    ///
+    /// # Errors
+    /// [`WeightsError::Store`] where an entry of the file `name` can't be read.
     pub fn domain(&self, name: &str) -> Result<Domain, WeightsError> {
         let (entry, what, read) = match (self.get(DOMAIN_ENTRY), self.get(RADAR_ENTRY)) {
             ("", "") => return Ok(Domain::Radar(Box::default())),
@@ -103,6 +106,9 @@ pub struct WeightFile<'a> {
 
 impl<'a> WeightFile<'a> {
     /// Reads the header of the file called `name` and checks its length.
+    ///
+    /// # Errors
+    /// [`WeightsError`] when it isn't safetensors or is cut short.
     pub fn parse(name: &str, bytes: &'a [u8]) -> Result<Self, WeightsError> {
         let not = |reason: &str| not_safetensors(name, reason);
         let cut = |expected: usize| {
@@ -168,6 +174,9 @@ impl<'a> WeightFile<'a> {
     }
 
     /// Checks that `known` accepts every tensor of the file.
+    ///
+    /// # Errors
+    /// [`WeightsError::Tensor`] names the first that it doesn't accept.
     #[cfg(feature = "network")]
     pub(super) fn expect_only(&self, known: impl Fn(&str) -> bool) -> Result<(), WeightsError> {
         let unknown = self.tensors.keys().find(|name| !known(name));
@@ -185,6 +194,9 @@ impl<'a> WeightFile<'a> {
     }
 
     /// The file with other tensor names.
+    ///
+    /// # Errors
+    /// [`WeightsError::NotSafetensors`] if the header can't be written again.
     pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {
         let tensors = self.tensors.iter().map(|(name, tensor)| (rename(name), tensor)).collect();
         write(&self.name, &tensors, &self.provenance, self.data)

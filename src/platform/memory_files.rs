@@ -51,11 +51,17 @@ pub fn remove_file(path: &Path) -> io::Result<()> {
 }
 
 /// Makes a folder.
+///
+/// # Errors
+/// None.
 pub fn create_dir(path: &Path) -> io::Result<()> {
     create_dir_all(path)
 }
 
 /// Makes a folder and those above it.
+///
+/// # Errors
+/// None.
 pub fn create_dir_all(path: &Path) -> io::Result<()> {
     tree().folders.extend(path.ancestors().map(Path::to_path_buf));
     Ok(())
@@ -157,6 +163,9 @@ impl File {
     }
 
     /// Kind and length of the file.
+    ///
+    /// # Errors
+    /// None.
     pub fn metadata(&self) -> io::Result<Metadata> {
         Ok(Metadata { bytes: Some(self.0.get_ref().len() as u64) })
     }

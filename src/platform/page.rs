@@ -98,6 +98,9 @@ pub mod fs {
 
     impl Draft {
         /// Begins a file that will replace another.
+        ///
+        /// # Errors
+        /// None on a page.
         pub fn begin(_folder: &Path, _path: &Path) -> io::Result<Draft> {
             Ok(Draft(Cursor::default()))
         }
@@ -165,6 +168,9 @@ pub mod fs {
 }
 
 /// Opens the browser's dialog for a file to read. A file to write is a download, whose name is the answer at once.
+///
+/// # Errors
+/// None on a page.
 #[cfg(feature = "app")]
 pub fn choose_file(
     question: super::FileQuestion,

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+/// One attempt to explain the samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attempt {
     /// Name of the rung of the ladder ([`LADDER`](super::search::LADDER)) that made it, [`FOLLOWING`](super::search::FOLLOWING) where the search
@@ -37,6 +38,7 @@ impl Tried {
     }
 }
 
+/// The verdict on an attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
     /// The attempt is part of the answer when its rung is done.
@@ -44,6 +46,7 @@ pub enum Verdict {
     Refused(Refusal),
 }
 
+/// The reason why an attempt was refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// No candidate was found, or none was worth an attempt.

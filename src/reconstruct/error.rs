@@ -2,6 +2,7 @@
 
 use crate::task::Cancelled;
 
+/// The reason why a reconstruction has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReconstructError {
     #[error("cancelled")]

@@ -1,5 +1,6 @@
 //! Families of methods, by which lists are grouped.
 
+/// A family of methods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
     /// Programs of the user.
@@ -15,12 +16,15 @@ pub enum Family {
 }
 
 impl Family {
+    /// All families, in the order of lists.
     pub const ALL: [Family; 5] = [Family::Own, Family::Network, Family::Search, Family::Sparse, Family::Classical];
 
+    /// The family's name.
     pub fn name(self) -> &'static str {
         self.words().0
     }
 
+    /// A phrase on the family's common approach.
     pub fn describe(self) -> &'static str {
         self.words().1
     }

@@ -23,6 +23,7 @@ pub struct Hybrid {
 type LastFound = Option<(Radar, Arc<Found>)>;
 
 impl Hybrid {
+    /// The hybrid of the search and `network`.
     pub fn new(network: Arc<dyn Reconstructor>) -> Self {
         Hybrid { network, settings: Settings::default(), last: None }
     }

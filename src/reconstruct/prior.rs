@@ -66,6 +66,7 @@ impl NoisePrior {
     /// White noise of a level that must be measured, as beneath every recording.
     pub const UNKNOWN: NoisePrior = NoisePrior::White { sigma: None };
 
+    /// Whether the noise is white.
     pub fn is_white(self) -> bool {
         matches!(self, NoisePrior::White { .. })
     }

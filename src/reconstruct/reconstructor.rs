@@ -49,8 +49,10 @@ pub enum Hears {
 ///
 /// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
 pub trait Reconstructor: Send + Sync {
+    /// Name and description of the method.
     fn about(&self) -> About;
 
+    /// The family of the method.
     fn family(&self) -> Family {
         Family::Classical
     }

@@ -6,11 +6,17 @@ use crate::files::hdf5::Hdf5;
 use std::io::{self, Read, Seek, SeekFrom};
 
 /// The array called `key` of an HDF5 file; those in groups are `group.name`.
+///
+/// # Errors
+/// [`Fault`] names the array, and what was expected of it.
 pub(super) fn read_h5(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     Ok(Hdf5::open(file)?.values(key, MAX_NUMBERS)?)
 }
 
 /// Names and shapes of its arrays of numbers.
+///
+/// # Errors
+/// [`Fault`].
 pub(super) fn h5_shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     Ok(Hdf5::open(file)?.shapes()?)
 }

@@ -32,6 +32,9 @@ const MAX_DEPTH: usize = 4;
 
 /// Reads the array called `key`: a variable, a member of a struct (`radar.adcData`), or the cells of one, all of one shape, one after
 /// another along a first axis.
+///
+/// # Errors
+/// [`MatError`] names the array, and what was expected of it.
 pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
     let mut search = Search { want: Some(key), ..Search::default() };
     look_through(file, &mut search)?;
@@ -41,6 +44,9 @@ pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
 }
 
 /// Names and shapes of all arrays of numbers, those in structs and cells too.
+///
+/// # Errors
+/// [`MatError`].
 pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut search = Search::default();
     look_through(file, &mut search)?;

@@ -137,6 +137,7 @@ impl Echoing {
         Sources::from(self).len()
     }
 
+    /// Whether nothing echoes.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -176,10 +177,12 @@ impl<'a, T: AsRef<[Reflector]> + ?Sized> From<&'a T> for Sources<'a> {
 }
 
 impl Sources<'_> {
+    /// Most echoes of all at one element.
     pub fn len(&self) -> usize {
         self.points.len() + self.scatterers.iter().map(Scatterer::echo_count).sum::<usize>()
     }
 
+    /// Whether nothing echoes.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty() && self.scatterers.is_empty()
     }

@@ -70,6 +70,7 @@ impl AntennaPlaces {
 /// The wave in the middle of the chirp, where amplitudes are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wave {
+    /// Transmit power, watts.
     pub power_watts: f64,
     /// Phase of the whole way for each metre of range: twice the physical wave number.
     pub radians_per_metre: f64,
@@ -80,6 +81,7 @@ pub struct Wave {
 }
 
 impl Wave {
+    /// The wave of `radar`.
     pub fn of(radar: &Radar) -> Self {
         let turns = radar.middle_turns_per_metre();
         let (power_watts, pattern) = (radar.transmit_power_watts, radar.pattern());
@@ -87,6 +89,7 @@ impl Wave {
     }
 }
 
+/// The kind of an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EchoKind {
     Point,
@@ -103,6 +106,7 @@ pub enum EchoKind {
 }
 
 impl EchoKind {
+    /// Its name in sentences.
     pub fn name(self) -> &'static str {
         match self {
             EchoKind::Point => "point",
@@ -137,6 +141,7 @@ impl PathEcho {
         PathEcho { range_metres: 0.0, amplitude, place_metres, cos_incidence: 1.0, kind, is_mirrored: false }
     }
 
+    /// Whether there is such an echo.
     pub fn is_heard(&self) -> bool {
         self.amplitude != Complex64::default()
     }

@@ -28,6 +28,7 @@ impl Outline {
         }
     }
 
+    /// Its faces.
     pub fn faces(&self) -> &[Face] {
         &self.faces
     }

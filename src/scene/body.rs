@@ -5,13 +5,16 @@ use super::shape::{Shape, direction, doubled_area, inner_corners};
 use crate::radar::Radar;
 use serde::{Deserialize, Serialize};
 
+/// Most corners of a polygon.
 pub const MAX_CORNERS: usize = 256;
 
 /// Smallest radius of a post, metres: a thinner one is no mirror for waves of 8 mm, and a point describes it better.
 pub const MIN_RADIUS_METRES: f64 = 0.01;
 
+/// Smallest length and width of a body, metres.
 pub const MIN_SIZE_METRES: f64 = 1e-3;
 
+/// Largest size of a body, metres.
 pub const MAX_SIZE_METRES: f64 = 1e4;
 
 /// Largest height deviation of a rough surface, millimetres.
@@ -47,7 +50,9 @@ macro_rules! body {
 body! {
     /// A straight wall without thickness; both its sides reflect.
     pub struct Wall {
+        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
+        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
         pub length_metres: f64,
         /// Direction of its length: 0 along +x, 90 straight ahead, counter-clockwise.
@@ -59,7 +64,9 @@ body! {
 body! {
     /// A rectangle: a car is 4.5 m by 1.8 m.
     pub struct Block {
+        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
+        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
         pub length_metres: f64,
         /// Its width, across the length, metres.
@@ -71,8 +78,11 @@ body! {
 }
 
 body! {
+    /// A round post.
     pub struct Post {
+        /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,
+        /// y of its middle, ahead of the array, metres.
         pub y_metres: f64,
         pub radius_metres: f64,
     }
@@ -154,7 +164,9 @@ impl Polygon {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     pub shape: Shape,
+    /// Reflection coefficient of the surface, of the amplitude: 1 for metal.
     pub reflectivity: f64,
+    /// Standard deviation of the surface's height, millimetres: 0 is smooth.
     pub roughness_millimetres: f64,
     pub seed: u64,
 }

@@ -5,6 +5,7 @@ use crate::radar::{BuiltArray, ElementError, Radar};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
+/// All disturbances of a scene; none by default.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Disturbances {
@@ -118,6 +119,7 @@ impl Mirror {
 }
 
 impl Disturbances {
+    /// Whether there are no disturbances.
     pub fn is_none(&self) -> bool {
         self.elements.is_ideal() && self.interferer.is_none() && self.mirror.is_none()
     }

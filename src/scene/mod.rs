@@ -37,6 +37,7 @@ pub struct Reflector {
 }
 
 impl Reflector {
+    /// A question with the name and folder of `path`.
     pub fn at([x_metres, y_metres]: [f64; 2], reflectivity: f64) -> Self {
         Reflector { x_metres, y_metres, reflectivity }
     }
@@ -119,6 +120,7 @@ impl Scene {
         Scene { objects, ..Scene::default() }
     }
 
+    /// Every reflector of every object, in order.
     pub fn reflectors(&self) -> Vec<Reflector> {
         self.objects.iter().flat_map(Object::reflectors).collect()
     }
@@ -148,6 +150,7 @@ impl Scene {
         self.objects.iter().fold(0, |n, o| n.saturating_add(o.echo_count()))
     }
 
+    /// Whether there is a body among the objects.
     pub fn has_bodies(&self) -> bool {
         self.objects.iter().any(|o| o.body().is_some())
     }

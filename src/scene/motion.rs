@@ -7,14 +7,17 @@ use super::{Object, Scene, SceneError};
 pub const MAX_SPEED_METRES_PER_SECOND: f64 = 1e4;
 
 impl Object {
+    /// Its velocity along x and y, metres a second.
     pub fn velocity_metres_per_second(&self) -> [f64; 2] {
         of_each!(self, one => [one.velocity_x_metres_per_second, one.velocity_y_metres_per_second])
     }
 
+    /// The velocity along x and y, to be changed.
     pub fn velocity_mut(&mut self) -> [&mut f64; 2] {
         of_each!(self, one => [&mut one.velocity_x_metres_per_second, &mut one.velocity_y_metres_per_second])
     }
 
+    /// Whether it moves.
     pub fn is_moving(&self) -> bool {
         self.velocity_metres_per_second() != [0.0, 0.0]
     }
@@ -39,6 +42,7 @@ impl Object {
 }
 
 impl Scene {
+    /// Whether it moves.
     pub fn is_moving(&self) -> bool {
         self.objects.iter().any(Object::is_moving)
     }

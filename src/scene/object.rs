@@ -53,7 +53,9 @@ moving! {
     pub struct GaussianCluster {
         pub x_metres: f64,
         pub y_metres: f64,
+        /// Standard deviation along x, metres.
         pub x_std_metres: f64,
+        /// Standard deviation along y, metres.
         pub y_std_metres: f64,
         pub count: usize,
         #[serde(default)]
@@ -140,6 +142,7 @@ impl Object {
         if self.name().is_empty() { format!("{} {}", self.noun(), index + 1) } else { self.name().to_owned() }
     }
 
+    /// Its name; empty where it has none.
     pub fn name(&self) -> &str {
         of_each!(self, one => &one.name)
     }
@@ -255,6 +258,7 @@ impl Object {
         [*x, *y] = place_metres;
     }
 
+    /// Moves the whole object.
     pub fn translate(&mut self, dx_metres: f64, dy_metres: f64) {
         if let Object::Polygon(p) = self {
             p.corners_metres.iter_mut().for_each(|c| *c = [c[0] + dx_metres, c[1] + dy_metres]);

@@ -21,6 +21,7 @@ pub enum Algorithm {
 }
 
 impl Algorithm {
+    /// Every algorithm.
     pub const ALL: [Algorithm; 5] =
         [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded, Algorithm::ClosedForm];
 
@@ -29,6 +30,7 @@ impl Algorithm {
         !matches!(self, Algorithm::Direct | Algorithm::Exact)
     }
 
+    /// Name in reports and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Algorithm::Direct => "direct",
@@ -46,6 +48,7 @@ impl fmt::Display for Algorithm {
     }
 }
 
+/// An algorithm's name that is not known.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown algorithm \"{0}\"; expected direct, exact, split, gridded or closed-form")]
 pub struct UnknownAlgorithm(String);

@@ -95,6 +95,7 @@ pub struct GriddedScratch<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> GriddedScratch<T, W> {
+    /// Working memory for chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
         GriddedScratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }

@@ -22,6 +22,7 @@ enum Method<T: Real> {
 }
 
 impl<T: Real> LaneFft<T> {
+    /// Plans transforms of `len` points.
     pub fn new(len: usize) -> Self {
         if !len.is_power_of_two() {
             return LaneFft { len, method: Method::Rustfft(Simd::chosen().forward_fft(len)) };

@@ -40,6 +40,7 @@ impl Echo {
         (lanes.beat_turns_at::<false>(n1 as f64) + lanes.carrier_turns).0[0]
     }
 
+    /// Sample `n1`.
     pub fn sample(&self, n1: usize) -> Complex64 {
         Complex64::from_polar(self.amplitude, TAU * self.turns_at(n1))
     }
@@ -57,6 +58,7 @@ pub struct EchoLanes<const W: usize> {
 }
 
 impl EchoLanes<1> {
+    /// The only lane.
     pub fn first(&self) -> Echo {
         Echo {
             amplitude: self.amplitude.0[0],
@@ -99,6 +101,7 @@ pub struct EchoModel {
 }
 
 impl EchoModel {
+    /// Prepares the constants of `radar`.
     pub fn new(radar: &Radar) -> Self {
         EchoModel {
             power_watts: radar.transmit_power_watts,

@@ -64,6 +64,7 @@ impl Plan {
         }
     }
 
+    /// The plan with another algorithm.
     pub fn with_algorithm(self, algorithm: Algorithm) -> Plan {
         Plan { algorithm, ..self }
     }

@@ -9,22 +9,27 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// An empty set of `bins` bins.
     pub fn none(bins: usize) -> Self {
         Rows { bins: vec![false; bins] }
     }
 
+    /// The set of all `bins` bins.
     pub fn all(bins: usize) -> Self {
         Rows { bins: vec![true; bins] }
     }
 
+    /// Whether the set has `bin`.
     pub fn contains(&self, bin: usize) -> bool {
         self.bins.get(bin).copied().unwrap_or(false)
     }
 
+    /// Number of its bins.
     pub fn count(&self) -> usize {
         self.bins.iter().filter(|b| **b).count()
     }
 
+    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         !self.bins.contains(&true)
     }
@@ -43,6 +48,7 @@ impl Rows {
         self.bins[..end.saturating_sub(len)].fill(true);
     }
 
+    /// Adds the bins of `other`.
     pub fn extend(&mut self, other: &Rows) {
         self.bins.iter_mut().zip(&other.bins).for_each(|(a, b)| *a |= *b);
     }

@@ -7,6 +7,7 @@ use num_complex::Complex64;
 /// Sampled beat signal: complex, `[elements, samples]`, one row an element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BeatSignal {
+    /// The samples, `[elements, samples]`.
     pub samples: Array2<Complex64>,
 }
 
@@ -22,6 +23,7 @@ impl BeatSignal {
         self.samples.slice(s![range, ..])
     }
 
+    /// The samples of both ends.
     pub fn two_ends(&self, radar: &Radar) -> TwoEnds {
         TwoEnds { first: self.end(radar, End::First).to_owned(), last: self.end(radar, End::Last).to_owned() }
     }

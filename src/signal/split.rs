@@ -48,6 +48,7 @@ impl<T: Real, const W: usize> Factors<T, W> {
         Product { rows: &self.rows, columns: &self.columns }
     }
 
+    /// Memory for the phasors of chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
         Factors { rows: vec![zero; rows_of(samples)], columns: [zero; STRIDE] }
@@ -62,6 +63,7 @@ pub struct SplitScratch<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> SplitScratch<T, W> {
+    /// Memory for the phasors of chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let factors = vec![Factors::new(samples); CHUNK];
         let padded = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];

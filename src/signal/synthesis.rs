@@ -30,6 +30,7 @@ pub struct BlockProfiles<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> BlockProfiles<T, W> {
+    /// Silence.
     pub fn silence(radar: &Radar) -> Self {
         let bins = radar.samples;
         BlockProfiles {
@@ -40,6 +41,7 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
         }
     }
 
+    /// Makes the profiles silent again.
     pub fn clear(&mut self) {
         let bins = self.bins;
         let runs = std::mem::replace(&mut self.touched, Rows::none(bins)).runs();
@@ -198,6 +200,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         HeardEchoes::new(&self.model, sources, |lane| self.array.pair(&self.radar, first_element + lane))
     }
 
+    /// The plan of the synthesis.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }

@@ -12,6 +12,7 @@ pub enum Unfinished {
     Cancelled(#[from] Cancelled),
 }
 
+/// A query with its value, or the reason why it has none.
 pub type Made<T> = Result<T, Unfinished>;
 
 impl Unfinished {

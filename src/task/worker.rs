@@ -153,6 +153,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         generation
     }
 
+    /// Cancels the running request and drops the waiting one. The cancelled work still replies.
     pub fn cancel(&self) {
         let mut slot = self.shared.lock();
         slot.pending = None;
@@ -161,6 +162,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         }
     }
 
+    /// Cancels the running request if it began longer ago than `patience`; returns whether it did. A waiting one stays.
     pub fn cancel_older_than(&self, patience: Duration) -> bool {
         match &self.shared.lock().running {
             Some(running) if running.began.elapsed() > patience => {
@@ -171,6 +173,7 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         }
     }
 
+    /// Whether a request waits or runs.
     pub fn is_busy(&self) -> bool {
         let slot = self.shared.lock();
         slot.pending.is_some() || slot.running.is_some()

@@ -10,8 +10,11 @@ use crate::scene::{Interferer, Reflector, Scene};
 /// A linear chirp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChirpShape {
+    /// Frequency at its start, hertz.
     pub start_hz: f64,
+    /// Swept bandwidth, hertz.
     pub bandwidth_hz: f64,
+    /// Its duration, seconds.
     pub duration_seconds: f64,
     /// Samples of the beat.
     pub samples: usize,
@@ -29,11 +32,13 @@ pub struct BeatTone {
 }
 
 impl ChirpShape {
+    /// The chirp of a radar.
     pub fn of(radar: &Radar) -> ChirpShape {
         let Radar { carrier_hz: start_hz, bandwidth_hz, chirp_seconds: duration_seconds, samples, .. } = *radar;
         ChirpShape { start_hz, bandwidth_hz, duration_seconds, samples }
     }
 
+    /// Slope of the frequency, hertz a second.
     pub fn slope_hz_per_second(&self) -> f64 {
         self.bandwidth_hz / self.duration_seconds
     }
@@ -61,6 +66,7 @@ impl ChirpShape {
     }
 }
 
+/// Time from an antenna to an object and back, seconds.
 pub fn delay_seconds(range_metres: f64) -> f64 {
     2.0 * range_metres / SPEED_OF_LIGHT
 }

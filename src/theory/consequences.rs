@@ -14,7 +14,9 @@ pub struct Consequences {
     pub max_range_metres: f64,
     /// Half-power width of a blob over range under the window, in metres; `None` for a window that does not resolve range.
     pub range_width_metres: Option<f64>,
+    /// Half-power beam width of the whole array.
     pub full_beam: BeamWidth,
+    /// Half-power beam width of one end.
     pub end_beam: BeamWidth,
     /// Columns from a blob to its first grating lobe: the angle transform repeats after one turn from element to element, which is the
     /// width of the map at any spacing.

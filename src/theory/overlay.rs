@@ -16,6 +16,7 @@ const WRAPPED_RANGES: f64 = 3.0;
 pub struct Overlay {
     /// Place of the reflector seen from the middle of the aperture; its range is the true one, not wrapped.
     pub place: Polar,
+    /// Peak, half-power widths and first side lobes.
     pub blob: Blob,
     /// Extent of the blob by the near field, [`STREAK`] down.
     pub streak: Streak,

@@ -55,6 +55,7 @@ impl Phasors {
         std::iter::once(Complex64::default()).chain(sums).collect()
     }
 
+    /// The sum of all contributions: the cell.
     pub fn sum(&self) -> Complex64 {
         self.contributions.iter().sum()
     }

@@ -13,6 +13,9 @@ pub fn header() -> String {
 
 /// A writer whose [`csv::Writer::serialize`] writes a row as a line; `begins` writes the names of the columns first. [`csv::Writer::flush`]
 /// after a row hands on whole lines, so that a run that is stopped keeps its rows.
+///
+/// # Errors
+/// [`io::Error`] of `out`.
 pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<W>> {
     if begins {
         out.write_all(header().as_bytes())?;
@@ -21,6 +24,9 @@ pub fn row_writer<W: Write>(mut out: W, begins: bool) -> io::Result<csv::Writer<
 }
 
 /// Writes a whole table.
+///
+/// # Errors
+/// [`io::Error`] of `out`.
 pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) -> io::Result<()> {
     let mut writer = row_writer(out, true)?;
     rows.into_iter().try_for_each(|row| writer.serialize(row))?;
@@ -45,11 +51,17 @@ pub struct RowTable {
 
 /// Reads a table of [`write_rows`], also in format 1 and before. Columns may stand in any order, and others beside them; those that are
 /// [optional](Column::is_optional) may be missing.
+///
+/// # Errors
+/// [`RowError`] names the line and the column.
 pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
     read(ShortLines::new(input, false)).map(|table| table.rows)
 }
 
 /// [`read_rows`] without a last line that has no end, which may hold half a row.
+///
+/// # Errors
+/// As [`read_rows`].
 pub fn read_table(input: impl Read) -> Result<RowTable, RowError> {
     read(ShortLines::new(input, true))
 }

@@ -122,6 +122,9 @@ impl RowFile {
     }
 
     /// All rows, in the order of a run that was never stopped, in which they are also written to the file.
+    ///
+    /// # Errors
+    /// [`KeptError`] for a file that can't be written.
     pub fn finish(self) -> Result<Vec<Row>, KeptError> {
         let RowFile { path, out, present, appended, .. } = self;
         drop(out);

@@ -72,6 +72,9 @@ pub struct SharedTrait {
 ///
 /// Scenes of even number suggest rules: of each column the cut, or the name, that separates best. Scenes of odd number test them. Of the rules
 /// that hold, at most [`DISCOVERY_RATE`] are expected to be chance (Benjamini and Hochberg, J. R. Statist. Soc. B 57, 1995).
+///
+/// # Errors
+/// [`FilterError`] where `bad` is no filter.
 pub fn rules(rows: &[Row], bad: &str) -> Result<SharedTrait, FilterError> {
     let names: BTreeSet<&str> = rows.iter().map(|row| &*row.method).collect();
     let names: Vec<&str> = names.into_iter().collect();

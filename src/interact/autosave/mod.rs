@@ -110,6 +110,7 @@ impl Autosave {
         problems
     }
 
+    /// Whether files are being written.
     pub fn is_busy(&self) -> bool {
         self.pending > 0
     }

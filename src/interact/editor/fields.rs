@@ -10,10 +10,12 @@ impl Editor {
         selection.into_iter().filter_map(|i| self.scene().objects.get(i))
     }
 
+    /// The numbers that all selected objects have.
     pub fn shared_fields(&self, coordinates: Coordinates) -> Vec<SharedField> {
         field::shared(self.selected(), coordinates)
     }
 
+    /// Reflectors of the selected objects.
     pub fn selected_reflectors(&self) -> usize {
         self.selected().fold(0, |n, o| n.saturating_add(o.reflector_count()))
     }

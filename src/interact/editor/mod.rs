@@ -43,30 +43,37 @@ impl Editor {
         Editor::of(Document::shipped(SceneFile { scene, ..SceneFile::default() }))
     }
 
+    /// Starts from a document.
     pub fn of(document: Document) -> Self {
         Editor { document, ..Editor::default() }
     }
 
+    /// The document as it is now.
     pub fn document(&self) -> &Document {
         &self.document
     }
 
+    /// The scene as it is now.
     pub fn scene(&self) -> &Arc<Scene> {
         self.document.scene()
     }
 
+    /// The radar that looks at it.
     pub fn radar(&self) -> &Arc<Radar> {
         self.document.radar()
     }
 
+    /// The selected objects.
     pub fn selection(&self) -> &Selection {
         &self.selection
     }
 
+    /// The steps that can be undone and redone.
     pub fn history(&self) -> &History {
         &self.history
     }
 
+    /// Whether the document differs from what is on disk.
     pub fn is_modified(&self) -> bool {
         self.document.is_modified()
     }
@@ -121,6 +128,7 @@ impl Editor {
         Ok(true)
     }
 
+    /// Adds an object and selects it.
     pub fn add(&mut self, object: Object) {
         let label = format!("add {}", object.noun());
         self.edit(&label, None, |scene, selection| {
@@ -129,6 +137,7 @@ impl Editor {
         });
     }
 
+    /// Deletes the selected objects.
     pub fn delete_selected(&mut self) {
         self.edit("delete", None, |scene, selection| {
             for index in std::mem::take(selection).iter().rev() {
@@ -200,10 +209,12 @@ impl Editor {
         self.select(next, SelectionMode::Replace);
     }
 
+    /// Selects every object.
     pub fn select_all(&mut self) {
         self.select(0..self.scene().objects.len(), SelectionMode::Replace);
     }
 
+    /// The grip under `at`.
     pub fn hit(&self, at: Place, metres_per_point: f64) -> Option<Hit> {
         hit::test(self.scene(), &self.selection, at, metres_per_point)
     }

@@ -39,6 +39,7 @@ pub enum Statistic {
 }
 
 impl Statistic {
+    /// Both estimates.
     pub const ALL: [Statistic; 2] = [Statistic::CellAveraging, Statistic::OrderedStatistics];
 
     /// Name in sentences.
@@ -112,6 +113,7 @@ pub struct Level {
 }
 
 impl Level {
+    /// Whether the cell is a detection.
     pub fn is_detected(&self) -> bool {
         self.power > self.threshold
     }

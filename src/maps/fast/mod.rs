@@ -49,6 +49,7 @@ impl FastLogMap {
         FastLogMap { cells, min: guard, max: guard, rows: vec![(guard, guard); radar.samples] }
     }
 
+    /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         // Cells that differ by the rounding of their logarithms alone are flat.
         let is_flat = self.max - self.min < ROUNDING_DECADES;
@@ -70,6 +71,7 @@ pub struct MapNoise<'a, T, const W: usize> {
 #[derive(Debug, Clone, Copy)]
 pub struct MapSources<'a, T, const W: usize> {
     pub profiles: &'a [&'a BlockProfiles<T, W>],
+    /// The floor, if any.
     pub noise: Option<MapNoise<'a, T, W>>,
     /// Upper bound of the magnitude of a map's cells; it only sets the scale at which magnitudes are squared.
     pub bound: f64,
@@ -86,6 +88,7 @@ pub struct MapMaker<T: Real, const W: usize> {
 }
 
 impl<T: Real, const W: usize> MapMaker<T, W> {
+    /// Prepares the transforms of `radar`.
     pub fn new(radar: &Radar, simd: Simd) -> Self {
         let scale = (radar.elements as f64).sqrt().recip();
         let window = radar.window.weights(radar.elements).into_iter().map(|w| T::of(w * scale)).collect();

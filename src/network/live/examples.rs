@@ -196,6 +196,9 @@ impl Examples {
     }
 
     /// Example `index` of a given scene. Seed, purpose and `index` pick its noise.
+    ///
+    /// # Errors
+    /// As [`Examples::example`].
     pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {
         let noise_seed = self.noise_seed(index);
         self.made(None, self.radar(index), Scene { noise_seed, ..scene }, index, task)

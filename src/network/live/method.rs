@@ -45,11 +45,17 @@ pub struct LiveMethod {
 
 impl LiveMethod {
     /// The network of the weights of `file`.
+    ///
+    /// # Errors
+    /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
         LiveMethod::named(file, NAME)
     }
 
     /// The network under a name of its own, beside the shipped weights. The name is never freed.
+    ///
+    /// # Errors
+    /// As [`LiveMethod::new`].
     pub fn named(file: WeightFile, name: &str) -> Result<Self, WeightsError> {
         if !["", NAME].contains(&file.network()) {
             return Err(file.foreign(NAME));

@@ -54,6 +54,9 @@ impl Default for LiveSize {
 
 impl LiveSize {
     /// The size of the network of `file`.
+    ///
+    /// # Errors
+    /// [`WeightsError::Store`] names the entry where it can't be read, and the number that is out of bounds.
     pub fn of(file: &WeightFile) -> Result<Self, WeightsError> {
         let wrong = |told: String| WeightsError(format!("{}: its entry \"{SIZE_ENTRY}\" {told}", file.name()));
         let size: LiveSize = match file.provenance.get(SIZE_ENTRY) {
@@ -78,6 +81,9 @@ impl LiveSize {
         size.check().map(|()| size).map_err(|why| format!("its network {why}"))
     }
 
+    /// Checks that the radars of the weight file called `name` have this shape.
+    /// # Errors
+    /// [`WeightsError::Store`] with both shapes.
     pub(super) fn check_domain(&self, name: &str, domain: &Domain) -> Result<(), WeightsError> {
         let ([samples, elements], LiveSize { rows, columns, .. }) = (domain.shape(), self);
         if [samples, elements] == [*rows, *columns] {

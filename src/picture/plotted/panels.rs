@@ -25,6 +25,7 @@ pub struct Panels<'a> {
     /// Of a recording the echoes that the method found, the strongest first. They are drawn and listed in place of the figures that need a known
     /// scene.
     pub found: Option<&'a [Detection]>,
+    /// Radar of the rows, or of the next run where there are no rows.
     pub radar: &'a Radar,
     /// The maps' settings (reflectors, carrier, floor, normalisation), in words.
     pub about: &'a str,
@@ -34,6 +35,7 @@ pub struct Panels<'a> {
     pub target: Option<&'a RangeAngleMap>,
     pub output: &'a RangeAngleMap,
     pub method: &'a str,
+    /// The threshold eta of either method.
     pub etas: [f32; 2],
     /// Blobs of the output where the scene has nothing.
     pub ghosts: &'a [Ghost],

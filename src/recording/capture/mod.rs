@@ -98,6 +98,9 @@ impl Capture {
     }
 
     /// Reads every loop of the frame, `[loops, elements, samples]`: the elements are the chosen chirps' receivers.
+    ///
+    /// # Errors
+    /// As [`Capture::read`].
     pub(super) fn loops(
         &self,
         file: impl Read + Seek,

@@ -17,6 +17,7 @@ pub struct SceneFile {
     pub radar: Radar,
 }
 
+/// An error of reading or writing a scene file.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneFileError {
     #[error("{}: {source}", path.display())]
@@ -63,6 +64,7 @@ impl SceneFormat {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}, column {column}: {message}")]
 pub struct SceneTextError {
+    /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,

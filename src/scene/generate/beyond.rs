@@ -30,6 +30,7 @@ pub enum Beyond {
 }
 
 impl Beyond {
+    /// Every kind.
     pub const ALL: [Beyond; 6] =
         [Beyond::Walls, Beyond::Crossing, Beyond::Clusters, Beyond::Faint, Beyond::Ring, Beyond::Many];
 

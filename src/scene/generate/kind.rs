@@ -62,8 +62,10 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// The three test sets, in order.
     pub const TEST_SETS: [Kind; 3] = [Kind::Set1, Kind::Set2, Kind::Set3];
 
+    /// The kinds beside the test sets.
     pub const VARIED: [Kind; 7] =
         [Kind::Clusters, Kind::Walls, Kind::Spacings, Kind::Corner, Kind::Crowd, Kind::Dynamic, Kind::Near];
 

@@ -23,6 +23,7 @@ pub struct MixtureError {
 }
 
 impl Mixture {
+    /// Scenes of one kind.
     pub fn of(kind: Kind) -> Mixture {
         Mixture { shares: vec![(kind, 1.0)] }
     }

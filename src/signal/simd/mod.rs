@@ -25,6 +25,7 @@ pub trait Real: FftNum + Copy + Default + PartialOrd + Sub<Output = Self> + Add<
     const NAME: &'static str;
     /// Rounds to this precision.
     fn of(v: f64) -> Self;
+    /// The number as f64.
     fn wide(self) -> f64;
     /// `self * b + c`, rounded once.
     fn fused(self, b: Self, c: Self) -> Self;
@@ -87,6 +88,7 @@ pub const LANES_F64: usize = 8;
 pub struct Lanes<T, const W: usize>(pub [T; W]);
 
 impl<T: Real, const W: usize> Lanes<T, W> {
+    /// The same number in every lane.
     #[inline(always)]
     pub fn splat(v: T) -> Self {
         Lanes([v; W])
@@ -142,6 +144,7 @@ impl<const W: usize> Lanes<f64, W> {
         self.map(|v| (v + SHIFT) - SHIFT)
     }
 
+    /// Square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.map(f64::sqrt)
@@ -211,6 +214,7 @@ pub struct ComplexLanes<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> ComplexLanes<T, W> {
+    /// Zero in every lane.
     #[inline(always)]
     pub fn zero() -> Self {
         ComplexLanes::splat(Complex::default())
@@ -222,11 +226,13 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
         ComplexLanes { re: Lanes::splat(v.re), im: Lanes::splat(v.im) }
     }
 
+    /// The complex conjugate.
     #[inline(always)]
     pub fn conj(self) -> Self {
         ComplexLanes { re: self.re, im: -self.im }
     }
 
+    /// `self * b`.
     #[inline(always)]
     pub fn times<const FMA: bool>(self, b: Self) -> Self {
         ComplexLanes {
@@ -235,6 +241,7 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
         }
     }
 
+    /// `self + a * b`.
     #[inline(always)]
     pub fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
         let re = a.re.mul_add::<FMA>(b.re, self.re);
@@ -242,6 +249,7 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
         ComplexLanes { re: (-a.im).mul_add::<FMA>(b.im, re), im: a.im.mul_add::<FMA>(b.re, im) }
     }
 
+    /// Each lane times a real number.
     #[inline(always)]
     pub fn scaled(self, by: Lanes<T, W>) -> Self {
         ComplexLanes { re: self.re * by, im: self.im * by }
