@@ -65,7 +65,7 @@ impl Args {
                 .try_for_each(|doubt| print(&format!("note: {doubt}")))?;
         }
         let Some(output) = &self.output else { return Ok(()) };
-        let failed = CommandError::on(&output);
+        let failed = CommandError::on(output);
         write_bytes(output, imported.origin.toml().as_bytes()).map_err(failed)?;
         if self.json { Ok(()) } else { print(&format!("wrote {}", output.display())) }
     }

@@ -55,7 +55,7 @@ impl Args {
         let frame_bytes = raw::frame_bytes(&self.config)?;
         let failed = |source: io::Error| CommandError(format!("port {}: {source}", self.port));
         let mut card = Card::listen(self.port, frame_bytes).map_err(failed)?;
-        let created = |path: &PathBuf| File::create(path).map_err(CommandError::on(&path));
+        let created = |path: &PathBuf| File::create(path).map_err(CommandError::on(path));
         card.log = self.log.as_ref().map(created).transpose()?;
         card.most_frames = self.frames;
         card.silence = self.silence.map(|s| Duration::from_secs(s.into()));

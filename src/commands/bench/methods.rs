@@ -18,7 +18,6 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use serde::Serialize;
 use std::path::Path;
-use std::sync::Arc;
 
 /// The time of a crowded scene depends on how close its reflectors are; a few scenes give no median.
 const FEWEST_CROWDS: u32 = 20;
@@ -149,17 +148,16 @@ fn crowds_of(
             on_map();
         }
     }
-    let figures = methods.iter().zip(times.into_iter().zip(&errors));
-    let crowd = |(method, (times, errors)): (&Arc<dyn Reconstructor>, (Vec<f64>, &Vec<f64>))| Crowd {
-        method: method.name(),
+    let crowd = |method: usize| Crowd {
+        method: methods[method].name(),
         reflectors,
         what,
         scenes: count,
-        worst_milliseconds: times.iter().copied().fold(0.0, f64::max),
-        median_milliseconds: upper_median(times).unwrap_or_default(),
-        squared_error: Estimate::of(errors),
+        worst_milliseconds: times[method].iter().copied().fold(0.0, f64::max),
+        median_milliseconds: upper_median(times[method].clone()).unwrap_or_default(),
+        squared_error: Estimate::of(&errors[method]),
     };
-    Ok(figures.map(crowd).collect())
+    Ok((0..methods.len()).map(crowd).collect())
 }
 
 const LABEL: i32 = 15;

@@ -247,7 +247,7 @@ impl Args {
     fn merged(&self) -> Result<(Vec<Row>, Vec<Lack>), CommandError> {
         let (mut tables, mut problems) = (Vec::new(), Vec::new());
         for path in &self.merge {
-            let on_file = CommandError::on(&path);
+            let on_file = CommandError::on(path);
             let file = File::open(path).map_err(on_file)?;
             let table = read_table(file).map_err(CommandError::on(path))?;
             if table.is_cut {

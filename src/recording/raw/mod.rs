@@ -173,7 +173,7 @@ fn described<R: Read + io::Seek>(
     profile: Option<&RadarProfile>,
     board: Option<&'static Board>,
 ) -> Result<Imported, RecordingError> {
-    let found = find(&mut stream, profile).map_err(|e| Fault::from(e).of(&files.data))?;
+    let found = find(&mut stream, profile).map_err(|fault| fault.of(&files.data))?;
     let best = found.best();
     let frame = FirstFrame::read(&mut stream, &capture(best, &files, profile), profile);
     let is_cascade = !files.chips.is_empty() && board.is_none_or(|board| board.name == boards::BY_CHIP.name);
@@ -216,7 +216,7 @@ fn described<R: Read + io::Seek>(
 pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
     let read = || -> Result<RadarProfile, Fault> {
         let file = open_file(path)?;
-        Ok(RadarProfile::parse(&config_text(file)?)?)
+        RadarProfile::parse(&config_text(file)?)
     };
     read().map_err(|fault| fault.of(path))
 }
