@@ -4,17 +4,17 @@
 #[cfg(not(target_arch = "wasm32"))]
 pub mod console;
 #[cfg(not(target_arch = "wasm32"))]
-mod desktop;
+pub(crate) mod desktop;
 #[cfg(any(test, target_arch = "wasm32"))]
 #[cfg_attr(test, allow(dead_code, reason = "the page uses what the tests don't"))]
 mod memory_files;
 #[cfg(target_arch = "wasm32")]
-mod page;
+pub(crate) mod page;
 
 #[cfg(not(target_arch = "wasm32"))]
-use desktop as system;
+pub(crate) use desktop as system;
 #[cfg(target_arch = "wasm32")]
-use page as system;
+pub(crate) use page as system;
 
 #[cfg(feature = "live")]
 pub(crate) use system::live_weights;

@@ -6,6 +6,9 @@ pub(super) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}
 
+/// Opens a data file by the name that the TOML gives it.
+pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
+
 /// The file `first` alone, or as one with `more` files that go on from it, or with those of the other `chips` of a cascade.
 ///
 /// # Errors

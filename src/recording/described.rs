@@ -1,13 +1,12 @@
 //! The recording that a text describes: the TOML, and the files that it names.
 
 use super::capture::Plan;
-use super::chain::Source;
+use super::chain::{Open, Source};
 use super::doubts::doubts;
 use super::layout::stream::Stream;
 use super::profile::lines::text_of;
 use super::said_radar::said_radar;
 use super::said_recording::Table;
-use super::samples::Open;
 use super::signs::{FORMAT, Signs, oldest};
 use super::{AxisKind, Fault, RadarProfile, Recording, RecordingError, layout};
 use crate::platform::fs::File;

@@ -1,7 +1,7 @@
 //! The source of a recording that was opened without a text, and other ways to read its bytes.
 
+use super::chain::Open;
 use super::described::{Described, FrameLoops, beside};
-use super::samples::Open;
 use super::{Recording, RecordingError};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Recordings that come with the program: the files of `assets/recordings`, embedded in it.
 
+use super::chain::Open;
 use super::described::Described;
-use super::samples::Open;
 use super::{Recording, RecordingError};
 use std::io::{self, Cursor};
 use std::path::Path;

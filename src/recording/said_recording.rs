@@ -1,6 +1,5 @@
 //! The table `[recording]` of a recording's TOML.
 
-use super::signs::{BeatSign, CarrierAt, Sweep};
 use super::{AxisKind, Calibration, Capture, Chirp, Fault};
 use crate::radar::{End, Radar};
 use serde::Deserialize;
@@ -48,6 +47,34 @@ pub(super) enum Covers {
     #[default]
     All,
     Ends,
+}
+
+/// Place of the frequency `radar.carrier_hz` on the chirp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum CarrierAt {
+    FirstSample,
+    Middle,
+}
+
+/// The sign of the beat's phase as samples go on, for an echo that is farther than the radar itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+pub(super) enum BeatSign {
+    /// Echoes stand at positive frequencies.
+    #[serde(rename = "+")]
+    Positive,
+    /// Echoes stand at negative frequencies.
+    #[serde(rename = "-")]
+    Negative,
+}
+
+/// Direction of the frequency from sample to sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Sweep {
+    #[default]
+    Up,
+    Down,
 }
 
 impl Table {

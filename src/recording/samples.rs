@@ -13,10 +13,6 @@ use crate::signal::BeatSignal;
 use ndarray::{Array2, Array3, Axis, ShapeError, concatenate};
 use num_complex::Complex64;
 use std::collections::HashSet;
-use std::io;
-
-/// Opens a data file by the name that the TOML gives it.
-pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
 
 impl Described<'_> {
     /// Reads the samples that the table names, with all its corrections, and sentences on doubts about them. The radar gives the numbers of elements

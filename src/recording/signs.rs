@@ -13,45 +13,16 @@
 //!   twice as fast, so that it expects echoes to migrate through twice as many range bins along the array.
 
 use super::Fault;
-use super::said_recording::Table;
+use super::said_recording::{BeatSign, CarrierAt, Sweep, Table};
 use crate::radar::{Carrier, Radar};
 use ndarray::{Array, Axis, Dimension};
 use num_complex::Complex64;
-use serde::Deserialize;
 
 /// The format of today's texts; texts that name none are of format 1.
 pub const FORMAT: u32 = 3;
 
 pub(super) fn oldest() -> u32 {
     1
-}
-
-/// Place of the frequency `radar.carrier_hz` on the chirp.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum CarrierAt {
-    FirstSample,
-    Middle,
-}
-
-/// The sign of the beat's phase as samples go on, for an echo that is farther than the radar itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-pub(super) enum BeatSign {
-    /// Echoes stand at positive frequencies.
-    #[serde(rename = "+")]
-    Positive,
-    /// Echoes stand at negative frequencies.
-    #[serde(rename = "-")]
-    Negative,
-}
-
-/// Direction of the frequency from sample to sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Sweep {
-    #[default]
-    Up,
-    Down,
 }
 
 /// Changes of the samples and of the carrier that bring a recording to the maps' formula.

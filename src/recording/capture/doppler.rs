@@ -9,10 +9,9 @@
 
 use super::channels::Channels;
 use super::frame::Frame;
-use crate::signal::simd::Simd;
+use crate::signal::simd::{Fft, Simd};
 use ndarray::{Array2, Array3, ArrayView3, Axis, s};
 use num_complex::Complex64;
-use rustfft::Fft;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

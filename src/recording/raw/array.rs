@@ -1,8 +1,8 @@
 //! Arrays without a text: the kinds of their axes by evidence, and the TOML that names them.
 
-use super::Imported;
 use super::axes::{Reading, readings};
 use super::boards::Board;
+use super::imported::Imported;
 use super::line::{Line, line, uniform};
 use super::text::{self, About};
 use crate::recording::described::open_file;

@@ -5,6 +5,7 @@
 //! | file | content |
 //! |---|---|
 //! | [`boards`] | places of antennas by a board's name |
+//! | `imported` | the ways to read a file |
 //! | `line` | the antennas of a `.cfg` that form one line |
 //! | `beside` | the `.cfg` beside a capture, and the files that go on from it |
 //! | `first_frame` | figures on the first frame: a constant part, the order of a cascade's chips |
@@ -17,10 +18,13 @@ mod axes;
 mod beside;
 pub mod boards;
 mod first_frame;
+mod imported;
 mod line;
 #[cfg(test)]
 pub(super) mod tests;
 mod text;
+
+pub use imported::Imported;
 
 use super::axes::{Chirp, Join};
 use super::capture::{Capture, Part};
@@ -36,28 +40,6 @@ use std::io::{self, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 const OFFERED: usize = 4;
-
-/// The ways to read a file, and the texts that describe it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Imported {
-    /// The file, and the ways to read it.
-    pub origin: Origin,
-    /// The layouts of a raw capture; nothing for an array.
-    pub found: Option<Found>,
-}
-
-impl Imported {
-    /// Certainty of the choice.
-    pub fn certainty(&self) -> Certainty {
-        self.found.as_ref().map_or_else(|| Certainty::of(self.margin()), Found::certainty)
-    }
-
-    /// Log-odds of the best above those of the next; `None` where there is no next.
-    pub fn margin(&self) -> Option<f64> {
-        let offers = &self.origin.offers;
-        Some(offers.first()?.log_odds - offers.get(1)?.log_odds)
-    }
-}
 
 /// Whether `path` names a raw capture, an array without a text, or the `.cfg` of one, by its ending. An `.npz` is one only by its arrays:
 /// [`is_raw_at`].

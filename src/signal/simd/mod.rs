@@ -8,6 +8,7 @@ mod instructions;
 pub mod powers;
 
 pub use instructions::{Kernel, SIMD_VARIABLE, Simd, SimdError};
+pub use rustfft::Fft;
 
 use num_complex::Complex;
 use rustfft::FftNum;
