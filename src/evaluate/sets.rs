@@ -104,7 +104,7 @@ impl Folder {
     /// The fingerprint of the files' names and contents, equal only where all are equal.
     ///
     /// # Errors
-    /// [`FolderError::Io`] names the file that can't be read.
+    /// [`FolderError`] names the file that can't be read.
     pub fn fingerprint(&self) -> Result<String, FolderError> {
         let mut pieces = Vec::new();
         for path in &self.files {

@@ -160,7 +160,7 @@ impl Thesis {
     /// Width and depth of the network whose weights `file` holds.
     ///
     /// # Errors
-    /// [`WeightsError::Tensor`] when it lacks the first convolution.
+    /// [`WeightsError`] when it lacks the first convolution.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
         let stage = |level: usize| {
             let ours = file.shape(&format!("down.layer3x3.{level}.conv.weight"));
@@ -191,7 +191,7 @@ impl Thesis {
     /// The bytes of `file` with this crate's tensor names. The names of the author's PyTorch program are replaced.
     ///
     /// # Errors
-    /// [`WeightsError::NotSafetensors`] if the header can't be written again.
+    /// [`WeightsError`] if the header can't be written again.
     pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {
         file.renamed(from_pytorch)
     }

@@ -48,7 +48,7 @@ impl Provenance {
     /// The radars of the training scenes: those of the entry [`DOMAIN_ENTRY`], else that of [`RADAR_ENTRY`], else table 3.1's.
     ///
     /// # Errors
-    /// [`WeightsError::Store`] where an entry of the file `name` can't be read.
+    /// [`WeightsError`] where an entry of the file `name` can't be read.
     pub fn domain(&self, name: &str) -> Result<Domain, WeightsError> {
         let (entry, what, read) = match (self.get(DOMAIN_ENTRY), self.get(RADAR_ENTRY)) {
             ("", "") => return Ok(Domain::Radar(Box::default())),
@@ -176,7 +176,7 @@ impl<'a> WeightFile<'a> {
     /// Checks that `known` accepts every tensor of the file.
     ///
     /// # Errors
-    /// [`WeightsError::Tensor`] names the first that it doesn't accept.
+    /// [`WeightsError`] names the first that it doesn't accept.
     #[cfg(feature = "network")]
     pub(super) fn expect_only(&self, known: impl Fn(&str) -> bool) -> Result<(), WeightsError> {
         let unknown = self.tensors.keys().find(|name| !known(name));
@@ -196,7 +196,7 @@ impl<'a> WeightFile<'a> {
     /// The file with other tensor names.
     ///
     /// # Errors
-    /// [`WeightsError::NotSafetensors`] if the header can't be written again.
+    /// [`WeightsError`] if the header can't be written again.
     pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {
         let tensors = self.tensors.iter().map(|(name, tensor)| (rename(name), tensor)).collect();
         write(&self.name, &tensors, &self.provenance, self.data)

@@ -34,7 +34,7 @@ const MAX_DEPTH: usize = 4;
 /// another along a first axis.
 ///
 /// # Errors
-/// [`MatError`] names the array, and what was expected of it.
+/// [`Fault`] names the array, and what was expected of it.
 pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
     let mut search = Search { want: Some(key), ..Search::default() };
     look_through(file, &mut search)?;
@@ -46,7 +46,7 @@ pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
 /// Names and shapes of all arrays of numbers, those in structs and cells too.
 ///
 /// # Errors
-/// [`MatError`].
+/// [`Fault`].
 pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut search = Search::default();
     look_through(file, &mut search)?;

@@ -9,7 +9,7 @@ use std::io::{self, Read, Seek};
 /// Reads the array `key` of an archive.
 ///
 /// # Errors
-/// [`NumpyError`] names the key, and what was expected of it.
+/// [`Fault`] names the key, and what was expected of it.
 pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     read_array(Npz::of(file)?.entry(key)?, &format!("array \"{key}\""))
 }
@@ -17,7 +17,7 @@ pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fau
 /// Names and shapes of the arrays of an archive, without their numbers; those that can't be read are left out.
 ///
 /// # Errors
-/// [`NumpyError`].
+/// [`Fault`].
 pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut archive = Npz::of(file)?;
     let keys = archive.keys().to_vec();
@@ -28,7 +28,7 @@ pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>
 /// Reads the one array of an `.npy` file.
 ///
 /// # Errors
-/// [`NumpyError`].
+/// [`Fault`].
 pub(super) fn read_npy(file: impl Read) -> Result<Numbers, Fault> {
     read_array(file, "the array")
 }

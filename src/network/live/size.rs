@@ -56,7 +56,7 @@ impl LiveSize {
     /// The size of the network of `file`.
     ///
     /// # Errors
-    /// [`WeightsError::Store`] names the entry where it can't be read, and the number that is out of bounds.
+    /// [`WeightsError`] names the entry where it can't be read, and the number that is out of bounds.
     pub fn of(file: &WeightFile) -> Result<Self, WeightsError> {
         let wrong = |told: String| WeightsError(format!("{}: its entry \"{SIZE_ENTRY}\" {told}", file.name()));
         let size: LiveSize = match file.provenance.get(SIZE_ENTRY) {
@@ -83,7 +83,7 @@ impl LiveSize {
 
     /// Checks that the radars of the weight file called `name` have this shape.
     /// # Errors
-    /// [`WeightsError::Store`] with both shapes.
+    /// [`WeightsError`] with both shapes.
     pub(super) fn check_domain(&self, name: &str, domain: &Domain) -> Result<(), WeightsError> {
         let ([samples, elements], LiveSize { rows, columns, .. }) = (domain.shape(), self);
         if [samples, elements] == [*rows, *columns] {

@@ -46,7 +46,7 @@ impl WeightFile<'_> {
     /// The same file with 32-bit floats in place of 16-bit ones, for readers that need them; other types stay.
     ///
     /// # Errors
-    /// [`WeightsError::Tensor`] for a tensor that lies outside the file, [`WeightsError::NotSafetensors`] if the header can't be written.
+    /// [`WeightsError`] for a tensor that lies outside the file, [`WeightsError`] if the header can't be written.
     #[cfg(feature = "network")]
     pub(super) fn in_single_precision(&self) -> Result<Vec<u8>, WeightsError> {
         if self.tensors.values().all(|tensor| tensor.dtype != HALF) {

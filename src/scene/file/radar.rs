@@ -3,7 +3,7 @@
 use crate::radar::Radar;
 use serde::Deserialize;
 
-/// The table [radar] of a TOML text, whose missing keys are table 3.1's, and where a recording's text tells it the range of its snapshot in metres.
+/// The table `[radar]` of a TOML text, whose missing keys are table 3.1's, and where a recording's text tells it the range of its snapshot in metres.
 /// # Errors
 /// The fault, its line, and the expected value.
 pub fn radar_of(text: &str) -> Result<(Radar, Option<f64>), String> {
