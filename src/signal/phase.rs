@@ -79,7 +79,7 @@ impl<const W: usize> EchoLanes<W> {
         (p.hi - p.hi.nearest()) + (p.lo + n1 * self.beat_turns_low)
     }
 
-    /// Range in cells, of which there are this many in a turn of the beat, on the same side of the wrap as that of the first lane.
+    /// Range in cells, `cells` to a turn of the beat. All lanes lie on the first lane's side of the wrap.
     #[inline(always)]
     pub(super) fn position_in(&self, cells: f64) -> Lanes<f64, W> {
         let of = Lanes::<f64, W>::splat;

@@ -1,13 +1,20 @@
 //! Captions of the maps and of the scene at a first start.
 
 use crate::app::jobs::Pipeline;
-use crate::app::panels::scene::Hint;
 use crate::app::state::{MapKind, MethodSlot, State};
 use crate::evaluate::dip_between;
 use crate::interact::Place;
 use crate::radar::{End, LayoutKind, Radar};
 use crate::scene::{Object, Scene, presets};
 use std::sync::LazyLock;
+
+/// A task, or the result of a drag.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hint {
+    pub text: String,
+    /// Places along which an object is to be dragged; empty without a drag.
+    pub way: Vec<Place>,
+}
 
 /// The scene of a first start, as it opens.
 static STREET: LazyLock<Scene> = LazyLock::new(|| presets::default_scene().scene);

@@ -1,6 +1,7 @@
 //! Drawings of the scene: ground, rings, spokes, array, objects, grips.
 
 use super::bodies;
+use crate::app::panels::captions::Hint;
 use crate::app::state::{Cursor, SceneView};
 use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, cross};
 use crate::interact::{Grip, Place, grips};
@@ -311,14 +312,6 @@ fn length_text(metres: f64) -> String {
         m => (m * 1e3, "mm"),
     };
     format!("{} {unit}", axes::tick_text(length, length))
-}
-
-/// A task, or the result of a drag.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Hint {
-    pub text: String,
-    /// Places along which an object is to be dragged; empty without a drag.
-    pub way: Vec<Place>,
 }
 
 /// Gap between the arrow and the places at its ends, points.

@@ -6,13 +6,12 @@ mod canvas;
 mod disturbances;
 mod handles;
 
-use super::captions;
+use super::captions::{self, Hint};
 use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, Cursor, EditCommand, MapKind, NewObject, SceneView, State, ViewCommand};
 use crate::app::widgets::{Inks, empty_text, entry, nudge, pan_keys, zoom_keys};
 use crate::interact::{Editor, Grip, Place, SelectionMode, hit};
 use crate::scene::{Reflector, Scene};
-pub use canvas::Hint;
 use canvas::{Canvas, Look};
 use eframe::egui::{self, CursorIcon, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
 
