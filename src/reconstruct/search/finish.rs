@@ -3,11 +3,10 @@
 use super::element_gains::ElementGains;
 use super::propose::end_beams::beam_noise_power;
 use super::state::State;
-use crate::radar::{End, Radar};
+use crate::radar::Radar;
 use crate::reconstruct::attempt::Attempt;
 use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, Workbench, rows_of};
 use crate::reconstruct::{ReconstructError, Request};
-use crate::scene::Reflector;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -29,12 +28,16 @@ const UNWINDOWED_WORK: usize = 50_000;
 /// Limits of the refinement with tied gains.
 const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
 
-/// Price of a gain of a loud object over white noise, as a part of its echo's energy: without it, gains of neighbours that only noise separates
-/// would cancel each other.
-const NOISE_RIDGE: f64 = 0.02;
+/// Largest reflectivity over the largest that any of the objects has when it is fitted alone, as a ratio: beyond, neighbours cancel each other.
+const MAX_OVER_ALONE: f64 = 1.5;
 
-/// Energy of an object over all that is heard at its range, as a ratio, from which on it is loud: noise adds a little to an echo alone.
-const LOUD_ENERGY_RATIO: f64 = 1.5;
+/// Prices of a gain where neighbours cancel each other, as parts of its echo's energy; the first that ends it is taken.
+const RIDGES: [f64; 6] = [0.002, 0.006, 0.02, 0.06, 0.2, 0.6];
+
+/// Decades by which an object must explain more than is left around it to be there without doubt, and the largest reflectivity of any other over
+/// the largest of those, as a ratio.
+const CERTAIN_DECADES: f64 = 2.0;
+const MAX_OVER_CERTAIN: f64 = 3.0;
 
 /// Range bins and columns below which two points over white noise are one.
 const SAME_PLACE: [f64; 2] = [0.25, 1.0];
@@ -114,10 +117,9 @@ pub(super) fn finish(
     let bench = flat_bench.as_ref().unwrap_or(bench);
     let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
     let best = if complete { tied(bench, samples, apart, request.noise.is_white()) } else { apart };
-    let best = match request.noise.is_white() {
-        true => quieted(radar, bench, samples, merged(radar, bench, samples, best)),
-        false => best,
-    };
+    let best = if request.noise.is_white() { merged(radar, bench, samples, best) } else { best };
+    let is_certain = complete && !request.noise.is_white();
+    let best = if is_certain { best } else { quieted(bench, samples, without_giants(radar, bench, samples, best)) };
     request.task.check()?;
     let residual = best.residual.flat(&bench.sensor);
     let noise_variance = hearing.noise_variance(radar, &residual);
@@ -171,33 +173,41 @@ fn tie_of(fit: &Fit) -> Tie {
     if fit.gains.iter().all(|g| g[0] == g[1]) { Tie::Both } else { Tie::PerEnd }
 }
 
-/// `fit` with a ridge on its gains that grows until no object is loud.
-fn quieted(radar: &Radar, bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
+/// Size of an object's reflectivity.
+fn size(gains: &Gains) -> f64 {
+    (gains[0].norm() + gains[1].norm()) / 2.0
+}
+
+/// `fit` with a ridge on its gains that grows until no two neighbours cancel each other.
+fn quieted(bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
+    let alone = fit.atoms.par_iter().map(|atom| size(&bench.solve_alone(samples, *atom).gains[0]));
+    let most = MAX_OVER_ALONE * alone.reduce(|| 0.0, f64::max);
     let tie = tie_of(&fit);
-    for factor in [1.0, 3.0, 10.0, 30.0] {
-        if !are_loud(radar, bench, &fit).contains(&true) {
+    for ridge in RIDGES {
+        if fit.gains.iter().all(|gains| size(gains) <= most) {
             break;
         }
-        fit = bench.solve(samples, fit.atoms, tie, factor * NOISE_RIDGE);
+        fit = bench.solve(samples, fit.atoms, tie, ridge);
     }
     fit
 }
 
-/// Whether each object has more energy than the samples at its range: a part of it then only cancels another.
-pub fn are_loud(radar: &Radar, bench: &Workbench, fit: &Fit) -> Vec<bool> {
-    let back: Vec<Gains> = fit.gains.iter().map(|g| g.map(|g| -g)).collect();
-    let heard = Profile::new(radar, &bench.without(&fit.residual, &fit.atoms, &back).residual.flat(&bench.sensor));
-    let weight = radar.end_elements as f64 * radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
-    let is_loud = |(atom, gains): (&Atom, &Gains)| {
-        let of_end = |(end, gain): (End, &Complex64)| {
-            let centre = radar.end_centre_metres(end);
-            let fall = |r: Reflector| ((r.x_metres - centre).powi(2) + r.y_metres.powi(2)).max(1e-6).powi(-2);
-            gain.norm_sqr() * atom.reflectors(1.0).map(fall).sum::<f64>()
-        };
-        let own: f64 = End::BOTH.into_iter().zip(gains).map(of_end).sum();
-        weight * own > LOUD_ENERGY_RATIO * heard.at(&rows_of(radar, atom))
-    };
-    fit.atoms.iter().zip(&fit.gains).map(is_loud).collect()
+/// `fit` without objects that may not be there and whose reflectivity is far above that of all that are: ghosts at great ranges, where little is heard.
+fn without_giants(radar: &Radar, bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
+    let tie = tie_of(&fit);
+    loop {
+        let noise = bench.hearing.noise_variance(radar, &fit.residual.flat(&bench.sensor));
+        let needed = needed_decades(radar, bench, &fit, noise);
+        let certain = fit.gains.iter().zip(&needed).filter(|(_, needed)| **needed >= CERTAIN_DECADES);
+        let largest = certain.map(|(gains, _)| size(gains)).fold(0.0, f64::max);
+        let is_kept =
+            |i: &usize| needed[*i] >= CERTAIN_DECADES || size(&fit.gains[*i]) <= MAX_OVER_CERTAIN * largest;
+        let kept: Vec<usize> = (0..needed.len()).filter(is_kept).collect();
+        if largest == 0.0 || kept.len() == needed.len() {
+            return fit;
+        }
+        fit = bench.solve(samples, kept.into_iter().map(|i| fit.atoms[i]).collect(), tie, 0.0);
+    }
 }
 
 /// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.
@@ -273,8 +283,7 @@ fn reflectivities(gains: &[Gains]) -> Vec<f64> {
         .iter()
         .zip(gains)
         .map(|(m, g)| {
-            let size = (g[0].norm() + g[1].norm()) / 2.0;
-            if (m * common).re < 0.0 { -size } else { size }
+            if (m * common).re < 0.0 { -size(g) } else { size(g) }
         })
         .collect();
     let sign = if signed.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };

@@ -1,6 +1,5 @@
 //! The removal of atoms that the others don't need.
 
-use super::finish::are_loud;
 use super::propose::strides::MAX_RANGES;
 use super::state::{Search, tried};
 use super::trace::decades;
@@ -33,12 +32,7 @@ impl Search<'_> {
             let least = rounding.max(MIN_WORTH_RATIO * self.bench.gain_noise(self.radar, &fit));
             let worth = self.bench.worths(&fit);
             let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
-            let is_loud = self.in_noise.then(|| are_loud(self.radar, self.bench, &fit));
-            let is_needless = |i: &usize| {
-                worth[*i] < least
-                    || self.ran_away(&fit.atoms[*i])
-                    || is_loud.as_ref().is_some_and(|is_loud| is_loud[*i])
-            };
+            let is_needless = |i: &usize| worth[*i] < least || self.ran_away(&fit.atoms[*i]);
             let mut order: Vec<usize> = (0..fit.atoms.len()).filter(is_needless).collect();
             order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
             let mut gone: Vec<usize> = Vec::new();

@@ -5,7 +5,7 @@ use super::state::{MOST_ROUNDS, Search, State};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
-use crate::reconstruct::fit::{Atom, Gains, Limits, Tie};
+use crate::reconstruct::fit::{Limits, Tie};
 
 /// Another round needs that this part of the energy at most is left by the last.
 pub const WORTH_ANOTHER: f64 = 0.5;
@@ -33,28 +33,22 @@ impl Search<'_> {
         Ok(self.judged(self.pruned(fit)?))
     }
 
-    /// Lines of any direction that begin where both ends may hear points, and the points besides that they agree on; and again, as what was found
-    /// may have hidden more.
+    /// Lines of any direction that begin where both ends may hear points; and again, as what was found may have hidden more.
     pub fn climb_lines(&self, State { mut fit, pairs, .. }: State) -> Result<State, ReconstructError> {
         let mut pairs = pairs.unwrap_or_default();
         for _ in 0..MOST_ROUNDS {
             let (before, cost) = (fit.atoms.len(), fit.cost());
             fit = self.more_walls(fit, pairs.guesses_metres.clone())?;
-            let sure = pairs.points.iter().filter(|point| point.is_sure());
-            let more: Vec<Atom> =
-                sure.map(|point| point.atom).filter(|point| !fit.atoms.iter().any(|wall| is_on(wall, point))).collect();
-            if fit.atoms.len() + more.len() == before {
+            if fit.atoms.len() == before {
                 break;
             }
-            fit.gains.extend(vec![Gains::default(); more.len()]);
-            fit.atoms.extend(more);
             fit = self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH);
             if self.is_explained(&fit) {
                 break;
             }
             if fit.cost() > WORTH_ANOTHER * cost {
                 // Much the same is left, and much the same would be heard in it: what is not in `fit` yet.
-                pairs.points.retain(|point| !point.is_sure() && !fit.atoms.iter().any(|wall| is_on(wall, &point.atom)));
+                pairs.points.retain(|point| !fit.atoms.iter().any(|wall| is_on(wall, &point.atom)));
                 break;
             }
             pairs = self.pairs(&fit);
@@ -62,17 +56,15 @@ impl Search<'_> {
         Ok(State { pairs: Some(pairs), ..State::of(fit) })
     }
 
-    /// The points that the ends' tones lead to beside the lines, time and again. Where an echo is long and no wall was found, they are left where
-    /// they are: lines are better found before.
+    /// The points that the ends' tones lead to beside the lines, time and again.
     pub fn climb_pairs(&self, State { mut fit, mut pairs, .. }: State) -> Result<State, ReconstructError> {
-        let is_polished = !fit.atoms.is_empty() || !self.is_long(&fit.residual.flat(&self.bench.sensor));
         for _ in 0..MOST_ROUNDS {
             if self.is_explained(&fit) {
                 break;
             }
             let before = fit.cost();
             let pairs = pairs.take().unwrap_or_else(|| self.pairs(&fit));
-            fit = self.nearly_there(self.paired(fit, &pairs, is_polished)?)?;
+            fit = self.nearly_there(self.paired(fit, &pairs, true)?)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
             if fit.cost() > WORTH_ANOTHER * before {
                 break;

@@ -16,17 +16,11 @@ const LOG_GAIN: f64 = 0.1;
 /// A disagreement of this many times all that is allowed makes no pair.
 const MOST_APART: f64 = 3.0;
 
-/// Pairs that agree within this part of what is allowed are points.
-const SURELY_ONE: f64 = 0.2;
-
 /// Range bins within which the last end is searched for the prediction of the first end's direction.
 const SEARCH_BINS: f64 = 2.0;
 
 /// Standard deviations of noise that are allowed.
 const DEVIATIONS: f64 = 4.0;
-
-/// A tone is alone where no other is heard within this many range bins.
-const ALONE_BINS: f64 = 3.0;
 
 /// Factor of the tolerances of directions and gains where tones are hardly separated; pairs within them are guesses.
 const GUESS: f64 = 6.0;
@@ -50,8 +44,6 @@ struct Heard {
     amplitude: f64,
     /// Largest error of the direction's cosine by noise.
     cos_tolerance: f64,
-    /// Whether no other tone is near.
-    is_alone: bool,
 }
 
 /// A point with a tone at both ends.
@@ -61,15 +53,6 @@ pub struct Paired {
     pub atom: Atom,
     /// Disagreement of the ends, as a part of the tolerance: directions and gains together.
     pub apart: f64,
-    /// Whether neither end hears another tone near its own.
-    pub is_alone: bool,
-}
-
-impl Paired {
-    /// Whether this is surely one reflector.
-    pub fn is_sure(&self) -> bool {
-        self.apart < SURELY_ONE && self.is_alone
-    }
 }
 
 /// A tone at each end that may be one reflector.
@@ -223,19 +206,11 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
         }
     }
     let deviation = (noise_variance / radar.samples as f64).sqrt() / (radians_per_metre * step_metres).abs();
-    let is_alone = |i: usize| {
-        let apart = |j: usize| {
-            let off = (tones[i].bins - tones[j].bins).abs();
-            off.min(radar.samples as f64 - off)
-        };
-        (0..tones.len()).all(|j| j == i || apart(j) > ALONE_BINS)
-    };
-    let heard = gains.iter().zip(&cosines).enumerate().map(|(i, (gain, cos))| Heard {
-        bins: tones[i].bins,
+    let heard = tones.iter().zip(&gains).zip(&cosines).map(|((tone, gain), cos)| Heard {
+        bins: tone.bins,
         cos: *cos,
         amplitude: gain.norm(),
         cos_tolerance: COS + DEVIATIONS * deviation / gain.norm().max(f64::MIN_POSITIVE),
-        is_alone: is_alone(i),
     });
     let antennas = (!radar.is_monostatic()).then(|| [radar.pair(number), radar.pair(number + 1)]);
     Some(Listener { x_metres, step_metres, antennas, heard: heard.collect() })
@@ -272,8 +247,7 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
         let apart = disagreements.iter().map(|part| part.abs()).sum();
         if apart < GUESS * MOST_APART {
             let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
-            let is_alone = own.is_alone && other.is_alone;
-            pairs.push(Pair { first: i, last: j, point: Paired { atom, apart, is_alone }, disagreements });
+            pairs.push(Pair { first: i, last: j, point: Paired { atom, apart }, disagreements });
         }
     }
     pairs
