@@ -98,6 +98,12 @@ picture() {
 # says WHAT SENTENCE: whether the program that ran last wrote it to standard error, which is kept in $work/said.
 says() { grep -qF "$2" "$work/said" || fail "$1: expected \"$2\", it said: $(cat "$work/said")"; }
 
+# packed KIND NAME: the package of this name is left in $package.
+packed() {
+    package=$packages/$2
+    [[ -f $package ]] || fail "$package is not there; scripts/package $1 makes it"
+}
+
 # none WHAT FIND-ARGUMENTS...: whether no such file is left.
 none() {
     local left
