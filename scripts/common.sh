@@ -3,9 +3,10 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# Where cargo builds, and where scripts/package puts packages.
+# Where cargo builds, where scripts/package puts packages, and their version.
 target=${CARGO_TARGET_DIR:-$PWD/target}
 packages=$PWD/target/package
+version=$(sed -n '0,/^version = /s/^version = "\(.*\)"/\1/p' Cargo.toml)
 
 fail() { echo "${0##*/}: $*" >&2; exit 1; }
 
@@ -25,22 +26,17 @@ need() {
     ((${#missing[@]} == 0)) || apt "${missing[@]}"
 }
 
-# The version of the program.
-version() { sed -n '0,/^version = /s/^version = "\(.*\)"/\1/p' Cargo.toml; }
-
 # Packages of the libraries that the window loads: the Debian package depends on them.
 libraries() { sed -n 's/^depends = .* libgcc1, \(.*\)"$/\1/p' Cargo.toml | tr -d ,; }
 
-# A folder $work and the processes in `started` last until the script ends.
+# A folder and the processes in `started` last until the script ends.
+work=$(mktemp -d)
 started=()
 finish() {
     kill "${started[@]}" 2>/dev/null || true
-    rm -rf --one-file-system "${work:-}"
+    rm -rf --one-file-system "$work"
 }
-scratch() {
-    work=$(mktemp -d)
-    trap finish EXIT
-}
+trap finish EXIT
 
 # server OPTIONS...: a virtual display, ready; its number is left in $number. Without -noreset it starts anew, and refuses programs meanwhile, when its
 # last window closes.
