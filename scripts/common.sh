@@ -1,5 +1,12 @@
-# Functions of the scripts in this folder, which source it from the repository.
-# shellcheck shell=bash
+# Functions of the scripts in this folder. A script that sources it goes on in the repository, and ends at its first failure.
+# shellcheck shell=bash disable=SC2034
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# Where cargo builds, where scripts/package puts packages, and their version.
+target=${CARGO_TARGET_DIR:-$PWD/target}
+packages=$PWD/target/package
+version=$(sed -n '0,/^version = /s/^version = "\(.*\)"/\1/p' Cargo.toml)
 
 fail() { echo "${0##*/}: $*" >&2; exit 1; }
 
@@ -19,55 +26,51 @@ need() {
     ((${#missing[@]} == 0)) || apt "${missing[@]}"
 }
 
-# The version of the program.
-version() { sed -n '0,/^version = /s/^version = "\(.*\)"/\1/p' Cargo.toml; }
+# Packages of the libraries that the window loads: the Debian package depends on them.
+libraries() { sed -n 's/^depends = .* libgcc1, \(.*\)"$/\1/p' Cargo.toml | tr -d ,; }
 
-# A folder $work and the processes in `started` last until the script ends.
+# A folder and the processes in `started` last until the script ends.
+work=$(mktemp -d)
 started=()
 finish() {
-    ((${#started[@]} == 0)) || kill "${started[@]}" 2>/dev/null || true
-    [[ -z ${work:-} ]] || rm -rf --one-file-system "$work"
+    kill "${started[@]}" 2>/dev/null || true
+    rm -rf --one-file-system "$work"
 }
-scratch() {
-    work=$(mktemp -d)
-    trap finish EXIT
-}
+trap finish EXIT
 
-# server NUMBER OPTIONS...: a virtual display, ready. Without -noreset it starts anew, and refuses programs meanwhile, when its last window closes.
+# server OPTIONS...: a virtual display, ready; its number is left in $number. Without -noreset it starts anew, and refuses programs meanwhile, when its
+# last window closes.
 server() {
-    local number=$1
-    shift
     mkdir -p /tmp/.X11-unix
-    Xvfb ":$number" -screen 0 1440x900x24 -nolisten tcp -ac -noreset "$@" >"$work/xvfb-$number.log" 2>&1 &
+    read -r number < <(exec Xvfb -displayfd 1 -screen 0 1440x900x24 -nolisten tcp -ac -noreset "$@" 2>"$work/xvfb.log") ||
+        fail "Xvfb did not start: $(cat "$work/xvfb.log")"
     started+=($!)
-    # Its socket is there before it listens.
-    for _ in {1..100}; do DISPLAY=:$number xdotool getdisplaygeometry >/dev/null 2>&1 && return; sleep 0.1; done
-    fail "Xvfb did not start: $(cat "$work/xvfb-$number.log")"
 }
 
 # own_display OPTIONS...: a display of this script's own, for all that it starts.
 own_display() {
-    export DISPLAY=:$((90 + RANDOM % 800)) LIBGL_ALWAYS_SOFTWARE=1
     unset WAYLAND_DISPLAY
-    server "${DISPLAY#:}" "$@"
+    server "$@"
+    export DISPLAY=:$number LIBGL_ALWAYS_SOFTWARE=1
 }
 
-# await_window SECONDS WHAT [PROCESS]: waits for the window of a program that runs; its number is left in $window.
-await_window() {
-    local start=$SECONDS
-    until window=$(xdotool search --onlyvisible --name apertura 2>/dev/null | head -1) && [[ -n $window ]]; do
-        [[ -z ${3:-} ]] || kill -0 "$3" 2>/dev/null || fail "$2: the program ended before its window was there: $(cat "$work/said")"
-        ((SECONDS - start < $1)) || fail "$2: no window within $1 s: $(cat "$work/said" 2>/dev/null)"
-        sleep 0.2
-    done
-}
-
-# open PROGRAM ARGUMENTS...: starts the program with settings of its own; its window fills the display. Its process is left in $app.
+# open WHAT COMMAND...: starts a program and waits for its window. They are left in $app and $window, what it writes to standard error in $work/said.
 open() {
-    XDG_DATA_HOME=$(mktemp -d -p "$work") XDG_CONFIG_HOME=$(mktemp -d -p "$work") "$@" 2>"$work/said" &
+    local what=$1 start=$SECONDS
+    "${@:2}" >"$work/printed" 2>"$work/said" &
     app=$!
     started+=("$app")
-    await_window 60 "$1" "$app"
+    until window=$(xdotool search --onlyvisible --name apertura 2>/dev/null | head -1) && [[ -n $window ]]; do
+        kill -0 "$app" 2>/dev/null || fail "$what: the program ended before its window was there: $(cat "$work/said")"
+        ((SECONDS - start < 90)) || fail "$what: no window within 90 s: $(cat "$work/said")"
+        sleep 0.2
+    done
+    echo "${0##*/}: $what: the window is there after $((SECONDS - start)) s"
+}
+
+# fill PROGRAM ARGUMENTS...: opens the program with settings of its own; its window fills the display.
+fill() {
+    open "$1" env XDG_DATA_HOME="$(mktemp -d -p "$work")" XDG_CONFIG_HOME="$(mktemp -d -p "$work")" "$@"
     xdotool windowmove "$window" 0 0 windowsize "$window" 1440 900
     sleep 3
     xdotool windowfocus "$window"
@@ -81,8 +84,28 @@ look() {
     echo "${0##*/}: $1, $colours colours"
 }
 
+# picture NAME: what is on screen, for a person to look at.
+picture() {
+    mkdir -p "$packages/pictures"
+    import -window root "$packages/pictures/$1.png"
+    look "$packages/pictures/$1.png"
+}
+
 # says WHAT SENTENCE: whether the program that ran last wrote it to standard error, which is kept in $work/said.
 says() { grep -qF "$2" "$work/said" || fail "$1: expected \"$2\", it said: $(cat "$work/said")"; }
+
+# packed KIND NAME: the package of this name is left in $package.
+packed() {
+    package=$packages/$2
+    [[ -f $package ]] || fail "$package is not there; scripts/package $1 makes it"
+}
+
+# none WHAT FIND-ARGUMENTS...: whether no such file is left.
+none() {
+    local left
+    left=$(find "${@:2}")
+    [[ -z $left ]] || fail "$1 leaves $left"
+}
 
 # on_clipboard WHAT TEXT: waits until another program finds the text on the clipboard.
 on_clipboard() {
@@ -96,7 +119,7 @@ on_clipboard() {
 }
 
 # press KEY...: each with a pause after it.
-press() { for key; do xdotool key --clearmodifiers "$key"; sleep "${PAUSE:-1}"; done; }
+press() { for key; do xdotool key --clearmodifiers "$key" sleep 1; done; }
 
 # share_clipboard FIRST: copies everything in the window, where a point stands at y_metres = FIRST, then pastes a point of another program.
 share_clipboard() {
@@ -114,9 +137,7 @@ share_clipboard() {
 run_steps() {
     local prefix=$1 name start times=()
     shift
-    for name; do
-        declare -F "$prefix$name" >/dev/null || fail "there is no \"$name\"; there are $(declare -F | sed -n "s/^declare -f $prefix//p" | tr '\n' ' ')"
-    done
+    declare -F "${@/#/$prefix}" >/dev/null || fail "expected names of $(compgen -A function "$prefix" | tr '\n' ' ')"
     for name; do
         start=$SECONDS
         echo "== $name"

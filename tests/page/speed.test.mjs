@@ -1,6 +1,6 @@
-// Run times on one thread: the page's against the native program's, which `scripts/measure-page` measures before.
+// Run times on one thread, for `scripts/measure-page`: the page's against the native program's.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
 import { test } from "node:test";
 import { launch, PATIENCE_MILLISECONDS, address } from "./browser.mjs";
 
@@ -12,7 +12,7 @@ const MOST_UNTIL_MAPS_MILLISECONDS = 3000;
 const TARGET = { x: 560, y: 340, width: 340, height: 200 };
 const BYTES_OF_A_MAP = 20000;
 
-test("the first maps are there soon after the page is opened", { skip: !process.env.NATIVE }, async () => {
+test("the first maps are there soon after the page is opened", { skip: !process.env.MEASURE }, async () => {
   const browser = await launch();
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 } });
   const page = await context.newPage();
@@ -28,7 +28,7 @@ test("the first maps are there soon after the page is opened", { skip: !process.
   assert.ok(milliseconds < MOST_UNTIL_MAPS_MILLISECONDS, `${milliseconds} ms`);
 });
 
-test("the page takes little longer on one thread than the native program", { skip: !process.env.NATIVE }, async () => {
+test("the page takes little longer on one thread than the native program", { skip: !process.env.MEASURE }, async () => {
   const browser = await launch();
   const page = await browser.newPage();
   await page.goto(`${address}?measure`);
@@ -36,7 +36,8 @@ test("the page takes little longer on one thread than the native program", { ski
   await page.waitForFunction(() => document.getElementById("message").textContent.trim().startsWith("["), null, { timeout: PATIENCE_MILLISECONDS });
   const ours = JSON.parse(await page.evaluate(told));
   await browser.close();
-  const theirs = JSON.parse(readFileSync(process.env.NATIVE, "utf8"));
+  const env = { ...process.env, RAYON_NUM_THREADS: "1", APERTURA_SIMD: "portable" };
+  const theirs = JSON.parse(execFileSync(process.env.APERTURA, ["bench", "--one-thread", "--json"], { env }));
   const ratios = theirs.map(({ name, milliseconds }, i) => {
     const ratio = ours[i].milliseconds / milliseconds;
     console.log(`${name}: ${ours[i].milliseconds.toFixed(2)} ms in the page, ${milliseconds.toFixed(2)} ms natively, ratio ${ratio.toFixed(2)}`);
