@@ -2,11 +2,10 @@
 
 use super::application::App;
 use super::apply;
-use super::panels::bounds::BoundsPanel;
-use super::panels::chirp::ChirpPanel;
-use super::panels::doppler::DopplerPanel;
-use super::panels::phasors::PhasorsPanel;
+use super::jobs::{BoundsRequest, ChirpQuery, DopplerQuery, PhasorsQuery};
+use super::panels::phasors::PhasorsMemory;
 use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, Panel, SceneView, Settings};
+use super::widgets::Texture;
 use crate::bounds::PositionBound;
 use crate::engine::EngineReport;
 use crate::evaluate::Metrics;
@@ -125,17 +124,22 @@ impl App {
 
     /// The bound on screen, if there is one.
     pub fn position_bound(&self) -> Option<PositionBound> {
-        self.panels.derived::<BoundsPanel>(Panel::Bounds)?.value()?.ok()?.bound.ok()
+        self.panels.derived::<Texture, BoundsRequest>(Panel::Bounds)?.value()?.ok()?.bound.ok()
     }
 
     /// Range bin and column of the chain of phasors on screen, and the end of the chain, if there is one.
     pub fn phasor_sum(&self) -> Option<([usize; 2], Complex64)> {
-        self.panels.derived::<PhasorsPanel>(Panel::Phasors)?.value()?.ok().map(|r| (r.cell, r.measured.sum()))
+        self.panels
+            .derived::<PhasorsMemory, PhasorsQuery>(Panel::Phasors)?
+            .value()?
+            .ok()
+            .map(|r| (r.cell, r.measured.sum()))
     }
 
     /// Range bin and column of the strongest cell of the range-Doppler map on screen.
     pub fn doppler_peak(&self) -> Option<(usize, usize)> {
-        let decades = self.panels.derived::<DopplerPanel>(Panel::RangeDoppler)?.value()?.ok()?.decades.decades();
+        let decades =
+            self.panels.derived::<Texture, DopplerQuery>(Panel::RangeDoppler)?.value()?.ok()?.decades.decades();
         decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
     }
 
@@ -151,7 +155,7 @@ impl App {
 
     /// The range bin in which the beat on screen is strongest, and the element of that beat.
     pub fn beat_peak(&self) -> Option<(usize, usize)> {
-        let result = self.panels.derived::<ChirpPanel>(Panel::Chirp)?.value()?.ok()?;
+        let result = self.panels.derived::<(), ChirpQuery>(Panel::Chirp)?.value()?.ok()?;
         let peak = (0..result.spectrum.len()).max_by(|a, b| result.spectrum[*a].total_cmp(&result.spectrum[*b]))?;
         Some((peak, result.element))
     }

@@ -1,21 +1,12 @@
 //! The disturbances panel: an interfering radar, and a wall that mirrors.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::{Quantity, labelled, scrolled};
 use crate::scene::{Interferer, Mirror};
 use eframe::egui::{Grid, Ui};
 
-pub struct DisturbancesPanel;
-
-impl Content for DisturbancesPanel {
-    type Asks = Nothing;
-    type Remembers = ();
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state)
-    }
-}
+pub const PANEL: Content = Content::drawn(|ui, cx| show(ui, cx.state));
 
 pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
     scrolled(ui, |ui, asked| {

@@ -1,8 +1,8 @@
 //! The range-Doppler panel: the map of range against radial velocity, the radar's chirps, and the timeline on which the scene plays.
 
 use super::recording::frame_slider;
-use crate::app::content::{Content, Cx};
-use crate::app::jobs::{DopplerQuery, DopplerResult, Jobs};
+use crate::app::content::Content;
+use crate::app::jobs::{DopplerQuery, DopplerResult};
 use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
 use crate::app::widgets::{
     Axis, Bar, Chart, Computed, Drawn, MARK, MARK_EDGE, NumberField, Texture, axes, colour_table, computed, edged,
@@ -23,21 +23,10 @@ const MARKS: usize = 200;
 /// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.
 const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
 
-pub struct DopplerPanel;
-
-impl Content for DopplerPanel {
-    type Asks = DopplerQuery;
-    type Remembers = Texture;
-    const TELLS_ANSWERS: bool = true;
-
-    fn asks(state: &State, _: &Jobs) -> Option<DopplerQuery> {
-        DopplerQuery::of(state)
-    }
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.value, cx.memory)
-    }
-}
+pub const PANEL: Content<Texture, DopplerQuery> = Content {
+    tells_answers: true,
+    ..Content::computed(|state, _| DopplerQuery::of(state), |ui, cx| show(ui, cx.state, cx.value, cx.memory))
+};
 
 pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, DopplerResult>, texture: &mut Texture) -> Vec<Command> {
     padded(ui, |ui, asked| {

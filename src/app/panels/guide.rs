@@ -1,6 +1,6 @@
 //! The guide panel: chapters on the maps, with buttons that set up their examples.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::state::{
     Command, DocumentCommand, MapKind, Panel, Projection, RadarCommand, ViewCommand, WindowCommand,
 };
@@ -144,16 +144,7 @@ pub struct GuideMemory {
     open: usize,
 }
 
-pub struct GuidePanel;
-
-impl Content for GuidePanel {
-    type Asks = Nothing;
-    type Remembers = GuideMemory;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.memory)
-    }
-}
+pub const PANEL: Content<GuideMemory> = Content::drawn(|ui, cx| show(ui, cx.memory));
 
 /// Draws the panel: one chapter, and the buttons to the others.
 pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {

@@ -2,7 +2,7 @@
 
 mod number;
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::state::{Command, EditCommand, NewObject, State};
 use crate::app::widgets::{angle_of_place_degrees, button, choices, press, scrolled, signed};
 use crate::interact::Coordinates;
@@ -11,17 +11,7 @@ use crate::scene::{MAX_NAME_CHARACTERS, Object, Scene};
 use eframe::egui::{self, Grid, TextEdit, Ui};
 use number::number;
 
-pub struct InspectorPanel;
-
-impl Content for InspectorPanel {
-    type Asks = Nothing;
-    type Remembers = ();
-    const TELLS_ANSWERS: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state)
-    }
-}
+pub const PANEL: Content = Content { tells_answers: true, ..Content::drawn(|ui, cx| show(ui, cx.state)) };
 
 pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
     scrolled(ui, |ui, asked| match state.editor.selection().is_empty() {

@@ -1,6 +1,6 @@
 //! The objects panel: a list of the scene's objects, with place and reflectivity. A click selects an object.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::state::{Command, EditCommand, State};
 use crate::app::widgets::{axes, focus_after_click, keep_arrows};
 use crate::interact::{Coordinates, Field, SelectionMode};
@@ -19,16 +19,7 @@ pub struct ObjectsMemory {
 
 const ROW_HEIGHT: f32 = 20.0;
 
-pub struct ObjectsPanel;
-
-impl Content for ObjectsPanel {
-    type Asks = Nothing;
-    type Remembers = ObjectsMemory;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.memory)
-    }
-}
+pub const PANEL: Content<ObjectsMemory> = Content::drawn(|ui, cx| show(ui, cx.state, cx.memory));
 
 pub fn show(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory) -> Vec<Command> {
     let mut asked = Vec::new();

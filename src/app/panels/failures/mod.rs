@@ -11,7 +11,7 @@ mod points;
 mod shared;
 mod table;
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, fates_of};
 use crate::app::state::{Command, MethodSlot, RowsCommand, State};
 use crate::evaluate::worsen::summary;
@@ -36,20 +36,15 @@ pub struct FailuresMemory {
     opened: opened::OpenedMemory,
 }
 
-pub struct FailuresPanel;
+pub const PANEL: Content<FailuresMemory> = Content::drawn(draw);
 
-impl Content for FailuresPanel {
-    type Asks = Nothing;
-    type Remembers = FailuresMemory;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, jobs) = (&*cx.state, cx.jobs);
-        let own = jobs.own_scenes(state);
-        let input = Input { state, job: &jobs.failures, own: own.as_deref(), now: now(state, jobs) };
-        let asked = show(ui, &input, cx.memory);
-        cx.state.failures.in_sight = cx.memory.table.in_sight.clone();
-        asked
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, FailuresMemory>) -> Vec<Command> {
+    let (state, jobs) = (&*cx.state, cx.jobs);
+    let own = jobs.own_scenes(state);
+    let input = Input { state, job: &jobs.failures, own: own.as_deref(), now: now(state, jobs) };
+    let asked = show(ui, &input, cx.memory);
+    cx.state.failures.in_sight = cx.memory.table.in_sight.clone();
+    asked
 }
 
 /// Figures of the method in use for the row on screen.
