@@ -287,7 +287,7 @@ impl eframe::App for App {
             self.state.note_first_drag();
         }
         let wants = self.panels.wants(&self.state);
-        self.jobs.ask(&mut self.state, wants);
+        self.jobs.ask(&mut self.state, &wants);
         self.panels.ask(&self.state, &self.jobs);
         self.update_title(&ctx);
         self.zoom.follow(&ctx, &self.state);

@@ -1,6 +1,6 @@
 //! The type of a panel: its query, its memory and its drawing.
 
-use super::jobs::{Derived, Failure, Jobs, Query, Wants};
+use super::jobs::{Derived, Failure, Jobs, Query, Want};
 use super::state::{Command, MapKind, Panel, State};
 use crate::task::Task;
 use eframe::egui::Ui;
@@ -9,7 +9,7 @@ use eframe::egui::Ui;
 /// [`every_panel`](super) has its line.
 pub struct Content<M = (), Q: Query = Nothing> {
     /// The maps and methods that the panel reads, which are computed for all panels.
-    pub wants: Wants,
+    pub wants: &'static [Want],
     /// Whether the panel marks old values itself; otherwise it is dimmed as a whole.
     pub marks_age: bool,
     /// Whether the panel shows answers to a lesson's questions. It is hidden until the learner has predicted.
@@ -35,7 +35,7 @@ impl<M, Q: Query> Content<M, Q> {
         asks: fn(&State, &Jobs) -> Option<Q>,
         show: fn(&mut Ui, Cx<'_, M, Q>) -> Vec<Command>,
     ) -> Self {
-        Content { wants: Wants::NOTHING, marks_age: false, tells_answers: false, asks, caption: |_, _, _| None, show }
+        Content { wants: &[], marks_age: false, tells_answers: false, asks, caption: |_, _, _| None, show }
     }
 }
 
@@ -58,7 +58,6 @@ pub enum Nothing {}
 impl Query for Nothing {
     type Value = ();
     type State = ();
-    const THREAD: &'static str = "nothing";
     const WHAT: &'static str = "Computing nothing";
 
     fn compute(&self, (): &mut (), _: &Task) -> Result<(), Failure> {
@@ -83,7 +82,7 @@ impl<M: Default + 'static, Q: Query> Held<M, Q> {
 
 /// A panel of any type.
 pub trait AnyPanel: std::any::Any {
-    fn wants(&self) -> Wants;
+    fn wants(&self) -> &'static [Want];
 
     /// Asks for the panel's value where the panel is in sight; asks for none elsewhere.
     fn ask(&mut self, state: &State, jobs: &Jobs, is_in_sight: bool);
@@ -113,7 +112,7 @@ pub trait AnyPanel: std::any::Any {
 pub const OLD: f32 = 0.55;
 
 impl<M: 'static, Q: Query> AnyPanel for Held<M, Q> {
-    fn wants(&self) -> Wants {
+    fn wants(&self) -> &'static [Want] {
         self.content.wants
     }
 
@@ -139,8 +138,8 @@ impl<M: 'static, Q: Query> AnyPanel for Held<M, Q> {
             Panel::Map(kind) => is_old(kind),
             _ => {
                 self.derived.is_stale()
-                    || (self.content.wants.output && is_old(MapKind::Output))
-                    || (self.content.wants.second && is_old(MapKind::Second))
+                    || (self.content.wants.contains(&Want::Output) && is_old(MapKind::Output))
+                    || (self.content.wants.contains(&Want::Second) && is_old(MapKind::Second))
             }
         }
     }
@@ -184,7 +183,6 @@ mod tests {
     impl Query for Counted {
         type Value = usize;
         type State = ();
-        const THREAD: &'static str = "count";
         const WHAT: &'static str = "Counting";
 
         fn compute(&self, (): &mut (), _: &Task) -> Result<usize, Failure> {
@@ -206,7 +204,7 @@ mod tests {
     #[test]
     fn a_small_panel_draws_its_value_and_answers_with_commands() {
         let app = Harness::builder().build_eframe(|creation| App::new(creation, Options::default()).unwrap());
-        let count = app.state().editor().scene().reflector_count();
+        let count = app.state().editor.scene().reflector_count();
         let draw = |ui: &mut Ui, (app, held, asked): &mut (Harness<'_, App>, Box<dyn AnyPanel>, Vec<Command>)| {
             let App { state, jobs, .. } = app.state_mut();
             held.ask(state, jobs, true);

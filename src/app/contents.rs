@@ -2,12 +2,12 @@
 
 use super::chrome::tiles::Draw;
 use super::content::{AnyPanel, Held};
-use super::jobs::{Derived, Jobs, Query, Wants};
+use super::jobs::{Derived, Jobs, Query, Want};
 use super::panels;
 use super::state::{Command, Panel, State};
 use eframe::egui::Ui;
 use std::any::Any;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Starts a panel by the content in its line of the list.
 macro_rules! starts {
@@ -38,9 +38,9 @@ impl Panels {
     }
 
     /// The maps and methods that the last frame's panels read.
-    pub fn wants(&self, state: &State) -> Wants {
+    pub fn wants(&self, state: &State) -> BTreeSet<Want> {
         let shown = state.arrangement.shown().iter().filter_map(|panel| self.0.get(panel));
-        shown.fold(Wants::NOTHING, |all, panel| all.and(panel.wants()))
+        shown.flat_map(|panel| panel.wants()).copied().collect()
     }
 
     /// Asks for the own values of this frame's panels.

@@ -4,7 +4,7 @@ use super::application::App;
 use super::apply;
 use super::jobs::{BoundsRequest, ChirpQuery, DopplerQuery, PhasorsQuery};
 use super::panels::phasors::PhasorsMemory;
-use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, Panel, SceneView, Settings};
+use super::state::{Command, MapKind, MethodSlot, Panel, State};
 use super::widgets::Texture;
 use crate::bounds::PositionBound;
 use crate::engine::EngineReport;
@@ -12,49 +12,26 @@ use crate::evaluate::Metrics;
 use crate::evaluate::failure::Failures;
 use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::Finding;
-use crate::interact::Editor;
-use crate::lesson::Progress;
 use crate::maps::RangeAngleMap;
-use crate::radar::Radar;
 use crate::reconstruct::Detection;
-use crate::scene::{Reflector, Scene};
+use crate::scene::Reflector;
 use num_complex::Complex64;
+use std::ops::Deref;
 use std::sync::Arc;
 
+/// The app's state is that of its document, panels, settings and messages.
+impl Deref for App {
+    type Target = State;
+
+    fn deref(&self) -> &State {
+        &self.state
+    }
+}
+
 impl App {
-    /// The scene in the editor, with selection and history.
-    pub fn editor(&self) -> &Editor {
-        &self.state.editor
-    }
-
-    /// The user's settings.
-    pub fn settings(&self) -> &Settings {
-        &self.state.settings
-    }
-
-    /// The arrangement of the panels.
-    pub fn arrangement(&self) -> &Arrangement {
-        &self.state.arrangement
-    }
-
-    /// The radar of the document on screen.
-    pub fn radar(&self) -> &Radar {
-        self.state.radar()
-    }
-
     /// Queues a command, as a menu entry would.
     pub fn ask(&mut self, command: impl Into<Command>) {
         self.asked.push(command.into());
-    }
-
-    /// The learners' answers in lessons.
-    pub fn progress(&self) -> &Progress {
-        &self.state.progress
-    }
-
-    /// The visible part of the scene and of the maps.
-    pub fn views(&self) -> (SceneView, MapViews) {
-        (self.state.scene_view, self.state.map_views)
     }
 
     /// Whether a worker of jobs or panels is busy.
@@ -141,16 +118,6 @@ impl App {
         let decades =
             self.panels.derived::<Texture, DopplerQuery>(Panel::RangeDoppler)?.value()?.ok()?.decades.decades();
         decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
-    }
-
-    /// The timeline's time, seconds.
-    pub fn time_seconds(&self) -> f64 {
-        self.state.timeline.seconds()
-    }
-
-    /// The scene at the timeline's time.
-    pub fn scene_at_time(&self) -> &Scene {
-        self.state.scene()
     }
 
     /// The range bin in which the beat on screen is strongest, and the element of that beat.
@@ -243,15 +210,5 @@ impl App {
     /// Number of small maps in the panel of several maps that are up to date.
     pub fn several_maps_made(&self) -> usize {
         self.jobs.several.shown().iter().filter(|small| small.is_current && small.made.is_some()).count()
-    }
-
-    /// Whether maps and scene have captions.
-    pub fn shows_captions(&self) -> bool {
-        self.state.shows_captions()
-    }
-
-    /// Number of messages on screen.
-    pub fn messages(&self) -> usize {
-        self.state.notices.list.len()
     }
 }

@@ -81,7 +81,7 @@ fn a_second_method_that_refuses_leaves_the_first() {
 fn one_key_flips_two_maps_in_place() {
     let mut s = with_capon();
     s.press(Modifiers::NONE, Key::X);
-    assert!(s.state().arrangement().is_open(Panel::Compare));
+    assert!(s.state().arrangement.is_open(Panel::Compare));
     s.ask(WindowCommand::Maximise(Panel::Compare));
     let place = |s: &Session, label: &str| s.app.query_by_label(label).map(|map| map.rect());
     let first = place(&s, "Output map").expect("the first is in front");

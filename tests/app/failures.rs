@@ -111,7 +111,7 @@ fn the_worst_row_can_be_found_changed_kept() {
 #[test]
 fn one_undo_takes_a_walk_through_rows_back() {
     let mut s = tried();
-    let before = (s.editor().document().id(), s.state().settings().method.clone());
+    let before = (s.editor().document().id(), s.state().settings.method.clone());
     s.ask(ViewCommand::SetFloor(Floor::Exact));
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     let mut last = None;
@@ -127,13 +127,13 @@ fn one_undo_takes_a_walk_through_rows_back() {
         assert_eq!(s.state().opened_row(), Some(step));
         let row = &s.state().rows()[step];
         assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error);
-        assert_eq!(s.state().settings().floor, Floor::Thesis, "as the rows were made");
+        assert_eq!(s.state().settings.floor, Floor::Thesis, "as the rows were made");
         last = s.state().metrics();
     }
     assert!(last.is_some() && s.editor().left().is_empty(), "a walk leaves nothing behind");
     s.ask(EditCommand::Undo);
-    let after = (s.editor().document().id(), s.state().settings().method.clone());
-    assert_eq!((after, s.state().settings().floor), (before, Floor::Exact));
+    let after = (s.editor().document().id(), s.state().settings.method.clone());
+    assert_eq!((after, s.state().settings.floor), (before, Floor::Exact));
 }
 
 #[test]
@@ -156,9 +156,9 @@ fn rows_outlive_a_restart() {
     s.ask(WindowCommand::ClosePanel(Panel::Failures));
     assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error, "the radar is that of the rows");
     std::fs::write(&path, "not,rows\n1,2\n").unwrap();
-    let messages = s.state().messages();
+    let messages = s.state().notices.list.len();
     s.ask(RowsCommand::OpenFile(path));
-    assert!(s.state().messages() > messages && s.state().rows() == rows, "it is told, and the rows stay");
+    assert!(s.state().notices.list.len() > messages && s.state().rows() == rows, "it is told, and the rows stay");
     step_until(&mut s, "they are kept", |s| s.state().rows_are_kept());
     let s = s.reopened(Some("scene.toml"), methods());
     assert_eq!(s.state().rows(), rows);

@@ -30,8 +30,8 @@ fn a_false_alarm_rate_sets_the_threshold() {
     s.ask_and_wait(WorkCommand::FindThreshold(choice(2)));
     let search = ThresholdSearch {
         radar: s.state().radar().clone(),
-        floor: s.state().settings().floor,
-        normalisation: s.state().settings().normalisation,
+        floor: s.state().settings.floor,
+        normalisation: s.state().settings.normalisation,
         kinds: choice(2).kinds,
         count: 2,
         false_alarm_percent: 40.0,
@@ -39,7 +39,7 @@ fn a_false_alarm_rate_sets_the_threshold() {
     };
     let exact = search.run(&Baseline, &Task::default(), |_| ()).unwrap().eta;
     let expected = (exact * 1000.0).ceil() / 1000.0;
-    let set = |s: &Session| s.state().settings().method_eta.get("baseline").copied();
+    let set = |s: &Session| s.state().settings.method_eta.get("baseline").copied();
     assert_eq!(set(&s), Some(expected), "rounded up to three decimals");
     assert!(s.shows("at most 40 % false alarms on average"));
     s.app.state_mut().ask(WorkCommand::FindThreshold(choice(100_000)));
@@ -93,7 +93,7 @@ fn a_training_log_is_followed() {
 fn a_method_that_panics_is_a_message() {
     let method = Stub { panics: Arc::new(true.into()), ..Stub::default() };
     let mut s = Session::with_methods(vec![Arc::new(method.clone())]);
-    assert_eq!(s.state().messages(), 1);
+    assert_eq!(s.state().notices.list.len(), 1);
     assert!(!s.state().pictures().contains(&MapKind::Output));
     assert!(s.state().pictures().contains(&MapKind::Target), "the maps go on");
     method.panics.store(false, SeqCst);

@@ -58,7 +58,7 @@ pub use listening::{Listening, is_live};
 pub use memo::Memo;
 pub use method::Refusal;
 pub use phasors::{PhasorsQuery, PhasorsResult};
-pub use pipeline::{Pipeline, Wants};
+pub use pipeline::{Pipeline, Want};
 use rows::RowJob;
 pub use run_time::RunTimePlan;
 pub use scene_maps::Scores;
@@ -72,6 +72,7 @@ use crate::app::state::{Command, DocumentCommand, Panel, Purpose, RowsCommand, S
 use crate::interact::Autosave;
 use crate::platform;
 use eframe::egui::{Context, DroppedFile};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -166,7 +167,7 @@ impl Jobs {
     }
 
     /// Asks for the values that this frame's panels need, if they changed; `wants` has the maps and methods they read.
-    pub fn ask(&mut self, state: &mut State, wants: Wants) {
+    pub fn ask(&mut self, state: &mut State, wants: &BTreeSet<Want>) {
         self.pipeline.ask(state, wants);
         self.lessons.ask(state);
         self.several.ask(state);

@@ -45,7 +45,6 @@ impl ThresholdPlan {
 impl Plan for ThresholdPlan {
     type Row = KeptEta;
     type End = ();
-    const THREAD: &'static str = "thresholds";
     const WHAT: &'static str = "The search for a threshold";
     const ADVICE: &'static str = "Choose another method.";
 

@@ -2,7 +2,7 @@
 
 use super::map::{self, MapMemory, caption_of, is_updating, map_input, marks_of, verdict};
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::{Jobs, Wants};
+use crate::app::jobs::{Jobs, Want};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
 use crate::app::widgets::{LIST_HEIGHT, button, choice, labelled, method_list, padded, percent, progress};
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
@@ -11,7 +11,7 @@ use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 const TITLE: f32 = 18.0;
 
 pub const PANEL: Content<MapMemory> =
-    Content { wants: Wants { second: true, ..Wants::OUTPUT }, marks_age: true, ..Content::drawn(draw) };
+    Content { wants: &[Want::Output, Want::Second], marks_age: true, ..Content::drawn(draw) };
 
 fn draw(ui: &mut Ui, cx: Cx<'_, MapMemory>) -> Vec<Command> {
     let Cx { state, jobs, memory, .. } = cx;

@@ -1,7 +1,7 @@
 //! The found panel: the method's echoes as a list of angle, range and strength.
 
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::Wants;
+use crate::app::jobs::Want;
 use crate::app::state::{Command, EditCommand, MapKind, MethodSlot};
 use crate::app::widgets::{CONVENTION, angle_degrees, headings, padded, plain, right_aligned, signed};
 use crate::interact::SelectionMode;
@@ -37,12 +37,8 @@ pub struct Input<'a> {
     pub has_ranges: bool,
 }
 
-pub const PANEL: Content = Content {
-    wants: Wants { listed: true, ..Wants::OUTPUT },
-    marks_age: true,
-    tells_answers: true,
-    ..Content::drawn(draw)
-};
+pub const PANEL: Content =
+    Content { wants: &[Want::Output, Want::Listed], marks_age: true, tells_answers: true, ..Content::drawn(draw) };
 
 fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
     let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);

@@ -1,7 +1,7 @@
 //! The ROC panel: detection against false alarm of the scene on screen, over every threshold.
 
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::Wants;
+use crate::app::jobs::Want;
 use crate::app::state::{Command, MethodSlot};
 use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{Axis, Chart, Inks, Tick, percent};
@@ -32,8 +32,7 @@ pub struct Input<'a> {
     pub refusal: Option<&'a str>,
 }
 
-pub const PANEL: Content =
-    Content { wants: Wants { roc: true, ..Wants::OUTPUT }, tells_answers: true, ..Content::drawn(draw) };
+pub const PANEL: Content = Content { wants: &[Want::Output, Want::Roc], tells_answers: true, ..Content::drawn(draw) };
 
 fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
     let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);

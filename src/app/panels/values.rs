@@ -2,7 +2,7 @@
 
 use super::map::{Cells, cells, is_updating};
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::Wants;
+use crate::app::jobs::Want;
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
 use crate::app::widgets::{CONVENTION, direction, headings, padded, right_aligned};
 use eframe::egui::{Grid, RichText, ScrollArea, Ui};
@@ -43,7 +43,7 @@ pub struct Row<'a> {
 }
 
 pub const PANEL: Content =
-    Content { wants: Wants { every_map: true, ..Wants::OUTPUT }, tells_answers: true, ..Content::drawn(draw) };
+    Content { wants: &[Want::Output, Want::EveryMap], tells_answers: true, ..Content::drawn(draw) };
 
 fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
     let (state, jobs) = (&*cx.state, cx.jobs);

@@ -49,9 +49,7 @@ pub use methods::Methods;
 pub use notices::{Notice, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
-pub use settings::{
-    BoundsSettings, Brightness, ChirpSettings, Compare, Elements, Layout, PhasorMap, PhasorSettings, Settings,
-};
+pub use settings::{BoundsSettings, ChirpSettings, Compare, Elements, Layout, PhasorMap, PhasorSettings, Settings};
 pub use several::{MAX_MAPS as MAX_MAPS_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::synonyms;
 pub use task_layouts::Task;
@@ -72,6 +70,7 @@ use std::sync::Arc;
 const RECENT: usize = 10;
 
 /// All state that commands change.
+#[derive(Default)]
 pub struct State {
     /// The document in the editor: scene, radar and file.
     pub editor: Editor,

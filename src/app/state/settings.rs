@@ -6,18 +6,10 @@ use crate::interact::{Coordinates, Snap};
 use crate::maps::Aperture;
 use crate::radar::{Decibels, End, Layout as ElementLayout, LayoutError, Mimo, Radar};
 use crate::view::View;
+use eframe::egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
-
-/// Theme of the window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Brightness {
-    #[default]
-    System,
-    Light,
-    Dark,
-}
 
 /// The user's settings of the panel Chirp.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -37,7 +29,7 @@ pub struct Settings {
     pub snap: Snap,
     /// Coordinates in which places are shown and entered.
     pub coordinates: Coordinates,
-    pub theme: Brightness,
+    pub theme: ThemePreference,
     pub bounds: BoundsSettings,
     pub phasors: PhasorSettings,
     pub chirp: ChirpSettings,

@@ -19,6 +19,7 @@ mod numbers;
 mod padded;
 mod progress;
 #[cfg(test)]
+#[path = "tests/seen.rs"]
 pub mod seen;
 mod text_entry;
 pub mod theme;

@@ -21,7 +21,6 @@ struct SearchPlan {
 impl Plan for SearchPlan {
     type Row = Finding;
     type End = ();
-    const THREAD: &'static str = "search";
     const WHAT: &'static str = "The search";
     const ADVICE: &'static str = "Choose another method, or move something.";
 

@@ -4,7 +4,7 @@ mod markers;
 mod trace;
 
 use crate::app::content::Content;
-use crate::app::jobs::Wants;
+use crate::app::jobs::Want;
 use crate::app::state::{Command, CutMap, MapKind, State, Units, ViewCommand};
 use crate::app::widgets::{
     Axis, Chart, Inks, NumberField, Span, axes, button, choice, choices, direction, labelled, lowest_db, press,
@@ -47,7 +47,7 @@ struct View {
 }
 
 pub const PANEL: Content<CutsMemory> = Content {
-    wants: Wants { every_map: true, ..Wants::OUTPUT },
+    wants: &[Want::Output, Want::EveryMap],
     tells_answers: true,
     ..Content::drawn(|ui, cx| show(ui, cx.state, &cx.jobs.pipeline.cut_maps(), cx.memory))
 };

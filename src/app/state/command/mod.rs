@@ -22,9 +22,24 @@ use crate::signal::Floor;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A command to the app.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Command {
+/// Defines [`Command`] and the conversion of each group's commands to it.
+macro_rules! groups {
+    ($($(#[$meta:meta])* $group:ident($commands:ty),)*) => {
+        /// A command to the app.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum Command {
+            $($(#[$meta])* $group($commands),)*
+        }
+
+        $(impl From<$commands> for Command {
+            fn from(command: $commands) -> Command {
+                Command::$group(command)
+            }
+        })*
+    };
+}
+
+groups! {
     Document(DocumentCommand),
     Edit(EditCommand),
     Radar(RadarCommand),
@@ -333,27 +348,3 @@ pub enum WindowCommand {
     Palette,
     Quit,
 }
-
-/// Conversion of each group's commands to [`Command`].
-macro_rules! groups {
-    ($($group:ident($commands:ident)),*) => {$(
-        impl From<$commands> for Command {
-            fn from(command: $commands) -> Command {
-                Command::$group(command)
-            }
-        }
-    )*};
-}
-
-groups!(
-    Document(DocumentCommand),
-    Edit(EditCommand),
-    Radar(RadarCommand),
-    View(ViewCommand),
-    Rows(RowsCommand),
-    Lesson(LessonCommand),
-    Work(WorkCommand),
-    Export(ExportCommand),
-    Window(WindowCommand),
-    AskFile(Purpose)
-);
