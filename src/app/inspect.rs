@@ -178,7 +178,7 @@ impl App {
         let jobs = &self.jobs;
         jobs.thresholds.progress().is_some()
             || jobs.failures.run.progress().is_some()
-            || jobs.failures.search.progress().is_some()
+            || jobs.failures.search.job.progress().is_some()
             || jobs.run_time.progress().is_some()
     }
 
@@ -199,7 +199,7 @@ impl App {
 
     /// Scenes on the path of the search near the scene on screen, its start included.
     pub fn search_path(&self) -> &[Finding] {
-        self.jobs.failures.search.path()
+        self.jobs.failures.search.job.rows()
     }
 
     /// The scene on screen as a line of text, where it can be shared ([`crate::share`]).
@@ -209,6 +209,6 @@ impl App {
 
     /// Number of small maps in the panel of several maps that are up to date.
     pub fn several_maps_made(&self) -> usize {
-        self.jobs.several.shown().iter().filter(|small| small.is_current && small.made.is_some()).count()
+        self.jobs.several.shown.iter().filter(|small| small.is_current && small.made.is_some()).count()
     }
 }

@@ -1,10 +1,9 @@
 //! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
 
 use crate::session::*;
-use apertura::app::SearchChoice;
 use apertura::evaluate::rows::{Row, write_rows};
 use apertura::evaluate::sets::Folder;
-use apertura::evaluate::worsen::{Aim, WorseningMeasure};
+use apertura::evaluate::worsen::WorseningSearch;
 
 fn methods() -> Vec<Arc<dyn Reconstructor>> {
     vec![Arc::new(Baseline), Arc::new(CAPON)]
@@ -173,9 +172,8 @@ fn what_a_search_finds_is_one_undo_step() {
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     s.ask(RowsCommand::Show(best));
     let before = s.editor().scene().clone();
-    let choice =
-        SearchChoice { aim: Aim::Worsen, measure: WorseningMeasure::SquaredError, within_metres: 2.0, tries: 48 };
-    s.ask_and_wait(Command::Rows(RowsCommand::Search(choice)));
+    let search = |tries| RowsCommand::Search(Box::new(WorseningSearch { tries, ..WorseningSearch::default() }));
+    s.ask_and_wait(search(48));
     let path = s.state().search_path().to_vec();
     assert!(path.len() > 1, "something near is worse");
     let (start, found) = (&path[0].metrics, &path[path.len() - 1]);
@@ -185,7 +183,7 @@ fn what_a_search_finds_is_one_undo_step() {
     assert!(s.app.query_by_label_contains("baseline: SE").or(s.app.query_by_label_contains("capon: SE")).is_some());
     s.ask(EditCommand::Undo);
     assert_eq!(s.editor().scene(), &before);
-    s.app.state_mut().ask(RowsCommand::Search(SearchChoice { tries: 100_000, ..choice }));
+    s.app.state_mut().ask(search(100_000));
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     s.ask(RowsCommand::CancelSearch);
     step_until(&mut s, "it can be stopped", |s| !s.state().is_at_work());

@@ -298,7 +298,7 @@ fn a_shared_scene_comes_with_its_view_and_time() {
     look(&mut s, 0.9, None);
     let other = (s.editor().scene().clone(), seen(&s));
     s.ask(DocumentCommand::OpenShared(text));
-    assert_eq!((s.state().radar().elements, s.state().timeline.seconds(), seen(&s)), (128, 0.5, shown));
+    assert_eq!((s.state().radar().elements, s.state().timeline.seconds, seen(&s)), (128, 0.5, shown));
     assert_eq!(s.state().scene().objects[0].centre_metres(), [0.0, 25.0]);
     s.ask(EditCommand::Undo);
     assert_eq!((s.editor().scene().clone(), seen(&s)), other);

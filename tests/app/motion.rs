@@ -48,10 +48,10 @@ fn maps_follow_time_but_the_document_stays() {
     assert_eq!(s.state().scene().objects[0].centre_metres(), [0.0, 25.0]);
     // A press in the scene goes back; the next drag edits.
     s.drag(at, vec2(30.0, 0.0), 3);
-    assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().timeline.seconds() == 0.0);
+    assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().timeline.seconds == 0.0);
     s.ask(ViewCommand::SetTime(0.5));
     s.ask(EditCommand::Nudge { dx_metres: 1.0, dy_metres: 0.0 });
-    assert_eq!((s.place(0), s.state().timeline.seconds()), ([1.0, 20.0], 0.0));
+    assert_eq!((s.place(0), s.state().timeline.seconds), ([1.0, 20.0], 0.0));
 }
 
 #[test]
@@ -59,15 +59,15 @@ fn time_goes_on_while_motion_is_played() {
     let mut s = moving();
     s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
     s.app.step();
-    let first = s.state().timeline.seconds();
-    step_until(&mut s, "time goes on", |s| s.state().timeline.seconds() > first + 0.2);
+    let first = s.state().timeline.seconds;
+    step_until(&mut s, "time goes on", |s| s.state().timeline.seconds > first + 0.2);
     s.ask(ViewCommand::TogglePlay);
-    let stopped = s.state().timeline.seconds();
+    let stopped = s.state().timeline.seconds;
     s.app.run_steps(5);
-    assert_eq!(s.state().timeline.seconds(), stopped);
+    assert_eq!(s.state().timeline.seconds, stopped);
     s.ask(ViewCommand::SetTime(0.0));
     s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(0.0)));
     s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
     s.app.run_steps(5);
-    assert_eq!(s.state().timeline.seconds(), 0.0, "nothing moves");
+    assert_eq!(s.state().timeline.seconds, 0.0, "nothing moves");
 }

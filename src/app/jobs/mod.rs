@@ -107,12 +107,9 @@ pub struct Jobs {
 
 impl Jobs {
     /// Starts every thread. The autosave is kept in `folder`; there is none without it.
-    ///
-    /// # Errors
-    /// When no autosave can be kept in `folder`.
-    pub fn start(ctx: &Context, folder: Option<&Path>, dialogs: Dialogs) -> std::io::Result<Jobs> {
+    pub fn start(ctx: &Context, folder: Option<&Path>, dialogs: Dialogs) -> Jobs {
         let wake = platform::waker(ctx);
-        Ok(Jobs {
+        Jobs {
             pipeline: Pipeline::start(wake.clone()),
             thresholds: RowJob::start(wake.clone()),
             failures: Failures::start(folder, ctx),
@@ -125,10 +122,10 @@ impl Jobs {
             exports: Exports(Background::new(ctx.clone())),
             listening: Listening::new(ctx.clone()),
             dialogs,
-            autosave: folder.map(Autosave::claim).transpose()?,
+            autosave: folder.map(Autosave::claim),
             wake: ctx.clone(),
             folder: folder.map(Path::to_path_buf),
-        })
+        }
     }
 
     /// Takes in work finished since the last frame. Returns the commands of chosen files, lessons, frames, thresholds and searches.

@@ -128,7 +128,7 @@ impl<P: Plan> RowJob<P> {
 
     /// The reason why the last run ended early, if it did.
     pub fn note(&self) -> Option<&str> {
-        self.note.as_deref()
+        self.plan.as_ref().and(self.note.as_deref())
     }
 
     /// Takes in finished work. Returns a message for the user.

@@ -93,7 +93,7 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: TextureId) {
     let map = area.with_max_x(area.right() - axes::RIGHT + 12.0);
     let drawn = chart.show(ui, map, Sense::hover());
     let middle = drawn.at([0.0, 0.0]);
-    edged([3.0, 1.4], MARK, |stroke| cross(drawn.painter(), middle, Vec2::splat(5.0), stroke));
+    edged([3.0, 1.4], MARK, |stroke| cross(&drawn.painter, middle, Vec2::splat(5.0), stroke));
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
     drawn.tell(|[columns, metres]| Some(likeness_at(result, half, columns, metres)));
 }

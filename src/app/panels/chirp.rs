@@ -247,7 +247,7 @@ impl Shown<'_> {
             }
             let radius = if response.hovered() || response.dragged() { HANDLE + 1.5 } else { HANDLE };
             let stroke = Stroke::new(1.0, ui.visuals().text_color());
-            drawn.painter().circle(centre, radius, Inks::of(ui.visuals()).selected, stroke);
+            drawn.painter.circle(centre, radius, Inks::of(ui.visuals()).selected, stroke);
             response.on_hover_cursor(icon).on_hover_text(name);
         }
         set(self.state.radar(), radar, asked);

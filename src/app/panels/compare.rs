@@ -204,19 +204,6 @@ mod tests {
         seen::assert_readable(panel.output());
     }
 
-    #[test]
-    fn flipping_shows_the_other_map_in_the_same_place() {
-        let mut panel = panel(Layout::Flip);
-        let first = panel.get_by_label("Output map").rect();
-        assert!(panel.query_by_label("Second output map").is_none());
-        panel.clicks(&["Flip maps"]);
-        assert_eq!(panel.state().asked, [Command::View(ViewCommand::Flip)]);
-        panel.state_mut().state.settings.compare.flip();
-        panel.run_steps(2);
-        assert_eq!(panel.get_by_label("Second output map").rect(), first);
-        assert!(panel.query_by_label("Output map").is_none());
-    }
-
     /// The comparison of the last command.
     fn asked_for(panel: &Harness<'_, Held>) -> Compare {
         match panel.state().asked.last() {

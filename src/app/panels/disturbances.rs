@@ -100,7 +100,7 @@ mod tests {
     fn panel(state: State) -> Harness<'static, State> {
         let draw = move |ui: &mut Ui, state: &mut State| {
             for command in show(ui, state) {
-                state.editor.edit("disturbances", None, |scene, _| match command {
+                state.editor.edit(None, |scene, _| match command {
                     Command::Radar(RadarCommand::SetInterferer(interferer)) => {
                         scene.disturbances.interferer = interferer;
                     }

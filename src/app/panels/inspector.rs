@@ -176,14 +176,6 @@ mod tests {
         assert_eq!(inspector.state().1, [Command::Edit(EditCommand::Add(NewObject::Point, None))]);
     }
 
-    #[test]
-    fn a_number_that_is_typed_is_one_step() {
-        let mut inspector = panel(of(&[[1.0, 10.0]]), Coordinates::Cartesian);
-        enter(&mut inspector, "y", "12.5");
-        assert_eq!(places(&inspector), [[1.0, 12.5]]);
-        assert_eq!(inspector.state().0.editor.history().depth(), 1);
-    }
-
     const THREE: [[f64; 2]; 3] = [[1.0, 10.0], [2.0, 12.0], [3.0, 12.0]];
 
     /// The panel with all three points selected.

@@ -193,7 +193,7 @@ fn arrow(drawn: &Drawn, end: [f64; 2]) {
     let (from, to) = (drawn.at([0.0, 0.0]), drawn.at(end));
     let back = HEAD * (from - to).normalized();
     let ends = [from, to + Rot2::from_angle(0.4) * back, to + Rot2::from_angle(-0.4) * back];
-    edged([4.0, 1.8], MARK, |stroke| ends.map(|end| drawn.painter().line_segment([end, to], stroke)));
+    edged([4.0, 1.8], MARK, |stroke| ends.map(|end| drawn.painter.line_segment([end, to], stroke)));
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ const NAME: f32 = 18.0;
 
 /// Remembers textures of the maps.
 pub const PANEL: Content<Vec<Texture>> =
-    Content { tells_answers: true, ..Content::drawn(|ui, cx| show(ui, cx.state, cx.jobs.several.shown(), cx.memory)) };
+    Content { tells_answers: true, ..Content::drawn(|ui, cx| show(ui, cx.state, &cx.jobs.several.shown, cx.memory)) };
 
 /// Draws the panel with these maps. A click on a map gives the scene its value.
 pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Texture>) -> Vec<Command> {

@@ -8,17 +8,10 @@ use crate::app::widgets::{CONVENTION, direction, headings, padded, right_aligned
 use eframe::egui::{Grid, RichText, ScrollArea, Ui};
 
 /// The maps that are listed, from the inputs to the differences.
-pub const LISTED: [MapKind; 9] = [
-    MapKind::Input0,
-    MapKind::Input1,
-    MapKind::Target,
-    MapKind::Output,
-    MapKind::Second,
-    MapKind::Difference,
-    MapKind::Doubt,
-    MapKind::SecondDifference,
-    MapKind::Unexplained,
-];
+pub const LISTED: [MapKind; 9] = {
+    use MapKind::*;
+    [Input0, Input1, Target, Output, Second, Difference, Doubt, SecondDifference, Unexplained]
+};
 
 /// Headings of the table, with their tooltips.
 const COLUMNS: [(&str, &str); 3] = [

@@ -26,7 +26,7 @@ pub struct Arrangement {
     pub maximised: Option<Panel>,
     /// The task on screen.
     #[serde(default)]
-    task: Task,
+    pub task: Task,
     /// The task before a panel switched to its own.
     #[serde(default)]
     before: Option<Task>,
@@ -81,11 +81,6 @@ impl Arrangement {
     /// Scene, the ends' maps, target and output, large, for an audience.
     pub fn presentation() -> Self {
         Arrangement::of(task_layouts::presentation())
-    }
-
-    /// The task on screen.
-    pub fn task(&self) -> Task {
-        self.task
     }
 
     /// Switches to the panels of a task, as the user left them.

@@ -39,7 +39,7 @@ pub use command::{
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use cuts::{CutMap, PinnedCut, pin_cut};
-pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice, ThresholdChoice};
+pub use failures::{Conditions, FailureChoice, Failures, OpenedRow};
 pub use guided::{Guided, Setup};
 pub use help::HelpPage;
 pub use lesson_run::{Before, LessonRun};
@@ -112,8 +112,8 @@ impl State {
     }
 
     /// Opens another document; undo brings the last one back with its file.
-    pub fn set_document(&mut self, label: &str, document: Document) {
-        self.editor.open(label, document);
+    pub fn set_document(&mut self, document: Document) {
+        self.editor.open(document);
         self.scene_view.fit = true;
     }
 
@@ -247,12 +247,12 @@ impl State {
     pub fn can_undo(&self) -> bool {
         // Undo does not leave a lesson's step.
         let is_left = self.lesson.as_ref().is_none_or(|run| self.editor.history().depth() > run.depth);
-        is_left && (self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup()))
+        is_left && (self.editor.history().depth() > 0 || self.guided.can_undo(&self.setup()))
     }
 
     /// Whether an undone change can be done again.
     pub fn can_redo(&self) -> bool {
-        self.editor.history().redo_label().is_some()
+        self.editor.history().can_redo()
     }
 
     /// Undoes the last change of the scene, or all changes of a button of the guide.

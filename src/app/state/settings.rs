@@ -194,24 +194,16 @@ impl Default for Compare {
 
 impl Compare {
     /// The maps offered for flipping.
-    pub const OFFERED: [MapKind; 9] = [
-        MapKind::Input0,
-        MapKind::Input1,
-        MapKind::Target,
-        MapKind::Output,
-        MapKind::Second,
-        MapKind::OutputAbove,
-        MapKind::SecondAbove,
-        MapKind::Difference,
-        MapKind::SecondDifference,
-    ];
+    pub const OFFERED: [MapKind; 9] = {
+        use MapKind::*;
+        [Input0, Input1, Target, Output, Second, OutputAbove, SecondAbove, Difference, SecondDifference]
+    };
 
     /// The maps to be made. They include both flipped ones, so that the other is there at once.
     pub fn maps(&self) -> Vec<MapKind> {
+        use MapKind::*;
         match self.layout {
-            Layout::Beside => {
-                vec![MapKind::Output, MapKind::Second, MapKind::Difference, MapKind::SecondDifference]
-            }
+            Layout::Beside => vec![Output, Second, Difference, SecondDifference],
             Layout::Flip => self.maps.to_vec(),
         }
     }

@@ -35,7 +35,7 @@ impl State {
             Command::Window(command) => match command {
                 WindowCommand::TogglePanel(panel) => Some(self.arrangement.is_open(*panel)),
                 WindowCommand::Maximise(panel) => Some(self.arrangement.is_maximised(*panel)),
-                WindowCommand::ArrangeFor(task) => Some(self.arrangement.task() == *task),
+                WindowCommand::ArrangeFor(task) => Some(self.arrangement.task == *task),
                 WindowCommand::Present => Some(self.is_presenting()),
                 WindowCommand::ToggleTheme => Some(match settings.theme {
                     ThemePreference::System => self.dark,

@@ -82,7 +82,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
             let panel = beside_or_below(ui.available_size()).frame(Frame::NONE);
             panel.show(ui, |ui| chart(ui, input, memory, &mut asked));
         }
-        let open = table::show(ui, input, memory.order.shown(), &mut memory.sort, &mut memory.table);
+        let open = table::show(ui, input, &memory.order.shown, &mut memory.sort, &mut memory.table);
         asked.extend(open.map(|v| Command::Rows(RowsCommand::Show(v))));
     });
     asked
@@ -113,7 +113,7 @@ fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
 /// Draws the number of shown rows, the button of the box, and the choice of chart.
 fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     ui.horizontal_wrapped(|ui| {
-        let (shown, all) = (memory.order.shown().len(), input.job.table.rows().len());
+        let (shown, all) = (memory.order.shown.len(), input.job.table.rows().len());
         let rows = counted(all, "row", "rows");
         ui.weak(if shown == all { rows } else { format!("{shown} of {rows}") });
         if let Some(boxed) = &memory.boxed {

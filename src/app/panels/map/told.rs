@@ -224,7 +224,7 @@ pub fn is_updating(jobs: &Jobs, kind: MapKind) -> bool {
 pub fn cells(jobs: &Jobs, kind: MapKind) -> Option<Cells<'_>> {
     let result = jobs.pipeline.maps.result()?;
     if let Some(rescaled) = result.on_one_scale.get(&kind) {
-        return Some(Cells { map: &rescaled.map, minus: None, scale: Some(rescaled.scale) });
+        return Some(cells_of(rescaled));
     }
     let frame = &result.frame;
     let pair = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| &o.pair);

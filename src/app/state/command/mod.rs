@@ -7,8 +7,10 @@ pub use file::{Purpose, PurposeFacts};
 
 use super::{
     BoundsSettings, CardPlan, ChirpSettings, Compare, Cursor, Directions, FailureChoice, HelpPage, LiveFrame, MapKind,
-    Panel, PhasorSettings, Projection, SaveAnswer, SearchChoice, Several, Task, ThresholdChoice, Units,
+    Panel, PhasorSettings, Projection, SaveAnswer, Several, Task, Units,
 };
+use crate::evaluate::threshold::ThresholdSearch;
+use crate::evaluate::worsen::WorseningSearch;
 use crate::interact::blob::BlobHit;
 use crate::interact::{Coordinates, Field, FieldChange, Place, SelectionMode, Snap};
 use crate::lesson::{Guess, Lesson};
@@ -251,7 +253,7 @@ pub enum RowsCommand {
     /// Open the scene of the row of this index, with its floor and method.
     Show(usize),
     /// Search for a worse scene near the one on screen, or for its repair.
-    Search(SearchChoice),
+    Search(Box<WorseningSearch>),
     /// Stop the search; its findings stay.
     CancelSearch,
     /// Put the search's last finding on screen.
@@ -292,7 +294,7 @@ pub enum WorkCommand {
     CancelMethod,
     CancelSecond,
     /// Search for the threshold at which the method in use has a given rate of false alarms, and set it.
-    FindThreshold(ThresholdChoice),
+    FindThreshold(Box<ThresholdSearch>),
     /// Cancel the search; the threshold stays.
     CancelThreshold,
     /// Measure run time against error; `thorough` takes every algorithm with more reflectors, for about a minute.
