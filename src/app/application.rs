@@ -47,8 +47,8 @@ pub struct Options {
 /// The app.
 pub struct App {
     pub(super) state: State,
-    pub(super) jobs: Jobs,
-    pub(super) panels: Panels,
+    pub jobs: Jobs,
+    pub panels: Panels,
     palette: palette::PaletteMemory,
     file_dialog: file_dialog::FileDialogMemory,
     /// Commands asked for outside a frame.

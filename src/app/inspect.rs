@@ -11,7 +11,6 @@ use crate::engine::EngineReport;
 use crate::evaluate::Metrics;
 use crate::evaluate::failure::Failures;
 use crate::evaluate::rows::Row;
-use crate::evaluate::worsen::Finding;
 use crate::maps::RangeAngleMap;
 use crate::reconstruct::Detection;
 use crate::scene::Reflector;
@@ -94,11 +93,6 @@ impl App {
         old
     }
 
-    /// Values that a panel has asked for since the start.
-    pub fn values_asked(&self, panel: Panel) -> u64 {
-        self.panels.requests(panel)
-    }
-
     /// The bound on screen, if there is one.
     pub fn position_bound(&self) -> Option<PositionBound> {
         self.panels.derived::<Texture, BoundsRequest>(Panel::Bounds)?.value()?.ok()?.bound.ok()
@@ -137,40 +131,10 @@ impl App {
         self.jobs.pipeline.scores_in(MethodSlot::First).map(|s| s.metrics)
     }
 
-    /// Lambda of the second method in the panel "Compare", if it has an output.
-    pub fn second_output(&self) -> Option<&RangeAngleMap> {
-        self.jobs.pipeline.method(MethodSlot::Second).output().map(|output| output.pair.output.as_ref())
-    }
-
-    /// Figures of the second method's output, if there are any.
-    pub fn second_metrics(&self) -> Option<Metrics> {
-        self.jobs.pipeline.scores_in(MethodSlot::Second).map(|s| s.metrics)
-    }
-
     /// The fate of every object in the output on screen, where the maps mark it and it is up to date.
     pub fn failures(&self) -> Option<&Failures> {
         let (fates, current) = super::jobs::fates_of(&self.jobs.kinds, MethodSlot::First, &self.jobs.pipeline)?;
         (current && self.state.settings.show_kinds).then_some(&fates.failures)
-    }
-
-    /// Whether the maps on screen are those of a scene at rest, with the same bits as a command's.
-    pub fn is_settled(&self) -> bool {
-        self.jobs.pipeline.maps.is_settled()
-    }
-
-    /// Whether the maps of a scene at rest are being computed.
-    pub fn is_settling(&self) -> bool {
-        self.jobs.pipeline.maps.is_settling()
-    }
-
-    /// Whether the output on screen belongs to other samples than the maps.
-    pub fn output_is_outdated(&self) -> bool {
-        self.jobs.pipeline.output_is_outdated()
-    }
-
-    /// Rows that the run-time panel has measured.
-    pub fn run_time_rows(&self) -> usize {
-        self.jobs.run_time.rows().len()
     }
 
     /// Whether a job started in a tool's panel runs.
@@ -187,28 +151,13 @@ impl App {
         self.jobs.failures.table.rows()
     }
 
-    /// Whether the file that keeps rows between starts holds all of them.
-    pub fn rows_are_kept(&self) -> bool {
-        self.jobs.failures.is_kept()
-    }
-
     /// Index of the row that was opened last.
     pub fn opened_row(&self) -> Option<usize> {
         self.state.failures.opened.as_ref().map(|opened| opened.index)
     }
 
-    /// Scenes on the path of the search near the scene on screen, its start included.
-    pub fn search_path(&self) -> &[Finding] {
-        self.jobs.failures.search.job.rows()
-    }
-
     /// The scene on screen as a line of text, where it can be shared ([`crate::share`]).
     pub fn shared_text(&self) -> Option<String> {
         apply::shared_text(&self.state).ok()
-    }
-
-    /// Number of small maps in the panel of several maps that are up to date.
-    pub fn several_maps_made(&self) -> usize {
-        self.jobs.several.shown.iter().filter(|small| small.is_current && small.made.is_some()).count()
     }
 }

@@ -158,7 +158,7 @@ fn rows_outlive_a_restart() {
     let messages = s.state().notices.list.len();
     s.ask(RowsCommand::OpenFile(path));
     assert!(s.state().notices.list.len() > messages && s.state().rows() == rows, "it is told, and the rows stay");
-    step_until(&mut s, "they are kept", |s| s.state().rows_are_kept());
+    step_until(&mut s, "they are kept", |s| s.state().jobs.failures.is_kept());
     let s = s.reopened(Some("scene.toml"), methods());
     assert_eq!(s.state().rows(), rows);
 }
@@ -174,7 +174,7 @@ fn what_a_search_finds_is_one_undo_step() {
     let before = s.editor().scene().clone();
     let search = |tries| RowsCommand::Search(Box::new(WorseningSearch { tries, ..WorseningSearch::default() }));
     s.ask_and_wait(search(48));
-    let path = s.state().search_path().to_vec();
+    let path = s.state().jobs.failures.search.job.rows().to_vec();
     assert!(path.len() > 1, "something near is worse");
     let (start, found) = (&path[0].metrics, &path[path.len() - 1]);
     assert!(found.metrics.squared_error > start.squared_error);

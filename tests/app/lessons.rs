@@ -309,7 +309,9 @@ fn hidden_tools_compute_nothing() {
     let mut s = Session::start();
     s.ask(ViewCommand::ToggleTheory);
     s.ask(WindowCommand::OpenPanel(Panel::Several));
-    step_until(&mut s, "all four windows are there", |s| s.state().several_maps_made() == 4);
+    step_until(&mut s, "all four windows are there", |s| {
+        s.state().jobs.several.shown.iter().filter(|small| small.is_current && small.made.is_some()).count() == 4
+    });
     s.click("window: rectangular");
     assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
     s.press(Modifiers::COMMAND, Key::Z);

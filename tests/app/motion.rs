@@ -14,7 +14,7 @@ fn moving() -> Session {
 #[test]
 fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
     let mut s = moving();
-    assert_eq!(s.state().values_asked(Panel::RangeDoppler), 0, "a closed panel costs nothing");
+    assert_eq!(s.state().panels.requests(Panel::RangeDoppler), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));
     let radar = s.state().radar().clone();
     let (_, column) = s.state().doppler_peak().expect("a map");
@@ -22,19 +22,19 @@ fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
     // The nearer of the two is the louder one.
     let expected = s.objects()[1].radial_velocity_metres_per_second();
     assert!((velocity - expected).abs() < 0.6 * radar.velocity_resolution_metres_per_second(), "{velocity}");
-    let asked = s.state().values_asked(Panel::RangeDoppler);
+    let asked = s.state().panels.requests(Panel::RangeDoppler);
     s.undo();
     assert_eq!(
-        (s.state().radar().chirps, s.state().values_asked(Panel::RangeDoppler)),
+        (s.state().radar().chirps, s.state().panels.requests(Panel::RangeDoppler)),
         (1, asked),
         "chirps are undone"
     );
     s.ask(RadarCommand::Set(Box::new(radar)));
     assert_eq!(s.state().radar().chirps, 64);
     s.ask(WindowCommand::TogglePanel(Panel::RangeDoppler));
-    let asked = s.state().values_asked(Panel::RangeDoppler);
+    let asked = s.state().panels.requests(Panel::RangeDoppler);
     s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(3.0)));
-    assert_eq!(s.state().values_asked(Panel::RangeDoppler), asked);
+    assert_eq!(s.state().panels.requests(Panel::RangeDoppler), asked);
 }
 
 #[test]

@@ -119,7 +119,7 @@ fn the_window_function_reaches_the_maps() {
 #[test]
 fn bounds_follow_the_selected_reflector() {
     let mut s = Session::start();
-    assert_eq!(s.state().values_asked(Panel::Bounds), 0);
+    assert_eq!(s.state().panels.requests(Panel::Bounds), 0);
     s.ask(WindowCommand::OpenPanel(Panel::Bounds));
     let before = s.state().position_bound().expect("of the first reflector");
     let at = s.handle("point 2: move");
@@ -127,16 +127,16 @@ fn bounds_follow_the_selected_reflector() {
     let after = s.state().position_bound().unwrap();
     assert_ne!(before, after);
     s.ask(WindowCommand::TogglePanel(Panel::Bounds));
-    let asked = s.state().values_asked(Panel::Bounds);
+    let asked = s.state().panels.requests(Panel::Bounds);
     let at = s.handle("point 2: move");
     s.drag(at, vec2(0.0, 20.0), 4);
-    assert_eq!(s.state().values_asked(Panel::Bounds), asked);
+    assert_eq!(s.state().panels.requests(Panel::Bounds), asked);
 }
 
 #[test]
 fn phasors_follow_the_cursor() {
     let mut s = Session::start();
-    assert_eq!(s.state().values_asked(Panel::Phasors), 0, "a closed panel costs nothing");
+    assert_eq!(s.state().panels.requests(Panel::Phasors), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::Phasors));
     let (cell, sum) = s.state().phasor_sum().expect("of the first object");
     let map = s.app.get_by_label("Target map").rect();
@@ -144,17 +144,17 @@ fn phasors_follow_the_cursor() {
     s.settle();
     let (moved, another) = s.state().phasor_sum().unwrap();
     assert!(moved != cell && another != sum, "{cell:?} {moved:?}");
-    let asked = s.state().values_asked(Panel::Phasors);
+    let asked = s.state().panels.requests(Panel::Phasors);
     s.ask(WindowCommand::TogglePanel(Panel::Phasors));
     s.app.hover_at(map.lerp_inside(vec2(0.7, 0.2)));
     s.settle();
-    assert_eq!(s.state().values_asked(Panel::Phasors), asked);
+    assert_eq!(s.state().panels.requests(Panel::Phasors), asked);
 }
 
 #[test]
 fn the_beat_on_screen_is_that_of_the_strongest_echo() {
     let mut s = Session::start();
-    assert_eq!(s.state().values_asked(Panel::Chirp), 0, "a closed panel costs nothing");
+    assert_eq!(s.state().panels.requests(Panel::Chirp), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::Chirp));
     let bin = |s: &Session| {
         let chirp = ChirpShape::of(s.state().radar());
@@ -169,10 +169,10 @@ fn the_beat_on_screen_is_that_of_the_strongest_echo() {
     s.ask(RadarCommand::Set(Box::new(longer)));
     let (longer, element) = s.state().beat_peak().unwrap();
     assert_eq!((longer, element), (peak, 127), "the last element; no sample depends on the duration");
-    let asked = s.state().values_asked(Panel::Chirp);
+    let asked = s.state().panels.requests(Panel::Chirp);
     s.ask(WindowCommand::TogglePanel(Panel::Chirp));
     s.ask(ViewCommand::SetChirp(ChirpSettings::default()));
-    assert_eq!(s.state().values_asked(Panel::Chirp), asked);
+    assert_eq!(s.state().panels.requests(Panel::Chirp), asked);
 }
 
 #[test]
