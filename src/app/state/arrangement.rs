@@ -68,9 +68,9 @@ impl Arrangement {
         }
     }
 
-    /// A large lesson with the scene and the maps that lessons ask about, for a projector.
+    /// A large lesson with the scene and the maps that lessons ask about, for a projector: its text is read from afar, and has more room.
     pub fn of_a_lesson() -> Self {
-        Arrangement::of(task_layouts::projected_lesson())
+        Arrangement::of(task_layouts::lesson("lesson", [0.68, 1.3]))
     }
 
     /// An arrangement without panels, in place of one that is being drawn.

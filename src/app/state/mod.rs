@@ -301,17 +301,13 @@ impl State {
         self.method().is_some_and(|method| method.finds_reflectors())
     }
 
-    /// The second method of the panel "Compare": the chosen one, else a robust one, else any other.
-    pub fn second_method(&self) -> Option<&Arc<dyn Reconstructor>> {
-        let first = self.method().map(|m| m.name());
-        self.methods.second_to(first, &self.settings.compare.second)
-    }
-
     /// The method of a slot.
     pub fn method_in(&self, slot: MethodSlot) -> Option<&Arc<dyn Reconstructor>> {
         match slot {
             MethodSlot::First => self.method(),
-            MethodSlot::Second => self.second_method(),
+            MethodSlot::Second => {
+                self.methods.second_to(self.method().map(|m| m.name()), &self.settings.compare.second)
+            }
         }
     }
 
