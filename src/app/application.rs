@@ -47,9 +47,8 @@ pub struct Options {
 /// The app.
 pub struct App {
     pub(super) state: State,
-    pub(super) jobs: Jobs,
-    pub(super) panels: Panels,
-    menu: menu::MenuMemory,
+    pub jobs: Jobs,
+    pub panels: Panels,
     palette: palette::PaletteMemory,
     file_dialog: file_dialog::FileDialogMemory,
     /// Commands asked for outside a frame.
@@ -69,7 +68,7 @@ impl App {
     /// Starts workers and opens the scene asked for, an unsaved one of an earlier run, or the default.
     ///
     /// # Errors
-    /// When the frame log or the autosave can't be created.
+    /// When the frame log can't be created.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::Result<Self> {
         let ctx = &creation.egui_ctx;
         let methods = if options.methods.is_empty() { crate::methods::all() } else { options.methods };
@@ -88,7 +87,7 @@ impl App {
             ..State::new(methods)
         };
         let dialogs = if options.own_dialogs { Dialogs::of_the_window() } else { Dialogs::of_the_system() };
-        let jobs = Jobs::start(ctx, folder.as_deref(), dialogs)?;
+        let jobs = Jobs::start(ctx, folder.as_deref(), dialogs);
         theme::apply(ctx, state.settings.theme);
         options.method.into_iter().for_each(|method| state.settings.method = method);
         if let Some(zoom) = kept.zoom {
@@ -100,7 +99,6 @@ impl App {
             state,
             jobs,
             panels: Panels::start(platform::waker(ctx)),
-            menu: Default::default(),
             palette: palette::PaletteMemory::remembering(kept.recent_commands),
             file_dialog: Default::default(),
             asked: options.commands,
@@ -170,7 +168,7 @@ impl App {
     /// Draws the window; returns the commands of the user.
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs) = (&mut self.state, &self.jobs);
-        let mut commands = menu::show(ui, state, &mut self.menu);
+        let mut commands = menu::show(ui, state);
         status_bar::show(ui, state, jobs.pipeline.maps.took);
         let background = egui::Frame::NONE.fill(ui.visuals().panel_fill);
         egui::CentralPanel::default().frame(background).show(ui, |ui| {
@@ -191,11 +189,11 @@ impl App {
     fn let_time_go_on(&mut self, ctx: &egui::Context) {
         let State { timeline, editor, .. } = &mut self.state;
         timeline.follow(editor.scene());
-        if timeline.is_playing() {
+        if timeline.is_playing {
             let step = f64::from(ctx.input(|i| i.stable_dt).min(0.1));
             match editor.document().recording() {
                 Some(_) => apply::next_frame(&mut self.state, step),
-                None => timeline.set(editor.scene(), timeline.seconds() + step),
+                None => timeline.set(editor.scene(), timeline.seconds + step),
             }
             ctx.request_repaint();
         }
@@ -287,7 +285,7 @@ impl eframe::App for App {
             self.state.note_first_drag();
         }
         let wants = self.panels.wants(&self.state);
-        self.jobs.ask(&mut self.state, wants);
+        self.jobs.ask(&mut self.state, &wants);
         self.panels.ask(&self.state, &self.jobs);
         self.update_title(&ctx);
         self.zoom.follow(&ctx, &self.state);

@@ -1,47 +1,54 @@
-//! The trait of a panel: its query, its memory and its drawing.
+//! The type of a panel: its query, its memory and its drawing.
 
-use super::jobs::{Derived, Failure, Jobs, Query, Wants};
+use super::jobs::{Derived, Failure, Jobs, Query, Want};
 use super::state::{Command, MapKind, Panel, State};
 use crate::task::Task;
 use eframe::egui::Ui;
 
-/// A type of panel. A panel's own file implements the trait; [`every_panel`](super) has its line.
-pub trait Content: 'static {
-    /// The query of a value for this panel alone; [`Nothing`] where it has none.
-    type Asks: Query;
-    /// The panel's state between frames.
-    type Remembers: Default + 'static;
+/// A type of panel: its memory between frames is an `M`, its own value that of the query `Q`. A panel's file has one as `PANEL`;
+/// [`every_panel`](super) has its line.
+pub struct Content<M = (), Q: Query = Nothing> {
     /// The maps and methods that the panel reads, which are computed for all panels.
-    const WANTS: Wants = Wants::NOTHING;
+    pub wants: &'static [Want],
     /// Whether the panel marks old values itself; otherwise it is dimmed as a whole.
-    const MARKS_AGE: bool = false;
+    pub marks_age: bool,
     /// Whether the panel shows answers to a lesson's questions. It is hidden until the learner has predicted.
-    const TELLS_ANSWERS: bool = false;
-
+    pub tells_answers: bool,
     /// The query of the panel's value, asked while the panel is in sight.
-    fn asks(_state: &State, _jobs: &Jobs) -> Option<Self::Asks> {
-        None
-    }
-
+    pub asks: fn(&State, &Jobs) -> Option<Q>,
     /// Text in the title bar beside the panel's name.
-    fn caption(_state: &State, _jobs: &Jobs, _panel: Panel) -> Option<String> {
-        None
-    }
-
+    pub caption: fn(&State, &Jobs, Panel) -> Option<String>,
     /// Draws the panel; returns the user's commands.
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command>;
+    pub show: fn(&mut Ui, Cx<'_, M, Q>) -> Vec<Command>,
+}
+
+impl<M> Content<M> {
+    /// A panel without a value of its own.
+    pub const fn drawn(show: fn(&mut Ui, Cx<'_, M>) -> Vec<Command>) -> Self {
+        Content::computed(|_, _| None, show)
+    }
+}
+
+impl<M, Q: Query> Content<M, Q> {
+    /// A panel with a value that a thread of its own computes.
+    pub const fn computed(
+        asks: fn(&State, &Jobs) -> Option<Q>,
+        show: fn(&mut Ui, Cx<'_, M, Q>) -> Vec<Command>,
+    ) -> Self {
+        Content { wants: &[], marks_age: false, tells_answers: false, asks, caption: |_, _, _| None, show }
+    }
 }
 
 /// The data that a panel is drawn from.
-pub struct Cx<'a, C: Content + ?Sized> {
+pub struct Cx<'a, M = (), Q: Query = Nothing> {
     /// The panel that is drawn: all maps are one type.
     pub panel: Panel,
     pub state: &'a mut State,
     /// Results computed for all panels.
     pub jobs: &'a Jobs,
-    pub memory: &'a mut C::Remembers,
+    pub memory: &'a mut M,
     /// The panel's own value, or the reason why there is none; `None` before the first.
-    pub value: Option<Result<&'a <C::Asks as Query>::Value, &'a str>>,
+    pub value: Option<Result<&'a Q::Value, &'a str>>,
 }
 
 /// The query of a panel without a value of its own.
@@ -51,7 +58,6 @@ pub enum Nothing {}
 impl Query for Nothing {
     type Value = ();
     type State = ();
-    const THREAD: &'static str = "nothing";
     const WHAT: &'static str = "Computing nothing";
 
     fn compute(&self, (): &mut (), _: &Task) -> Result<(), Failure> {
@@ -59,23 +65,24 @@ impl Query for Nothing {
     }
 }
 
-/// A panel's memory and its computed value.
-pub struct Held<C: Content> {
-    memory: C::Remembers,
+/// A panel with its memory and its computed value.
+pub struct Held<M, Q: Query> {
+    content: Content<M, Q>,
+    memory: M,
     /// The panel's computed value.
-    pub derived: Derived<C::Asks>,
+    pub derived: Derived<Q>,
 }
 
-impl<C: Content> Held<C> {
+impl<M: Default + 'static, Q: Query> Held<M, Q> {
     /// Starts the worker of the value, idle at first; `wake` is called from its thread.
-    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
-        Box::new(Held::<C> { memory: C::Remembers::default(), derived: Derived::start(wake) })
+    pub fn start(content: Content<M, Q>, wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
+        Box::new(Held { content, memory: M::default(), derived: Derived::start(wake) })
     }
 }
 
 /// A panel of any type.
 pub trait AnyPanel: std::any::Any {
-    fn wants(&self) -> Wants;
+    fn wants(&self) -> &'static [Want];
 
     /// Asks for the panel's value where the panel is in sight; asks for none elsewhere.
     fn ask(&mut self, state: &State, jobs: &Jobs, is_in_sight: bool);
@@ -104,13 +111,13 @@ pub trait AnyPanel: std::any::Any {
 /// Opacity of an old panel.
 pub const OLD: f32 = 0.55;
 
-impl<C: Content> AnyPanel for Held<C> {
-    fn wants(&self) -> Wants {
-        C::WANTS
+impl<M: 'static, Q: Query> AnyPanel for Held<M, Q> {
+    fn wants(&self) -> &'static [Want] {
+        self.content.wants
     }
 
     fn ask(&mut self, state: &State, jobs: &Jobs, is_in_sight: bool) {
-        self.derived.ask(is_in_sight.then(|| C::asks(state, jobs)).flatten());
+        self.derived.ask(is_in_sight.then(|| (self.content.asks)(state, jobs)).flatten());
     }
 
     fn poll(&mut self) -> Option<String> {
@@ -131,30 +138,30 @@ impl<C: Content> AnyPanel for Held<C> {
             Panel::Map(kind) => is_old(kind),
             _ => {
                 self.derived.is_stale()
-                    || (C::WANTS.output && is_old(MapKind::Output))
-                    || (C::WANTS.second && is_old(MapKind::Second))
+                    || (self.content.wants.contains(&Want::Output) && is_old(MapKind::Output))
+                    || (self.content.wants.contains(&Want::Second) && is_old(MapKind::Second))
             }
         }
     }
 
     fn is_fresh_but_old(&self, state: &State, jobs: &Jobs) -> bool {
-        self.derived.is_fresh_but_old(C::asks(state, jobs).as_ref())
+        self.derived.is_fresh_but_old((self.content.asks)(state, jobs).as_ref())
     }
 
     fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
-        C::caption(state, jobs, panel)
+        (self.content.caption)(state, jobs, panel)
     }
 
     fn draw(&mut self, ui: &mut Ui, state: &mut State, jobs: &Jobs, panel: Panel) -> Vec<Command> {
-        if C::TELLS_ANSWERS && state.is_predicting() {
+        if self.content.tells_answers && state.is_predicting() {
             ui.centered_and_justified(|ui| ui.weak("Hidden until you have predicted."));
             return Vec::new();
         }
-        if !C::MARKS_AGE && self.is_stale(jobs, panel) {
+        if !self.content.marks_age && self.is_stale(jobs, panel) {
             ui.multiply_opacity(OLD);
         }
-        let Held { memory, derived } = self;
-        C::show(ui, Cx { panel, state, jobs, memory, value: derived.value() })
+        let Held { content, memory, derived } = self;
+        (content.show)(ui, Cx { panel, state, jobs, memory, value: derived.value() })
     }
 }
 
@@ -176,7 +183,6 @@ mod tests {
     impl Query for Counted {
         type Value = usize;
         type State = ();
-        const THREAD: &'static str = "count";
         const WHAT: &'static str = "Counting";
 
         fn compute(&self, (): &mut (), _: &Task) -> Result<usize, Failure> {
@@ -185,36 +191,27 @@ mod tests {
     }
 
     /// The panel of ARCHITECTURE, with a count of reflectors and a button.
-    struct CountPanel;
+    const PANEL: Content<(), Counted> = Content::computed(|state, _| Some(Counted(state.scene().into())), show);
 
-    impl Content for CountPanel {
-        type Asks = Counted;
-        type Remembers = ();
-
-        fn asks(state: &State, _: &Jobs) -> Option<Counted> {
-            Some(Counted(state.scene().into()))
+    fn show(ui: &mut Ui, cx: Cx<'_, (), Counted>) -> Vec<Command> {
+        if let Some(Ok(count)) = cx.value {
+            ui.label(format!("{count} reflectors"));
         }
-
-        fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-            if let Some(Ok(count)) = cx.value {
-                ui.label(format!("{count} reflectors"));
-            }
-            let is_clicked = ui.button("Select all").clicked();
-            is_clicked.then(|| EditCommand::SelectAll.into()).into_iter().collect()
-        }
+        let is_clicked = ui.button("Select all").clicked();
+        is_clicked.then(|| EditCommand::SelectAll.into()).into_iter().collect()
     }
 
     #[test]
     fn a_small_panel_draws_its_value_and_answers_with_commands() {
         let app = Harness::builder().build_eframe(|creation| App::new(creation, Options::default()).unwrap());
-        let count = app.state().editor().scene().reflector_count();
+        let count = app.state().editor.scene().reflector_count();
         let draw = |ui: &mut Ui, (app, held, asked): &mut (Harness<'_, App>, Box<dyn AnyPanel>, Vec<Command>)| {
             let App { state, jobs, .. } = app.state_mut();
             held.ask(state, jobs, true);
             held.poll();
             asked.extend(held.draw(ui, state, jobs, Panel::Guide));
         };
-        let held = Held::<CountPanel>::start(|| ());
+        let held = Held::start(PANEL, || ());
         let mut drawn = Harness::new_ui_state(draw, (app, held, Vec::new()));
         while drawn.state().1.is_busy() {
             std::thread::yield_now();

@@ -1,21 +1,21 @@
 //! All panels of the app, each with its memory and its computed value.
 
 use super::chrome::tiles::Draw;
-use super::content::{AnyPanel, Content, Held};
-use super::jobs::{Derived, Jobs, Wants};
+use super::content::{AnyPanel, Held};
+use super::jobs::{Derived, Jobs, Query, Want};
 use super::panels;
 use super::state::{Command, Panel, State};
 use eframe::egui::Ui;
 use std::any::Any;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Starts a panel by the type in its line of the list.
+/// Starts a panel by the content in its line of the list.
 macro_rules! starts {
     ($($(#[$meta:meta])* $name:ident $($drawn_by:ident)::+, $place:expr, $key:expr, $title:literal, $help:literal;)*) => {
         fn start(panel: Panel, wake: impl Fn() + Send + Sync + 'static) -> Box<dyn AnyPanel> {
             match panel {
-                Panel::Map(_) => Held::<panels::map::MapPanel>::start(wake),
-                $(Panel::$name => Held::<panels::$($drawn_by)::+>::start(wake),)*
+                Panel::Map(_) => Held::start(panels::map::PANEL, wake),
+                $(Panel::$name => Held::start(panels::$($drawn_by)::+, wake),)*
             }
         }
     };
@@ -38,9 +38,9 @@ impl Panels {
     }
 
     /// The maps and methods that the last frame's panels read.
-    pub fn wants(&self, state: &State) -> Wants {
+    pub fn wants(&self, state: &State) -> BTreeSet<Want> {
         let shown = state.arrangement.shown().iter().filter_map(|panel| self.0.get(panel));
-        shown.fold(Wants::NOTHING, |all, panel| all.and(panel.wants()))
+        shown.flat_map(|panel| panel.wants()).copied().collect()
     }
 
     /// Asks for the own values of this frame's panels.
@@ -66,10 +66,10 @@ impl Panels {
         self.0.get(&panel).map_or(0, |held| held.requests())
     }
 
-    /// The own value of a panel of type `C`.
-    pub fn derived<C: Content>(&self, panel: Panel) -> Option<&Derived<C::Asks>> {
+    /// The own value of a panel with this memory and this query.
+    pub fn derived<M: 'static, Q: Query>(&self, panel: Panel) -> Option<&Derived<Q>> {
         let held: &dyn Any = self.0.get(&panel)?.as_ref();
-        held.downcast_ref::<Held<C>>().map(|held| &held.derived)
+        held.downcast_ref::<Held<M, Q>>().map(|held| &held.derived)
     }
 }
 

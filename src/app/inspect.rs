@@ -2,60 +2,35 @@
 
 use super::application::App;
 use super::apply;
-use super::panels::bounds::BoundsPanel;
-use super::panels::chirp::ChirpPanel;
-use super::panels::doppler::DopplerPanel;
-use super::panels::phasors::PhasorsPanel;
-use super::state::{Arrangement, Command, MapKind, MapViews, MethodSlot, Panel, SceneView, Settings};
+use super::jobs::{BoundsRequest, ChirpQuery, DopplerQuery, PhasorsQuery};
+use super::panels::phasors::PhasorsMemory;
+use super::state::{Command, MapKind, MethodSlot, Panel, State};
+use super::widgets::Texture;
 use crate::bounds::PositionBound;
 use crate::engine::EngineReport;
 use crate::evaluate::Metrics;
 use crate::evaluate::failure::Failures;
 use crate::evaluate::rows::Row;
-use crate::evaluate::worsen::Finding;
-use crate::interact::Editor;
-use crate::lesson::Progress;
 use crate::maps::RangeAngleMap;
-use crate::radar::Radar;
 use crate::reconstruct::Detection;
-use crate::scene::{Reflector, Scene};
+use crate::scene::Reflector;
 use num_complex::Complex64;
+use std::ops::Deref;
 use std::sync::Arc;
 
+/// The app's state is that of its document, panels, settings and messages.
+impl Deref for App {
+    type Target = State;
+
+    fn deref(&self) -> &State {
+        &self.state
+    }
+}
+
 impl App {
-    /// The scene in the editor, with selection and history.
-    pub fn editor(&self) -> &Editor {
-        &self.state.editor
-    }
-
-    /// The user's settings.
-    pub fn settings(&self) -> &Settings {
-        &self.state.settings
-    }
-
-    /// The arrangement of the panels.
-    pub fn arrangement(&self) -> &Arrangement {
-        &self.state.arrangement
-    }
-
-    /// The radar of the document on screen.
-    pub fn radar(&self) -> &Radar {
-        self.state.radar()
-    }
-
     /// Queues a command, as a menu entry would.
     pub fn ask(&mut self, command: impl Into<Command>) {
         self.asked.push(command.into());
-    }
-
-    /// The learners' answers in lessons.
-    pub fn progress(&self) -> &Progress {
-        &self.state.progress
-    }
-
-    /// The visible part of the scene and of the maps.
-    pub fn views(&self) -> (SceneView, MapViews) {
-        (self.state.scene_view, self.state.map_views)
     }
 
     /// Whether a worker of jobs or panels is busy.
@@ -118,40 +93,30 @@ impl App {
         old
     }
 
-    /// Values that a panel has asked for since the start.
-    pub fn values_asked(&self, panel: Panel) -> u64 {
-        self.panels.requests(panel)
-    }
-
     /// The bound on screen, if there is one.
     pub fn position_bound(&self) -> Option<PositionBound> {
-        self.panels.derived::<BoundsPanel>(Panel::Bounds)?.value()?.ok()?.bound.ok()
+        self.panels.derived::<Texture, BoundsRequest>(Panel::Bounds)?.value()?.ok()?.bound.ok()
     }
 
     /// Range bin and column of the chain of phasors on screen, and the end of the chain, if there is one.
     pub fn phasor_sum(&self) -> Option<([usize; 2], Complex64)> {
-        self.panels.derived::<PhasorsPanel>(Panel::Phasors)?.value()?.ok().map(|r| (r.cell, r.measured.sum()))
+        self.panels
+            .derived::<PhasorsMemory, PhasorsQuery>(Panel::Phasors)?
+            .value()?
+            .ok()
+            .map(|r| (r.cell, r.measured.sum()))
     }
 
     /// Range bin and column of the strongest cell of the range-Doppler map on screen.
     pub fn doppler_peak(&self) -> Option<(usize, usize)> {
-        let decades = self.panels.derived::<DopplerPanel>(Panel::RangeDoppler)?.value()?.ok()?.decades.decades();
+        let decades =
+            self.panels.derived::<Texture, DopplerQuery>(Panel::RangeDoppler)?.value()?.ok()?.decades.decades();
         decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
-    }
-
-    /// The timeline's time, seconds.
-    pub fn time_seconds(&self) -> f64 {
-        self.state.timeline.seconds()
-    }
-
-    /// The scene at the timeline's time.
-    pub fn scene_at_time(&self) -> &Scene {
-        self.state.scene()
     }
 
     /// The range bin in which the beat on screen is strongest, and the element of that beat.
     pub fn beat_peak(&self) -> Option<(usize, usize)> {
-        let result = self.panels.derived::<ChirpPanel>(Panel::Chirp)?.value()?.ok()?;
+        let result = self.panels.derived::<(), ChirpQuery>(Panel::Chirp)?.value()?.ok()?;
         let peak = (0..result.spectrum.len()).max_by(|a, b| result.spectrum[*a].total_cmp(&result.spectrum[*b]))?;
         Some((peak, result.element))
     }
@@ -166,40 +131,10 @@ impl App {
         self.jobs.pipeline.scores_in(MethodSlot::First).map(|s| s.metrics)
     }
 
-    /// Lambda of the second method in the panel "Compare", if it has an output.
-    pub fn second_output(&self) -> Option<&RangeAngleMap> {
-        self.jobs.pipeline.method(MethodSlot::Second).output().map(|output| output.pair.output.as_ref())
-    }
-
-    /// Figures of the second method's output, if there are any.
-    pub fn second_metrics(&self) -> Option<Metrics> {
-        self.jobs.pipeline.scores_in(MethodSlot::Second).map(|s| s.metrics)
-    }
-
     /// The fate of every object in the output on screen, where the maps mark it and it is up to date.
     pub fn failures(&self) -> Option<&Failures> {
         let (fates, current) = super::jobs::fates_of(&self.jobs.kinds, MethodSlot::First, &self.jobs.pipeline)?;
         (current && self.state.settings.show_kinds).then_some(&fates.failures)
-    }
-
-    /// Whether the maps on screen are those of a scene at rest, with the same bits as a command's.
-    pub fn is_settled(&self) -> bool {
-        self.jobs.pipeline.maps.is_settled()
-    }
-
-    /// Whether the maps of a scene at rest are being computed.
-    pub fn is_settling(&self) -> bool {
-        self.jobs.pipeline.maps.is_settling()
-    }
-
-    /// Whether the output on screen belongs to other samples than the maps.
-    pub fn output_is_outdated(&self) -> bool {
-        self.jobs.pipeline.output_is_outdated()
-    }
-
-    /// Rows that the run-time panel has measured.
-    pub fn run_time_rows(&self) -> usize {
-        self.jobs.run_time.rows().len()
     }
 
     /// Whether a job started in a tool's panel runs.
@@ -207,7 +142,7 @@ impl App {
         let jobs = &self.jobs;
         jobs.thresholds.progress().is_some()
             || jobs.failures.run.progress().is_some()
-            || jobs.failures.search.progress().is_some()
+            || jobs.failures.search.job.progress().is_some()
             || jobs.run_time.progress().is_some()
     }
 
@@ -216,38 +151,13 @@ impl App {
         self.jobs.failures.table.rows()
     }
 
-    /// Whether the file that keeps rows between starts holds all of them.
-    pub fn rows_are_kept(&self) -> bool {
-        self.jobs.failures.is_kept()
-    }
-
     /// Index of the row that was opened last.
     pub fn opened_row(&self) -> Option<usize> {
         self.state.failures.opened.as_ref().map(|opened| opened.index)
     }
 
-    /// Scenes on the path of the search near the scene on screen, its start included.
-    pub fn search_path(&self) -> &[Finding] {
-        self.jobs.failures.search.path()
-    }
-
     /// The scene on screen as a line of text, where it can be shared ([`crate::share`]).
     pub fn shared_text(&self) -> Option<String> {
         apply::shared_text(&self.state).ok()
-    }
-
-    /// Number of small maps in the panel of several maps that are up to date.
-    pub fn several_maps_made(&self) -> usize {
-        self.jobs.several.shown().iter().filter(|small| small.is_current && small.made.is_some()).count()
-    }
-
-    /// Whether maps and scene have captions.
-    pub fn shows_captions(&self) -> bool {
-        self.state.shows_captions()
-    }
-
-    /// Number of messages on screen.
-    pub fn messages(&self) -> usize {
-        self.state.notices.list.len()
     }
 }

@@ -35,10 +35,10 @@ pub use page::{open_page, options_of};
 
 pub use application::{APP_ID, App, Options};
 pub use state::{
-    Arrangement, BoundsSettings, Brightness, ChirpSettings, Command, Compare, Cursor, DifferenceView, Directions,
-    DocumentCommand, EditCommand, Elements, Entry, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind,
-    NewObject, Panel, Projection, Purpose, RadarCommand, RowsCommand, SearchChoice, Settings, ThresholdChoice, Units,
-    ViewCommand, Way, WindowCommand, WorkCommand, listed, listed_on_a_page,
+    Arrangement, BoundsSettings, ChirpSettings, Command, Compare, Cursor, DifferenceView, Directions, DocumentCommand,
+    EditCommand, Elements, Entry, ExportCommand, FailureChoice, Layout, LessonCommand, MapKind, MethodSlot, NewObject,
+    Panel, Projection, Purpose, RadarCommand, RowsCommand, Settings, Units, ViewCommand, Way, WindowCommand,
+    WorkCommand, listed, listed_on_a_page,
 };
 
 /// The reason why the app did not open.

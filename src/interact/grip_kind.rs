@@ -1,6 +1,7 @@
 //! The parts of an object that can be grabbed.
 
 use super::Place;
+use std::borrow::Cow;
 
 /// Part of an object that can be grabbed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -25,8 +26,8 @@ pub enum Grip {
 
 impl Grip {
     /// The effect of dragging the grip, for tooltips and screen readers.
-    pub fn describe(self) -> &'static str {
-        match self {
+    pub fn describe(self) -> Cow<'static, str> {
+        let effect = match self {
             Grip::Body => "move",
             Grip::NearEnd => "move the near end: more or fewer reflectors",
             Grip::FarEnd => "move the far end: more or fewer reflectors",
@@ -34,14 +35,11 @@ impl Grip {
             Grip::Turn => "turn the line about its middle",
             Grip::SpreadX => "widen the cluster",
             Grip::SpreadY => "deepen the cluster",
-            Grip::Corner(0) => "move corner 1",
-            Grip::Corner(1) => "move corner 2",
-            Grip::Corner(2) => "move corner 3",
-            Grip::Corner(3) => "move corner 4",
-            Grip::Corner(_) => "move this corner",
+            Grip::Corner(number) => return format!("move corner {}", number + 1).into(),
             Grip::Rotate => "turn it about its middle",
             Grip::Radius => "change the radius",
-        }
+        };
+        effect.into()
     }
 }
 

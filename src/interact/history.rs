@@ -1,4 +1,4 @@
-//! Undo and redo: whole documents, shared, with labels of the steps.
+//! Undo and redo: whole documents, shared.
 
 use super::{Document, Selection};
 use crate::scene::Scene;
@@ -17,7 +17,6 @@ pub(super) struct Snapshot {
 
 #[derive(Debug, Clone)]
 struct Step {
-    label: String,
     /// Edits with the same key merge into one step until the history is sealed.
     merge_key: Option<String>,
     before: Snapshot,
@@ -32,15 +31,15 @@ pub struct History {
 }
 
 impl History {
-    /// Records a step: `before` is the state before it, `label` its name.
-    pub(super) fn push(&mut self, label: &str, merge_key: Option<&str>, before: Snapshot) {
+    /// Records a step: `before` is the state before it.
+    pub(super) fn push(&mut self, merge_key: Option<&str>, before: Snapshot) {
         self.undone.clear();
         let merges = !self.sealed
             && merge_key.is_some()
             && self.done.last().is_some_and(|s| s.merge_key.as_deref() == merge_key);
         self.sealed = false;
         if !merges {
-            self.done.push(Step { label: label.to_owned(), merge_key: merge_key.map(str::to_owned), before });
+            self.done.push(Step { merge_key: merge_key.map(str::to_owned), before });
             let kept = newest(&self.done, MAX_STEPS, OBJECT_LIMIT);
             self.done.drain(..self.done.len() - kept);
         }
@@ -51,14 +50,9 @@ impl History {
         self.sealed = true;
     }
 
-    /// The label of the step that undo takes back.
-    pub fn undo_label(&self) -> Option<&str> {
-        self.done.last().map(|s| s.label.as_str())
-    }
-
-    /// The label of the step that redo does again.
-    pub fn redo_label(&self) -> Option<&str> {
-        self.undone.last().map(|s| s.label.as_str())
+    /// Whether there is a step to redo.
+    pub fn can_redo(&self) -> bool {
+        !self.undone.is_empty()
     }
 
     /// Steps that can be undone.
@@ -80,7 +74,7 @@ impl History {
 
     fn step(from: &mut Vec<Step>, to: &mut Vec<Step>, now: Snapshot) -> Option<Snapshot> {
         let step = from.pop()?;
-        to.push(Step { label: step.label, merge_key: None, before: now });
+        to.push(Step { merge_key: None, before: now });
         Some(step.before)
     }
 }
@@ -112,7 +106,7 @@ mod tests {
         let scene = Scene::of_points((0..objects).map(|i| (i as f64, 1.0)));
         let document = Document::shipped(SceneFile { scene, ..SceneFile::default() });
         let before = Snapshot { document, selection: Selection::default() };
-        Step { label: String::new(), merge_key: None, before }
+        Step { merge_key: None, before }
     }
 
     #[test]
@@ -125,7 +119,7 @@ mod tests {
         assert_eq!(newest(&different, 500, 5), 1, "the last step always stays");
         assert_eq!(newest(&[], 500, 5), 0);
         let mut history = History::default();
-        (0..MAX_STEPS + 50).for_each(|_| history.push("edit", None, one.before.clone()));
+        (0..MAX_STEPS + 50).for_each(|_| history.push(None, one.before.clone()));
         assert_eq!(history.depth(), MAX_STEPS);
     }
 }

@@ -18,7 +18,7 @@ pub const FORMAT: u32 = 1;
 pub const MAX_LESSON_BYTES: u64 = 1 << 20;
 
 /// A lesson: a few steps, each with a text, a scene, a prediction and a task.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lesson {
     /// Version of the format, [`FORMAT`].
@@ -48,15 +48,12 @@ pub struct Step {
     pub challenge: Option<Challenge>,
 }
 
-/// An error of opening a lesson.
+/// An error of opening a lesson: its file, the line and what was expected.
 #[derive(Debug, thiserror::Error)]
-pub enum LessonError {
-    #[error("{}: {source}", path.display())]
-    Io { path: PathBuf, source: std::io::Error },
-    #[error("{}: larger than {MAX_LESSON_BYTES} bytes, which no lesson is", path.display())]
-    Large { path: PathBuf },
-    #[error("{}: {source}", path.display())]
-    Text { path: PathBuf, source: LessonTextError },
+#[error("{}: {message}", path.display())]
+pub struct LessonError {
+    path: PathBuf,
+    message: String,
 }
 
 impl Lesson {
@@ -86,14 +83,14 @@ impl Lesson {
     /// # Errors
     /// [`LessonError`] names the file, the line and what was expected.
     pub fn load(path: &Path) -> Result<Lesson, LessonError> {
-        let io = |source| LessonError::Io { path: path.to_owned(), source };
+        let told = |message: String| LessonError { path: path.to_owned(), message };
         let bytes = read_bounded(path, MAX_LESSON_BYTES).map_err(|error| match error.kind() {
-            ErrorKind::FileTooLarge => LessonError::Large { path: path.to_owned() },
-            _ => io(error),
+            ErrorKind::FileTooLarge => told(format!("larger than {MAX_LESSON_BYTES} bytes, which no lesson is")),
+            _ => told(error.to_string()),
         })?;
-        let text = String::from_utf8(bytes).map_err(|e| io(std::io::Error::other(e)))?;
+        let text = String::from_utf8(bytes).map_err(|error| told(error.to_string()))?;
         let lesson = Lesson::from_toml(&text).and_then(|lesson| lesson.try_out(&text).map(|()| lesson));
-        lesson.map_err(|source| LessonError::Text { path: path.to_owned(), source })
+        lesson.map_err(|error| told(error.to_string()))
     }
 }
 

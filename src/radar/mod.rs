@@ -32,7 +32,7 @@ pub use layout_kind::{LayoutKind, UnknownLayout, ranges};
 pub use memory::MAX_MEMORY_BYTES;
 pub use pair::Pair;
 pub use polar::Polar;
-pub use units::{Bytes, DecibelMilliwatts, Decibels, counted};
+pub use units::{Bytes, DecibelMilliwatts, Decibels, capitalised, counted};
 pub use window::{WindowFunction, chirp_window, hann, hann_at};
 
 use serde::{Deserialize, Serialize};

@@ -56,16 +56,6 @@ fn the_maps_follow_the_sliders_of_radius_and_roughness() {
 }
 
 #[test]
-fn the_status_bar_counts_bodies_by_their_echoes() {
-    let mut s = empty();
-    s.ask(EditCommand::Add(NewObject::Wall, Some(Place::new(0.0, 12.0))));
-    s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(4.0, 9.0))));
-    let _told = s.app.get_by_label("2 bodies · up to 4 echoes");
-    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(-4.0, 9.0))));
-    let _told = s.app.get_by_label("3 objects · 1 reflector · 2 bodies · up to 4 echoes");
-}
-
-#[test]
 fn the_status_bar_names_the_echo_under_the_pointer() {
     let mut s = empty();
     s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(6.0, 20.0))));

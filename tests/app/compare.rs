@@ -1,7 +1,7 @@
 //! Two methods on one scene: flipped, read off cell by cell, and the verdicts on every object.
 
 use crate::session::*;
-use apertura::app::{Compare, Layout};
+use apertura::app::{Compare, Layout, MethodSlot};
 use apertura::maps::{LogMaps, RangeAngleMap};
 use egui_kittest::Node;
 
@@ -26,21 +26,22 @@ fn largest_difference(a: &RangeAngleMap, b: &RangeAngleMap) -> f32 {
 #[test]
 fn the_second_outputs_figures_are_those_of_the_command_line() {
     let mut s = with_capon();
-    assert!(s.state().second_output().is_none(), "nobody looks at it");
+    assert!(s.state().jobs.pipeline.method(MethodSlot::Second).output().is_none(), "nobody looks at it");
     s.ask(WindowCommand::OpenPanel(Panel::Compare));
     for round in 0..2 {
         let trial = trial(&s);
         let answer = trial.ask(&CAPON, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
-        let shown = s.state().second_output().expect("capon's output");
+        let shown = &s.state().jobs.pipeline.method(MethodSlot::Second).output().expect("capon's output").pair.output;
         assert!(largest_difference(shown, &answer.found.lambda) < 1e-5, "round {round}");
-        let metrics = s.state().second_metrics().expect("its figures");
-        assert_eq!(metrics, answer.metrics, "round {round}");
+        let scores = s.state().jobs.pipeline.scores_in(MethodSlot::Second).expect("its figures");
+        assert_eq!(scores.metrics, answer.metrics, "round {round}");
         assert_eq!(s.state().shown_method(), Some("baseline"), "beside the first");
         let at = s.handle("point 1: move");
         s.drag(at, vec2(14.0, 9.0), 5);
     }
     s.ask(ViewCommand::SetCompare(Box::new(Compare { second: "baseline".into(), ..Compare::default() })));
-    assert_eq!(s.state().second_metrics(), s.state().metrics(), "the same method twice");
+    let [first, second] = MethodSlot::BOTH.map(|slot| s.state().jobs.pipeline.scores_in(slot).map(|s| s.metrics));
+    assert_eq!(first, second, "the same method twice");
 }
 
 #[test]
@@ -81,7 +82,7 @@ fn a_second_method_that_refuses_leaves_the_first() {
 fn one_key_flips_two_maps_in_place() {
     let mut s = with_capon();
     s.press(Modifiers::NONE, Key::X);
-    assert!(s.state().arrangement().is_open(Panel::Compare));
+    assert!(s.state().arrangement.is_open(Panel::Compare));
     s.ask(WindowCommand::Maximise(Panel::Compare));
     let place = |s: &Session, label: &str| s.app.query_by_label(label).map(|map| map.rect());
     let first = place(&s, "Output map").expect("the first is in front");

@@ -24,7 +24,7 @@ fn cells_and_rates_on_screen_are_those_of_the_library() {
     for statistic in Statistic::ALL {
         s.ask(ViewCommand::Detect(Some(statistic)));
         let cfar = Cfar { statistic, ..CELLS };
-        assert_eq!(s.state().settings().cfar, Some(cfar), "the cells stay");
+        assert_eq!(s.state().settings.cfar, Some(cfar), "the cells stay");
         let expected = trial.cfar_metrics(&answer, &cfar).unwrap();
         let shown = s.state().metrics().unwrap();
         assert_eq!((shown.detection, shown.false_alarm), (expected.detection, expected.false_alarm));

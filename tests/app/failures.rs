@@ -1,10 +1,9 @@
 //! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
 
 use crate::session::*;
-use apertura::app::SearchChoice;
 use apertura::evaluate::rows::{Row, write_rows};
 use apertura::evaluate::sets::Folder;
-use apertura::evaluate::worsen::{Aim, WorseningMeasure};
+use apertura::evaluate::worsen::WorseningSearch;
 
 fn methods() -> Vec<Arc<dyn Reconstructor>> {
     vec![Arc::new(Baseline), Arc::new(CAPON)]
@@ -111,7 +110,7 @@ fn the_worst_row_can_be_found_changed_kept() {
 #[test]
 fn one_undo_takes_a_walk_through_rows_back() {
     let mut s = tried();
-    let before = (s.editor().document().id(), s.state().settings().method.clone());
+    let before = (s.editor().document().id(), s.state().settings.method.clone());
     s.ask(ViewCommand::SetFloor(Floor::Exact));
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     let mut last = None;
@@ -127,13 +126,13 @@ fn one_undo_takes_a_walk_through_rows_back() {
         assert_eq!(s.state().opened_row(), Some(step));
         let row = &s.state().rows()[step];
         assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error);
-        assert_eq!(s.state().settings().floor, Floor::Thesis, "as the rows were made");
+        assert_eq!(s.state().settings.floor, Floor::Thesis, "as the rows were made");
         last = s.state().metrics();
     }
     assert!(last.is_some() && s.editor().left().is_empty(), "a walk leaves nothing behind");
     s.ask(EditCommand::Undo);
-    let after = (s.editor().document().id(), s.state().settings().method.clone());
-    assert_eq!((after, s.state().settings().floor), (before, Floor::Exact));
+    let after = (s.editor().document().id(), s.state().settings.method.clone());
+    assert_eq!((after, s.state().settings.floor), (before, Floor::Exact));
 }
 
 #[test]
@@ -156,10 +155,10 @@ fn rows_outlive_a_restart() {
     s.ask(WindowCommand::ClosePanel(Panel::Failures));
     assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error, "the radar is that of the rows");
     std::fs::write(&path, "not,rows\n1,2\n").unwrap();
-    let messages = s.state().messages();
+    let messages = s.state().notices.list.len();
     s.ask(RowsCommand::OpenFile(path));
-    assert!(s.state().messages() > messages && s.state().rows() == rows, "it is told, and the rows stay");
-    step_until(&mut s, "they are kept", |s| s.state().rows_are_kept());
+    assert!(s.state().notices.list.len() > messages && s.state().rows() == rows, "it is told, and the rows stay");
+    step_until(&mut s, "they are kept", |s| s.state().jobs.failures.is_kept());
     let s = s.reopened(Some("scene.toml"), methods());
     assert_eq!(s.state().rows(), rows);
 }
@@ -173,10 +172,9 @@ fn what_a_search_finds_is_one_undo_step() {
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     s.ask(RowsCommand::Show(best));
     let before = s.editor().scene().clone();
-    let choice =
-        SearchChoice { aim: Aim::Worsen, measure: WorseningMeasure::SquaredError, within_metres: 2.0, tries: 48 };
-    s.ask_and_wait(Command::Rows(RowsCommand::Search(choice)));
-    let path = s.state().search_path().to_vec();
+    let search = |tries| RowsCommand::Search(Box::new(WorseningSearch { tries, ..WorseningSearch::default() }));
+    s.ask_and_wait(search(48));
+    let path = s.state().jobs.failures.search.job.rows().to_vec();
     assert!(path.len() > 1, "something near is worse");
     let (start, found) = (&path[0].metrics, &path[path.len() - 1]);
     assert!(found.metrics.squared_error > start.squared_error);
@@ -185,7 +183,7 @@ fn what_a_search_finds_is_one_undo_step() {
     assert!(s.app.query_by_label_contains("baseline: SE").or(s.app.query_by_label_contains("capon: SE")).is_some());
     s.ask(EditCommand::Undo);
     assert_eq!(s.editor().scene(), &before);
-    s.app.state_mut().ask(RowsCommand::Search(SearchChoice { tries: 100_000, ..choice }));
+    s.app.state_mut().ask(search(100_000));
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     s.ask(RowsCommand::CancelSearch);
     step_until(&mut s, "it can be stopped", |s| !s.state().is_at_work());

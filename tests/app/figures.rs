@@ -89,7 +89,7 @@ fn a_scene_that_comes_to_rest_is_not_reconstructed_again() {
     s.ask(EditCommand::Add(NewObject::Point, None));
     assert_eq!(method.answers.load(SeqCst), 2);
     assert_ne!(on_screen(&s), before);
-    assert!(s.state().is_settled() && !s.state().output_is_outdated());
+    assert!(s.state().jobs.pipeline.maps.is_settled() && !s.state().jobs.pipeline.output_is_outdated());
 }
 
 /// Counts how often its method is asked from scratch, and how often with leave to follow.

@@ -19,10 +19,10 @@ fn methods_hear_the_layout_that_was_chosen() {
     let mut s = session();
     let before = s.state().shared_text();
     s.ask(ViewCommand::Hear(Some(nested())));
-    assert_eq!((s.state().shown_method(), s.state().messages()), (Some("iaa"), 1));
+    assert_eq!((s.state().shown_method(), s.state().notices.list.len()), (Some("iaa"), 1));
     let pictures = s.state().pictures();
     assert!(pictures.contains(&MapKind::Input0) && !pictures.contains(&MapKind::Input1), "{pictures:?}");
-    let (radar, scene, view) = (s.state().radar(), s.editor().scene(), &s.state().settings().view);
+    let (radar, scene, view) = (s.state().radar(), s.editor().scene(), &s.state().settings.view);
     let layout = nested().numbers(radar).unwrap();
     let (floor, normalisation) = (view.floor, view.normalisation);
     let trial = Trial::against(Target::Measured, Some(&layout), radar, scene, floor, normalisation).unwrap();
@@ -46,7 +46,7 @@ fn a_shared_scene_has_its_layout() {
     let text = s.state().shared_text().unwrap();
     let mut other = session();
     other.ask(EditCommand::PasteText(text));
-    assert_eq!(other.state().settings().view.layout, Some(nested()));
+    assert_eq!(other.state().settings.view.layout, Some(nested()));
     assert_eq!(other.state().shown_method(), Some("iaa"));
 }
 
@@ -54,9 +54,9 @@ fn a_shared_scene_has_its_layout() {
 fn a_layout_that_the_radar_has_not_is_let_go() {
     let mut s = session();
     s.ask(ViewCommand::Hear(Some(nested())));
-    let told = s.state().messages();
+    let told = s.state().notices.list.len();
     let radar = Radar { elements: 64, end_elements: 6, ..s.state().radar().clone() };
     s.ask(RadarCommand::Set(Box::new(radar)));
-    assert_eq!((&s.state().settings().view.layout, s.state().messages()), (&None, told + 1));
+    assert_eq!((&s.state().settings.view.layout, s.state().notices.list.len()), (&None, told + 1));
     assert!(s.state().pictures().contains(&MapKind::Input1) && s.state().refusal().is_none());
 }

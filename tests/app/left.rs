@@ -48,7 +48,7 @@ fn sessions() -> [(&'static str, Session); 3] {
     let mut recorded = session(Convention::Thesis);
     let path = recording(recorded.folder.path());
     recorded.ask(DocumentCommand::OpenPath(path));
-    assert!(recorded.state().editor().document().recording().is_some());
+    assert!(recorded.state().editor.document().recording().is_some());
     [("thesis", session(Convention::Thesis)), ("physical", session(Convention::Physical)), ("recording", recorded)]
 }
 

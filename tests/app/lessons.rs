@@ -85,10 +85,10 @@ fn take_all(right: impl Fn(usize, usize) -> bool) {
             take(&mut s, &lesson, number, right(index, number));
         }
     }
-    let before = s.state().arrangement().is_open(Panel::Controls);
+    let before = s.state().arrangement.is_open(Panel::Controls);
     s.ask(LessonCommand::Leave);
     s.press(Modifiers::NONE, Key::Escape);
-    assert!(!before && s.state().arrangement().is_open(Panel::Controls), "the panels are back");
+    assert!(!before && s.state().arrangement.is_open(Panel::Controls), "the panels are back");
     assert_eq!(s.state().radar().elements, 128, "and so is the scene");
 }
 
@@ -177,7 +177,7 @@ fn the_guess_stays_drawn_beside_the_truth() {
 fn a_shown_solution_is_unsolved_until_the_step_is_begun_again() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 5);
-    let is_met = |s: &Session| s.state().progress().record("range-and-bandwidth", 4).challenge_met;
+    let is_met = |s: &Session| s.state().progress.record("range-and-bandwidth", 4).challenge_met;
     let measured = |s: &Session| s.shows("(now ") && !s.shows("not met yet");
     s.ask(LessonCommand::ShowSolution);
     step_until(&mut s, "the solution is measured", measured);
@@ -193,13 +193,13 @@ fn a_shown_solution_is_unsolved_until_the_step_is_begun_again() {
 #[test]
 fn lessons_close_the_panels_that_they_do_not_use() {
     let mut s = Session::start();
-    let is_open = |s: &Session, kind| s.state().arrangement().is_open(Panel::Map(kind));
-    let before = s.state().arrangement().shown().clone();
+    let is_open = |s: &Session, kind| s.state().arrangement.is_open(Panel::Map(kind));
+    let before = s.state().arrangement.shown().clone();
     begin(&mut s, "range-and-bandwidth", 1);
     for kind in [MapKind::Output, MapKind::TargetAbove, MapKind::OutputAbove, MapKind::Difference] {
         assert!(!is_open(&s, kind), "{kind:?}");
     }
-    assert!(!s.state().arrangement().is_open(Panel::Roc) && is_open(&s, MapKind::Target));
+    assert!(!s.state().arrangement.is_open(Panel::Roc) && is_open(&s, MapKind::Target));
     assert!(!s.shows("Reconstruction"));
     begin(&mut s, "the-floor", 1);
     assert!(is_open(&s, MapKind::TargetAbove) && !is_open(&s, MapKind::Output));
@@ -207,7 +207,7 @@ fn lessons_close_the_panels_that_they_do_not_use() {
     assert!(is_open(&s, MapKind::Output) && !is_open(&s, MapKind::OutputAbove));
     s.ask(LessonCommand::Leave);
     s.ask(WindowCommand::ClosePanel(Panel::Lesson));
-    assert_eq!(*s.state().arrangement().shown(), before, "what was in sight is in sight again");
+    assert_eq!(*s.state().arrangement.shown(), before, "what was in sight is in sight again");
 }
 
 #[test]
@@ -233,16 +233,16 @@ fn the_end_of_a_lesson_gives_the_zoom_back() {
     s.app.event(Event::Zoom(1.5));
     s.app.run_steps(30);
     s.settle();
-    let (views, zoom) = (s.state().views(), s.app.ctx.zoom_factor());
+    let (views, zoom) = ((s.state().scene_view, s.state().map_views), s.app.ctx.zoom_factor());
     assert_ne!(views.1, Default::default(), "the maps are zoomed");
     begin(&mut s, "range-and-bandwidth", 1);
-    assert_eq!(s.state().views().1, Default::default(), "a lesson shows whole maps");
+    assert_eq!(s.state().map_views, Default::default(), "a lesson shows whole maps");
     s.ask(WindowCommand::ZoomIn);
     assert!(s.app.ctx.zoom_factor() > zoom);
     s.ask(LessonCommand::Leave);
     assert_eq!(s.app.ctx.zoom_factor(), zoom);
     s.ask(WindowCommand::ClosePanel(Panel::Lesson));
-    assert_eq!(s.state().views(), views);
+    assert_eq!((s.state().scene_view, s.state().map_views), views);
 }
 
 #[test]
@@ -257,7 +257,7 @@ fn a_lesson_file_whose_solution_fails_is_refused() {
     s.ask(WindowCommand::CloseMessages);
     std::fs::write(&path, good).unwrap();
     s.ask(LessonCommand::OpenFile(path));
-    assert!(s.shows("Step 1 of 5") && s.state().messages() == 0);
+    assert!(s.shows("Step 1 of 5") && s.state().notices.list.len() == 0);
 }
 
 #[test]
@@ -282,7 +282,7 @@ fn a_shared_scene_comes_with_its_view_and_time() {
     s.ask(EditCommand::SelectAll);
     s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(10.0)));
     let seen = |s: &Session| {
-        let settings = s.state().settings();
+        let settings = &s.state().settings;
         (settings.projection, settings.show_theory, settings.target_eta, settings.cfar)
     };
     let look = |s: &mut Session, eta: f32, cfar: Option<Cfar>| {
@@ -298,8 +298,8 @@ fn a_shared_scene_comes_with_its_view_and_time() {
     look(&mut s, 0.9, None);
     let other = (s.editor().scene().clone(), seen(&s));
     s.ask(DocumentCommand::OpenShared(text));
-    assert_eq!((s.state().radar().elements, s.state().time_seconds(), seen(&s)), (128, 0.5, shown));
-    assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
+    assert_eq!((s.state().radar().elements, s.state().timeline.seconds, seen(&s)), (128, 0.5, shown));
+    assert_eq!(s.state().scene().objects[0].centre_metres(), [0.0, 25.0]);
     s.ask(EditCommand::Undo);
     assert_eq!((s.editor().scene().clone(), seen(&s)), other);
 }
@@ -309,7 +309,9 @@ fn hidden_tools_compute_nothing() {
     let mut s = Session::start();
     s.ask(ViewCommand::ToggleTheory);
     s.ask(WindowCommand::OpenPanel(Panel::Several));
-    step_until(&mut s, "all four windows are there", |s| s.state().several_maps_made() == 4);
+    step_until(&mut s, "all four windows are there", |s| {
+        s.state().jobs.several.shown.iter().filter(|small| small.is_current && small.made.is_some()).count() == 4
+    });
     s.click("window: rectangular");
     assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
     s.press(Modifiers::COMMAND, Key::Z);
@@ -333,7 +335,7 @@ fn the_map_that_a_question_asks_about_is_the_large_one() {
         }
     }
     s.ask(LessonCommand::Leave);
-    assert!(s.state().arrangement().is_open(Panel::Controls), "the panels are as before");
+    assert!(s.state().arrangement.is_open(Panel::Controls), "the panels are as before");
 }
 
 #[test]
@@ -341,17 +343,17 @@ fn a_challenge_shows_its_control_and_where_it_happens() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 5);
     s.settle();
-    assert!(s.state().arrangement().shown().contains(&Panel::Radar), "{:?}", s.state().arrangement().shown());
-    let part = s.state().views().1.range_angle;
+    assert!(s.state().arrangement.shown().contains(&Panel::Radar), "{:?}", s.state().arrangement.shown());
+    let part = s.state().map_views.range_angle;
     assert!(part.high.y - part.low.y < 0.1, "the two points alone: {part:?}");
     step_until(&mut s, "it is measured", |s| s.shows("A dip of at least 0.06 between the two in the target"));
     let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
     s.ask(RadarCommand::Set(Box::new(radar)));
-    let followed = s.state().views().1.range_angle;
+    let followed = s.state().map_views.range_angle;
     assert!(followed.low.y > part.high.y, "they stand elsewhere in the map now: {followed:?}");
     begin(&mut s, "smooth-and-rough", 4);
     s.settle();
-    let shown = s.state().arrangement().shown().clone();
+    let shown = s.state().arrangement.shown().clone();
     assert!(shown.contains(&Panel::Inspector) || shown.contains(&Panel::Scene), "{shown:?}");
 }
 

@@ -14,7 +14,7 @@ fn moving() -> Session {
 #[test]
 fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
     let mut s = moving();
-    assert_eq!(s.state().values_asked(Panel::RangeDoppler), 0, "a closed panel costs nothing");
+    assert_eq!(s.state().panels.requests(Panel::RangeDoppler), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));
     let radar = s.state().radar().clone();
     let (_, column) = s.state().doppler_peak().expect("a map");
@@ -22,19 +22,19 @@ fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
     // The nearer of the two is the louder one.
     let expected = s.objects()[1].radial_velocity_metres_per_second();
     assert!((velocity - expected).abs() < 0.6 * radar.velocity_resolution_metres_per_second(), "{velocity}");
-    let asked = s.state().values_asked(Panel::RangeDoppler);
+    let asked = s.state().panels.requests(Panel::RangeDoppler);
     s.undo();
     assert_eq!(
-        (s.state().radar().chirps, s.state().values_asked(Panel::RangeDoppler)),
+        (s.state().radar().chirps, s.state().panels.requests(Panel::RangeDoppler)),
         (1, asked),
         "chirps are undone"
     );
     s.ask(RadarCommand::Set(Box::new(radar)));
     assert_eq!(s.state().radar().chirps, 64);
     s.ask(WindowCommand::TogglePanel(Panel::RangeDoppler));
-    let asked = s.state().values_asked(Panel::RangeDoppler);
+    let asked = s.state().panels.requests(Panel::RangeDoppler);
     s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(3.0)));
-    assert_eq!(s.state().values_asked(Panel::RangeDoppler), asked);
+    assert_eq!(s.state().panels.requests(Panel::RangeDoppler), asked);
 }
 
 #[test]
@@ -45,13 +45,13 @@ fn maps_follow_time_but_the_document_stays() {
     let at = s.handle("point 1: move");
     s.ask(ViewCommand::SetTime(0.5));
     assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().work_done().0 > requested);
-    assert_eq!(s.state().scene_at_time().objects[0].centre_metres(), [0.0, 25.0]);
+    assert_eq!(s.state().scene().objects[0].centre_metres(), [0.0, 25.0]);
     // A press in the scene goes back; the next drag edits.
     s.drag(at, vec2(30.0, 0.0), 3);
-    assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().time_seconds() == 0.0);
+    assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().timeline.seconds == 0.0);
     s.ask(ViewCommand::SetTime(0.5));
     s.ask(EditCommand::Nudge { dx_metres: 1.0, dy_metres: 0.0 });
-    assert_eq!((s.place(0), s.state().time_seconds()), ([1.0, 20.0], 0.0));
+    assert_eq!((s.place(0), s.state().timeline.seconds), ([1.0, 20.0], 0.0));
 }
 
 #[test]
@@ -59,15 +59,15 @@ fn time_goes_on_while_motion_is_played() {
     let mut s = moving();
     s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
     s.app.step();
-    let first = s.state().time_seconds();
-    step_until(&mut s, "time goes on", |s| s.state().time_seconds() > first + 0.2);
+    let first = s.state().timeline.seconds;
+    step_until(&mut s, "time goes on", |s| s.state().timeline.seconds > first + 0.2);
     s.ask(ViewCommand::TogglePlay);
-    let stopped = s.state().time_seconds();
+    let stopped = s.state().timeline.seconds;
     s.app.run_steps(5);
-    assert_eq!(s.state().time_seconds(), stopped);
+    assert_eq!(s.state().timeline.seconds, stopped);
     s.ask(ViewCommand::SetTime(0.0));
     s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(0.0)));
     s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
     s.app.run_steps(5);
-    assert_eq!(s.state().time_seconds(), 0.0, "nothing moves");
+    assert_eq!(s.state().timeline.seconds, 0.0, "nothing moves");
 }

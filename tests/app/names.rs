@@ -88,7 +88,7 @@ fn maps_bend_into_cartesian_ones_in_half_a_second() {
     assert!((20..=60).contains(&frames), "{frames} frames of a sixtieth of a second");
     s.settle();
     s.click("Target: straighten into cos θ and range");
-    assert_eq!(s.state().settings().projection, apertura::app::Projection::RangeAngle);
+    assert_eq!(s.state().settings.projection, apertura::app::Projection::RangeAngle);
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn the_first_drag_is_told_in_one_sentence() {
     s.ask(WindowCommand::ToggleCaptions);
     let told = |s: &Session, text: &str| s.painted().iter().any(|t| t == text);
     assert!(told(&s, "Drag the post along its ring, to the wall"), "{:?}", s.painted());
-    let (from, metres_per_point) = (s.handle("post: move"), s.state().views().0.metres_per_point);
+    let (from, metres_per_point) = (s.handle("post: move"), s.state().scene_view.metres_per_point);
     let [x, y] = s.place(3);
     let (range, (sin, cos)) = (x.hypot(y), 27f64.to_radians().sin_cos());
     let by = vec2(((range * sin - x) / metres_per_point) as f32, ((y - range * cos) / metres_per_point) as f32);

@@ -27,7 +27,7 @@ fn another_normalisation_simulates_nothing() {
     ] {
         let (_, painted) = s.state().work_done();
         s.ask(ViewCommand::Normalise(normalisation));
-        assert_eq!(s.state().settings().normalisation, normalisation);
+        assert_eq!(s.state().settings.normalisation, normalisation);
         assert!(s.state().work_done().1 >= painted + 6, "every map was painted again");
         let report = s.state().report().unwrap();
         for stage in [EngineStage::Signal, EngineStage::FirstMap, EngineStage::LastMap, EngineStage::FullMap] {
@@ -35,7 +35,7 @@ fn another_normalisation_simulates_nothing() {
         }
     }
     s.ask(ViewCommand::SetFloor(Floor::Exact));
-    assert_eq!(s.state().settings().floor, Floor::Exact);
+    assert_eq!(s.state().settings.floor, Floor::Exact);
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn the_window_function_reaches_the_maps() {
 #[test]
 fn bounds_follow_the_selected_reflector() {
     let mut s = Session::start();
-    assert_eq!(s.state().values_asked(Panel::Bounds), 0);
+    assert_eq!(s.state().panels.requests(Panel::Bounds), 0);
     s.ask(WindowCommand::OpenPanel(Panel::Bounds));
     let before = s.state().position_bound().expect("of the first reflector");
     let at = s.handle("point 2: move");
@@ -127,16 +127,16 @@ fn bounds_follow_the_selected_reflector() {
     let after = s.state().position_bound().unwrap();
     assert_ne!(before, after);
     s.ask(WindowCommand::TogglePanel(Panel::Bounds));
-    let asked = s.state().values_asked(Panel::Bounds);
+    let asked = s.state().panels.requests(Panel::Bounds);
     let at = s.handle("point 2: move");
     s.drag(at, vec2(0.0, 20.0), 4);
-    assert_eq!(s.state().values_asked(Panel::Bounds), asked);
+    assert_eq!(s.state().panels.requests(Panel::Bounds), asked);
 }
 
 #[test]
 fn phasors_follow_the_cursor() {
     let mut s = Session::start();
-    assert_eq!(s.state().values_asked(Panel::Phasors), 0, "a closed panel costs nothing");
+    assert_eq!(s.state().panels.requests(Panel::Phasors), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::Phasors));
     let (cell, sum) = s.state().phasor_sum().expect("of the first object");
     let map = s.app.get_by_label("Target map").rect();
@@ -144,21 +144,21 @@ fn phasors_follow_the_cursor() {
     s.settle();
     let (moved, another) = s.state().phasor_sum().unwrap();
     assert!(moved != cell && another != sum, "{cell:?} {moved:?}");
-    let asked = s.state().values_asked(Panel::Phasors);
+    let asked = s.state().panels.requests(Panel::Phasors);
     s.ask(WindowCommand::TogglePanel(Panel::Phasors));
     s.app.hover_at(map.lerp_inside(vec2(0.7, 0.2)));
     s.settle();
-    assert_eq!(s.state().values_asked(Panel::Phasors), asked);
+    assert_eq!(s.state().panels.requests(Panel::Phasors), asked);
 }
 
 #[test]
 fn the_beat_on_screen_is_that_of_the_strongest_echo() {
     let mut s = Session::start();
-    assert_eq!(s.state().values_asked(Panel::Chirp), 0, "a closed panel costs nothing");
+    assert_eq!(s.state().panels.requests(Panel::Chirp), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::Chirp));
     let bin = |s: &Session| {
         let chirp = ChirpShape::of(s.state().radar());
-        let echoes = heard(s.state().radar(), s.editor().scene(), s.state().settings().chirp.element);
+        let echoes = heard(s.state().radar(), s.editor().scene(), s.state().settings.chirp.element);
         let strongest = echoes.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
         chirp.range_bin(chirp.beat_hz(strongest.range_metres))
     };
@@ -169,10 +169,10 @@ fn the_beat_on_screen_is_that_of_the_strongest_echo() {
     s.ask(RadarCommand::Set(Box::new(longer)));
     let (longer, element) = s.state().beat_peak().unwrap();
     assert_eq!((longer, element), (peak, 127), "the last element; no sample depends on the duration");
-    let asked = s.state().values_asked(Panel::Chirp);
+    let asked = s.state().panels.requests(Panel::Chirp);
     s.ask(WindowCommand::TogglePanel(Panel::Chirp));
     s.ask(ViewCommand::SetChirp(ChirpSettings::default()));
-    assert_eq!(s.state().values_asked(Panel::Chirp), asked);
+    assert_eq!(s.state().panels.requests(Panel::Chirp), asked);
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn pinned_cuts_outlive_their_scene() {
     s.ask(DocumentCommand::RandomScene(Kind::Set1));
     let _pinned = s.app.get_by_label_contains("Unpin 1: ");
     s.press(Modifiers::NONE, Key::D);
-    assert_eq!(s.state().settings().units, Units::Decibels);
+    assert_eq!(s.state().settings.units, Units::Decibels);
     s.ask(ViewCommand::UnpinAll);
     assert!(!s.shows("Unpin 1: "));
 }
@@ -220,27 +220,26 @@ fn every_button_of_the_guide_leaves_a_working_app() {
     press_in_the_guide(&mut s, "Two-way");
     assert_eq!(s.state().radar().carrier, Carrier::TwoWay);
     assert_eq!(s.editor().scene().name, "Four reflectors");
-    assert_eq!(s.state().messages(), 0);
+    assert_eq!(s.state().notices.list.len(), 0);
 }
 
 #[test]
 fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
     let mut s = Session::start();
     s.ask(ViewCommand::SetFloor(Floor::Snr(Decibels(30.0))));
-    let (scene, radar, settings) =
-        (s.editor().scene().clone(), s.state().radar().clone(), s.state().settings().clone());
+    let (scene, radar, settings) = (s.editor().scene().clone(), s.state().radar().clone(), s.state().settings.clone());
     s.ask(WindowCommand::Maximise(Panel::Guide));
     for button in ["No window", "Hamming"] {
         press_in_the_guide(&mut s, button);
     }
-    assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Hamming, Floor::Exact));
+    assert_eq!((s.state().radar().window, s.state().settings.floor), (WindowFunction::Hamming, Floor::Exact));
     s.undo();
     assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
     s.undo();
     assert!(Arc::ptr_eq(&scene, s.editor().scene()));
-    assert_eq!((s.state().radar(), s.state().settings()), (&radar, &settings));
+    assert_eq!((s.state().radar(), &s.state().settings), (&radar, &settings));
     s.redo();
-    assert_eq!((s.state().radar().window, s.state().settings().floor), (WindowFunction::Rectangular, Floor::Exact));
+    assert_eq!((s.state().radar().window, s.state().settings.floor), (WindowFunction::Rectangular, Floor::Exact));
 }
 
 #[test]
@@ -258,7 +257,7 @@ fn random_scenes_are_those_of_the_tables() {
 fn only_the_user_moves_a_threshold() {
     let s = Session::with_methods(vec![Arc::new(CAPON)]);
     assert_eq!(CAPON.eta(), 0.851, "more decimals than the slider shows");
-    assert!(s.state().settings().method_eta.is_empty());
+    assert!(s.state().settings.method_eta.is_empty());
 }
 
 #[test]

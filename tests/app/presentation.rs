@@ -9,17 +9,17 @@ fn one_key_toggles_a_presentation() {
     s.ask(WindowCommand::Maximise(Panel::Cuts));
     s.ask(WindowCommand::ClosePanel(Panel::Inspector));
     s.ask(WindowCommand::ZoomIn);
-    let (zoom, before) = (s.app.ctx.zoom_factor(), s.state().arrangement().shown().clone());
+    let (zoom, before) = (s.app.ctx.zoom_factor(), s.state().arrangement.shown().clone());
     s.press(Modifiers::NONE, Key::F11);
     let maps = [MapKind::Input0, MapKind::Input1, MapKind::Target, MapKind::Output].map(Panel::Map);
     let shown: BTreeSet<Panel> = maps.into_iter().chain([Panel::Scene]).collect();
-    assert_eq!(*s.state().arrangement().shown(), shown);
+    assert_eq!(*s.state().arrangement.shown(), shown);
     assert!(s.app.ctx.zoom_factor() / zoom >= 1.25, "larger type");
     s.ask(WindowCommand::OpenPanel(Panel::Roc));
     s.press(Modifiers::NONE, Key::F11);
     assert_eq!(s.app.ctx.zoom_factor(), zoom);
-    assert_eq!(*s.state().arrangement().shown(), before, "whatever was opened meanwhile");
-    assert!(!s.state().arrangement().is_open(Panel::Inspector) && !before.contains(&Panel::Inspector));
+    assert_eq!(*s.state().arrangement.shown(), before, "whatever was opened meanwhile");
+    assert!(!s.state().arrangement.is_open(Panel::Inspector) && !before.contains(&Panel::Inspector));
 }
 
 /// Every text of the last frame, and its height in pixels of the screen.
@@ -75,7 +75,7 @@ fn a_map_is_copied_upright_a_pixel_a_cell() {
     let bin = (radar.samples - 1 - brightest) as f64;
     assert!(bins.iter().any(|b| (b - bin).abs() <= 1.5), "row {brightest} is bin {bin}, reflectors in {bins:?}");
     s.ask(WindowCommand::ClosePanel(Panel::Map(MapKind::Target)));
-    let before = s.state().messages();
+    let before = s.state().notices.list.len();
     s.ask(ExportCommand::CopyMap(MapKind::Target));
-    assert_eq!(s.state().messages(), before + 1, "a map that isn't drawn is no picture: that is told");
+    assert_eq!(s.state().notices.list.len(), before + 1, "a map that isn't drawn is no picture: that is told");
 }

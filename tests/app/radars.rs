@@ -34,7 +34,7 @@ fn every_model_based_method_works_on_five_radars() {
     s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(40.0))));
     for (what, radar) in radars() {
         s.ask(DocumentCommand::OpenPath(recorded(&s, &radar)));
-        assert_eq!(s.state().messages(), 0, "{what}");
+        assert_eq!(s.state().notices.list.len(), 0, "{what}");
         assert_eq!(s.state().radar(), &radar, "{what}");
         s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Unexplained)));
         let mut works = 0;
@@ -64,7 +64,7 @@ fn every_map_follows_the_chosen_radar() {
     let mut s = Session::start();
     for (what, radar) in radars() {
         s.ask(RadarCommand::Set(Box::new(radar.clone())));
-        assert_eq!((s.state().radar(), s.state().messages()), (&radar, 0), "{what}");
+        assert_eq!((s.state().radar(), s.state().notices.list.len()), (&radar, 0), "{what}");
         assert_eq!(s.state().shown_method(), Some("baseline"));
         assert!(s.state().refusal().is_none(), "{what}: {:?}", s.state().refusal());
     }

@@ -67,10 +67,10 @@ fn what_is_laid_over_a_recording_never_replaces_it() {
     let before = kept();
     s.ask(DocumentCommand::OpenPath(path.clone()));
     s.press(Modifiers::COMMAND, Key::S);
-    assert_eq!(s.state().messages(), 1, "told that there is nothing to save, and not asked for a file");
+    assert_eq!(s.state().notices.list.len(), 1, "told that there is nothing to save, and not asked for a file");
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
     s.ask(DocumentCommand::SaveTo(path.clone()));
-    assert!(s.state().messages() == 2 && s.editor().is_modified());
+    assert!(s.state().notices.list.len() == 2 && s.editor().is_modified());
     let refused = Editor::of(Document::read_recording(&path).unwrap()).save(&data).unwrap_err().to_string();
     assert!(refused.contains("chip-8.npz: holds a recording"), "{refused}");
     assert_eq!(kept(), before);
@@ -104,7 +104,7 @@ fn a_recordings_constants_cannot_be_edited() {
     let measured = s.state().radar().clone();
     s.ask(RadarCommand::SetCarrier(Carrier::TwoWay));
     s.ask(RadarCommand::Set(Box::new(Radar { elements: 64, ..measured.clone() })));
-    assert_eq!((s.state().radar(), s.state().messages()), (&measured, 1));
+    assert_eq!((s.state().radar(), s.state().notices.list.len()), (&measured, 1));
     s.ask(RadarCommand::Set(Box::new(Radar { end_elements: 20, ..measured.clone() })));
     s.ask(RadarCommand::SetWindow(WindowFunction::Hamming));
     assert_eq!((s.state().radar().end_elements, s.state().radar().window), (20, WindowFunction::Hamming));
@@ -153,10 +153,10 @@ fn a_recording_is_opened_at_the_start() {
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(s.path("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
     s.ask(DocumentCommand::OpenPath(s.path("broken.toml")));
-    assert_eq!((s.state().messages(), s.state().radar().elements), (1, 128));
+    assert_eq!((s.state().notices.list.len(), s.state().radar().elements), (1, 128));
     let s = s.reopened(Some("cascade-86.toml"), vec![Arc::new(CAPON)]);
     assert_eq!(s.state().radar().elements, 86);
-    let found = s.state().arrangement().is_open(Panel::Found);
+    let found = s.state().arrangement.is_open(Panel::Found);
     assert!(found, "what was found is in sight");
 }
 
@@ -225,7 +225,7 @@ fn a_capture_is_opened_and_read_another_way() {
     let mut s = with_iaa();
     let path = captured(&s);
     s.ask(DocumentCommand::OpenPath(path));
-    assert!(s.state().arrangement().is_open(Panel::Recording));
+    assert!(s.state().arrangement.is_open(Panel::Recording));
     let origin = |s: &Session| s.editor().document().recording().unwrap().origin.clone().unwrap();
     assert_eq!((origin(&s).frames, origin(&s).taken, s.state().radar().elements), (2, 0, 4));
     s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));

@@ -55,7 +55,7 @@ fn objects_travel_through_the_clipboard_as_toml() {
     s.app.event(Event::Paste("not a scene".to_owned()));
     s.settle();
     assert_eq!(s.objects().len(), 4);
-    assert_eq!(s.state().messages(), 1, "and says why");
+    assert_eq!(s.state().notices.list.len(), 1, "and says why");
 }
 
 #[test]
@@ -72,15 +72,15 @@ fn a_bad_file_loses_nothing() {
         if name != "missing.toml" {
             std::fs::write(&path, text).unwrap();
         }
-        let before = s.state().messages();
+        let before = s.state().notices.list.len();
         s.ask(DocumentCommand::OpenPath(path));
         assert!(Arc::ptr_eq(&scene, s.editor().scene()), "{name}");
-        assert_eq!(s.state().messages(), before + 1, "{name}");
+        assert_eq!(s.state().notices.list.len(), before + 1, "{name}");
     }
-    let before = s.state().messages();
+    let before = s.state().notices.list.len();
     s.app.get_all_by_label("Close this message").last().unwrap().click();
     s.settle();
-    assert_eq!(s.state().messages(), before - 1);
+    assert_eq!(s.state().notices.list.len(), before - 1);
 }
 
 #[test]

@@ -123,7 +123,7 @@ impl Session {
     }
 
     pub fn editor(&self) -> &Editor {
-        self.state().editor()
+        &self.state().editor
     }
 
     pub fn objects(&self) -> &[Object] {
@@ -174,7 +174,7 @@ impl Session {
     }
 
     pub fn place(&self, object: usize) -> [f64; 2] {
-        self.state().editor().scene().objects[object].centre_metres()
+        self.state().editor.scene().objects[object].centre_metres()
     }
 
     pub fn handle(&self, label: &str) -> Pos2 {

@@ -1,7 +1,7 @@
 //! Long work beside the window: evaluations, measurements, training logs, methods that fail.
 
 use crate::session::*;
-use apertura::app::{Purpose, ThresholdChoice, WorkCommand};
+use apertura::app::{Purpose, WorkCommand};
 use apertura::engine::{StageOutcome, StageReport};
 use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;
@@ -26,23 +26,21 @@ fn an_evaluation_runs_beside_the_app() {
 #[test]
 fn a_false_alarm_rate_sets_the_threshold() {
     let mut s = Session::start();
-    let choice = |count| ThresholdChoice { false_alarm_percent: 40.0, kinds: vec![Kind::Set1, Kind::Set2], count };
-    s.ask_and_wait(WorkCommand::FindThreshold(choice(2)));
+    let kinds = vec![Kind::Set1, Kind::Set2];
+    let asked = ThresholdSearch { kinds, count: 2, false_alarm_percent: 40.0, ..ThresholdSearch::default() };
+    s.ask_and_wait(WorkCommand::FindThreshold(Box::new(asked.clone())));
     let search = ThresholdSearch {
         radar: s.state().radar().clone(),
-        floor: s.state().settings().floor,
-        normalisation: s.state().settings().normalisation,
-        kinds: choice(2).kinds,
-        count: 2,
-        false_alarm_percent: 40.0,
-        ..ThresholdSearch::default()
+        floor: s.state().settings.floor,
+        normalisation: s.state().settings.normalisation,
+        ..asked.clone()
     };
     let exact = search.run(&Baseline, &Task::default(), |_| ()).unwrap().eta;
     let expected = (exact * 1000.0).ceil() / 1000.0;
-    let set = |s: &Session| s.state().settings().method_eta.get("baseline").copied();
+    let set = |s: &Session| s.state().settings.method_eta.get("baseline").copied();
     assert_eq!(set(&s), Some(expected), "rounded up to three decimals");
     assert!(s.shows("at most 40 % false alarms on average"));
-    s.app.state_mut().ask(WorkCommand::FindThreshold(choice(100_000)));
+    s.app.state_mut().ask(WorkCommand::FindThreshold(Box::new(ThresholdSearch { count: 100_000, ..asked })));
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     s.app.state_mut().ask(WorkCommand::CancelThreshold);
     step_until(&mut s, "it ends", |s| !s.state().is_at_work());
@@ -55,11 +53,11 @@ fn run_times_arrive_while_they_are_measured() {
     let mut s = Session::start();
     s.ask(WindowCommand::Maximise(Panel::RunTime));
     s.app.get_by_label("Measure").click();
-    step_until(&mut s, "a row arrives", |s| s.state().run_time_rows() > 0);
+    step_until(&mut s, "a row arrives", |s| !s.state().jobs.run_time.rows().is_empty());
     s.app.step();
     s.app.get_by_label("Cancel").click();
     step_until(&mut s, "it ends", |s| !s.state().is_at_work());
-    assert!(s.state().run_time_rows() > 0, "what was measured stays");
+    assert!(!s.state().jobs.run_time.rows().is_empty(), "what was measured stays");
 }
 
 #[derive(Debug)]
@@ -93,7 +91,7 @@ fn a_training_log_is_followed() {
 fn a_method_that_panics_is_a_message() {
     let method = Stub { panics: Arc::new(true.into()), ..Stub::default() };
     let mut s = Session::with_methods(vec![Arc::new(method.clone())]);
-    assert_eq!(s.state().messages(), 1);
+    assert_eq!(s.state().notices.list.len(), 1);
     assert!(!s.state().pictures().contains(&MapKind::Output));
     assert!(s.state().pictures().contains(&MapKind::Target), "the maps go on");
     method.panics.store(false, SeqCst);
@@ -121,15 +119,15 @@ fn a_method_that_refuses_leaves_no_old_output() {
 fn figures_are_of_one_pair_of_maps() {
     let mut s = Session::with_methods(vec![Arc::new(Stub::slow(1200))]);
     let before = s.state().metrics().unwrap();
-    assert!(!s.state().output_is_outdated());
+    assert!(!s.state().jobs.pipeline.output_is_outdated());
     s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
     let target = s.state().report().unwrap().total;
     step_until(&mut s, "the maps are new", |s| s.state().report().unwrap().total != target);
     step_until(&mut s, "the output is told to be old", |s| s.shows("(updating)"));
-    assert!(s.state().output_is_outdated());
+    assert!(s.state().jobs.pipeline.output_is_outdated());
     assert_eq!(s.state().metrics(), Some(before), "the figures are those of the output that is shown");
     s.settle();
-    assert!(!s.state().output_is_outdated() && s.state().metrics() != Some(before));
+    assert!(!s.state().jobs.pipeline.output_is_outdated() && s.state().metrics() != Some(before));
 }
 
 /// The list and the crosses are of the recording before: nothing of them stands while the next is computed.
@@ -201,7 +199,7 @@ fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
     let given_up = (1..=10).step_by(2).any(|points| {
         s.app.state_mut().ask(EditCommand::Add(NewObject::Point, None));
         step_until(&mut s, "the maps follow", |s| said(s, &format!("{} reflectors", CLUSTER + points)));
-        step_until(&mut s, "the scene rests", |s| s.state().is_settling());
+        step_until(&mut s, "the scene rests", |s| s.state().jobs.pipeline.maps.is_settling());
         s.app.state_mut().ask(EditCommand::Add(NewObject::Point, None));
         let came_to_rest = Cell::new(false);
         step_until(&mut s, "the maps follow", |s| {
@@ -212,7 +210,7 @@ fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
     });
     assert!(given_up, "maps of the scene before are computed to the end");
     s.settle();
-    assert!(s.state().is_settled());
+    assert!(s.state().jobs.pipeline.maps.is_settled());
 }
 
 #[test]

@@ -93,16 +93,16 @@ fn a_kill_while_saving_leaves_the_old_file_or_the_new_one() {
 #[ignore = "the child of the test below"]
 fn child_autosaves() {
     let Some(folder) = folder_of_child() else { return };
-    let mut autosave = Autosave::claim(&folder.join("data")).unwrap();
+    let mut autosave = Autosave::claim(&folder.join("data"));
     let restored = autosave.restore();
     let start = latest(&restored).unwrap_or(0);
     let mut editor = Editor::start(restored, None, Document::unsaved(None, numbered(start)));
     std::fs::write(folder.join("begun"), "").unwrap();
     for number in start + 1.. {
         if number % 20 == 0 {
-            editor.open("open", Document::unsaved(None, numbered(number)));
+            editor.open(Document::unsaved(None, numbered(number)));
         } else {
-            editor.edit("edit", None, |scene, _| *scene = numbered(number).scene);
+            editor.edit(None, |scene, _| *scene = numbered(number).scene);
         }
         autosave.keep_now(&editor).unwrap();
         safe(number);
@@ -121,7 +121,7 @@ fn a_kill_while_autosaving_loses_no_more_than_the_last_edit() {
     let mut safe = 0;
     for _ in 0..KILLS {
         safe = kill("child_autosaves", folder.path(), &mut rng).max(safe);
-        let restored = Autosave::claim(&folder.path().join("data")).unwrap().restore();
+        let restored = Autosave::claim(&folder.path().join("data")).restore();
         let found = latest(&restored).unwrap_or(0);
         assert!(found == safe || found == safe + 1, "{found} where {safe} was safe");
         safe = found;
@@ -231,7 +231,7 @@ fn a_folder_that_vanishes_is_an_error() {
     let message = file::save(&path, &numbered(3)).unwrap_err().to_string();
     assert!(message.contains("there is no folder") && message.contains("inner"), "{message}");
     // The autosave's folder is its own: it comes back.
-    let mut autosave = Autosave::claim(&inner).unwrap();
+    let mut autosave = Autosave::claim(&inner);
     std::fs::remove_dir_all(&inner).unwrap();
     let mut editor = Editor::of(Document::default());
     editor.add(Object::Point(Point::new(1.0, 2.0)));

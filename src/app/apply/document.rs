@@ -19,7 +19,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) -> Re
     match command {
         DocumentCommand::New => {
             let file = SceneFile { radar: state.radar().clone(), ..SceneFile::default() };
-            state.set_document("new scene", Document::shipped(file));
+            state.set_document(Document::shipped(file));
         }
         DocumentCommand::OpenPath(path) => open(state, path)?,
         DocumentCommand::Save => saving::save_again(state, jobs),
@@ -47,7 +47,7 @@ fn open(state: &mut State, path: PathBuf) -> Result<(), String> {
         return open_weights(state, &path);
     }
     if let Some(document) = read(state, &path) {
-        show(state, "open", document);
+        show(state, document);
     }
     Ok(())
 }
@@ -69,8 +69,8 @@ fn open_weights(state: &mut State, path: &Path) -> Result<(), String> {
 }
 
 /// Puts a document on screen, with a method that takes its radar and the panels of a recording.
-fn show(state: &mut State, label: &str, document: Document) {
-    state.set_document(label, document);
+fn show(state: &mut State, document: Document) {
+    state.set_document(document);
     opened(state);
 }
 
@@ -154,7 +154,7 @@ fn preset(state: &mut State, index: usize) -> Result<(), String> {
     let radar = if keeps_radar { state.radar().clone() } else { file.radar.clone() };
     let document = Document::shipped(SceneFile { radar, ..file });
     state.failures.wanted = preset.is_failure().then(|| document.id());
-    state.set_document("preset", document);
+    state.set_document(document);
     use_a_method_that_can(state);
     if preset.is_failure() {
         // Undo brings back the method together with the scene.
@@ -167,7 +167,7 @@ fn preset(state: &mut State, index: usize) -> Result<(), String> {
 fn shipped_recording(state: &mut State, index: usize) -> Result<(), String> {
     let Some(preset) = recording::presets::ALL.get(index) else { return Ok(()) };
     let read = Document::shipped_recording(preset);
-    show(state, "recording", read.map_err(|error| format!("Recording {}: {error}", preset.id))?);
+    show(state, read.map_err(|error| format!("Recording {}: {error}", preset.id))?);
     Ok(())
 }
 
@@ -186,7 +186,7 @@ fn read_another_way(state: &mut State, way: Way) {
             if matches!(way, Way::Frame(_)) {
                 state.editor.open_frame(document);
             } else {
-                state.editor.open("read another way", document);
+                state.editor.open(document);
                 use_a_method_that_can(state);
             }
         }
@@ -202,7 +202,7 @@ fn show_frame(state: &mut State, jobs: &mut Jobs, frame: LiveFrame) {
     let LiveFrame { recording, config, is_first } = frame;
     let recording = Recording::clone(&recording);
     if is_first {
-        return show(state, "listen", Document::of_frame(recording, &config));
+        return show(state, Document::of_frame(recording, &config));
     }
     let on_screen = state.editor.document();
     let is_followed = on_screen.recording().is_some_and(|shown| is_live(shown, &config));
@@ -246,5 +246,5 @@ fn random_scene(state: &mut State, kind: Kind) {
         // No other floor has noise in an empty scene.
         state.settings.floor = Floor::Level(state.settings.level);
     }
-    state.set_document("random scene", Document::unsaved(None, file));
+    state.set_document(Document::unsaved(None, file));
 }

@@ -46,7 +46,7 @@ pub fn apply(ctx: &Context, state: &mut State, command: EditCommand) -> Result<(
             state.note_first_drag();
         }
         EditCommand::SetNoiseSeed(seed) => {
-            editor.edit("noise seed", Some("noise seed"), |scene, _| scene.noise_seed = seed);
+            editor.edit(Some("noise seed"), |scene, _| scene.noise_seed = seed);
         }
         EditCommand::SetSnap(snap) => state.settings.snap = snap,
         EditCommand::SetCoordinates(coordinates) => state.settings.coordinates = coordinates,

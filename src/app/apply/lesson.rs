@@ -56,7 +56,7 @@ pub fn go_to(state: &mut State, step: usize) {
 fn begin(state: &mut State, id: String, lesson: Arc<Lesson>) {
     leave(state);
     let (setup, scene_view, map_views) = (state.setup(), state.scene_view, state.map_views);
-    let task = state.kept_arrangement().task();
+    let task = state.kept_arrangement().task;
     if !state.is_presenting() {
         state.arrangement.switch(Task::Teach);
     }
@@ -78,7 +78,7 @@ fn set_up(state: &mut State) {
     let name = state.lesson.as_ref().map_or_else(String::new, |run| run.lesson.title.clone());
     // Name and notes would tell the answer that the learner predicts.
     let scene = Scene { name, notes: String::new(), noise_seed: step.view.seed, ..step.scene() };
-    state.set_document("lesson", Document::shipped(SceneFile { scene, radar: step.radar.clone() }));
+    state.set_document(Document::shipped(SceneFile { scene, radar: step.radar.clone() }));
     let (scene, depth) = (state.editor.scene().clone(), state.editor.history().depth());
     state.map_views = MapViews::default();
     state.arrangement.set_open(Panel::Scene, true);
@@ -119,7 +119,7 @@ fn show_solution(state: &mut State) {
     if let Some(radar) = challenge.solution.radar {
         file.radar = radar;
     }
-    state.set_document("solution", Document::shipped(file));
+    state.set_document(Document::shipped(file));
     state.lesson.iter_mut().for_each(|run| run.gave_up = true);
 }
 

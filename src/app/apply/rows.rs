@@ -5,7 +5,6 @@ use crate::app::jobs::{FailuresPlan, Jobs, is_table_of_rows, keep, tell};
 use crate::app::state::{FailureChoice, OpenedRow, Panel, RowsCommand, State};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::{Folder, SceneSet};
-use crate::evaluate::worsen::Aim;
 use crate::platform::fs;
 use std::path::Path;
 
@@ -24,8 +23,8 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: RowsCommand) -> Result
         RowsCommand::Clear => jobs.failures.clear(),
         RowsCommand::BringBack => jobs.failures.bring_back(),
         RowsCommand::Show(index) => open_row(state, jobs, index)?,
-        RowsCommand::Search(choice) => jobs.failures.search.begin(state, choice),
-        RowsCommand::CancelSearch => jobs.failures.search.cancel(),
+        RowsCommand::Search(search) => jobs.failures.search.begin(state, *search),
+        RowsCommand::CancelSearch => jobs.failures.search.job.cancel(),
         RowsCommand::TakeFinding => take_finding(state, jobs),
         RowsCommand::ForgetSearch => jobs.failures.search.forget(),
         RowsCommand::KeepScene(note) => keep_scene(state, jobs, &note)?,
@@ -82,7 +81,7 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) -> Result<(), Stri
         state.settings.compare.second.clone_from(second);
     }
     let opened = document.id();
-    state.set_document("open row", document);
+    state.set_document(document);
     let after = state.setup();
     state.guided.push(before, after);
     state.failures.opened = Some(OpenedRow { row, index, generation, document: opened });
@@ -92,11 +91,10 @@ fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) -> Result<(), Stri
 
 fn take_finding(state: &mut State, jobs: &Jobs) {
     let search = &jobs.failures.search;
-    let ([_, .., found], Some((choice, _))) = (search.path(), search.subject()) else { return };
-    let label = if choice.aim == Aim::Repair { "repair" } else { "worse" };
+    let [_, .., found] = search.job.rows() else { return };
     let found = found.scene.clone();
     // The scene on screen, near which the search looked, keeps its name and notes.
-    state.editor.edit(label, None, |scene, _| (scene.objects, scene.noise_seed) = (found.objects, found.noise_seed));
+    state.editor.edit(None, |scene, _| (scene.objects, scene.noise_seed) = (found.objects, found.noise_seed));
 }
 
 fn keep_scene(state: &mut State, jobs: &Jobs, note: &str) -> Result<(), String> {

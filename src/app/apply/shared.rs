@@ -43,7 +43,7 @@ fn share(state: &State) -> SharedScene {
     let lesson = lesson.map(|run| LessonPlace { id: run.id.clone(), step: run.step + 1 });
     let parts = [by_column(state.radar(), part(state.map_views.range_angle)), part(state.map_views.cartesian)];
     let view = SharedView::of(&View { method, ..state.settings.view.clone() }, parts, lesson);
-    let view = SharedView { time_seconds: state.timeline.seconds(), ..view };
+    let view = SharedView { time_seconds: state.timeline.seconds, ..view };
     SharedScene { file: state.editor.document().to_file(), view }
 }
 
@@ -78,7 +78,7 @@ pub fn open(state: &mut State, text: &str) -> Result<(), String> {
         }
     }
     let before = state.setup();
-    state.set_document("shared scene", Document::unsaved(None, file));
+    state.set_document(Document::unsaved(None, file));
     look(state, view);
     let after = state.setup();
     // Leaving a lesson takes everything back, so no undo step is needed.

@@ -78,7 +78,7 @@ fn next_method(state: &mut State) {
 
 /// Plays or stops the frames of a recording, or a scene that moves.
 fn toggle_play(state: &mut State) {
-    let is_playing = !state.timeline.is_playing();
+    let is_playing = !state.timeline.is_playing;
     if state.frames().is_some() {
         document::play_frames(state, is_playing);
     } else {

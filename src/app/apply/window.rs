@@ -1,9 +1,9 @@
 //! Commands that arrange the window.
 
-use crate::app::state::{Arrangement, Brightness, State, WindowCommand};
+use crate::app::state::{Arrangement, State, WindowCommand};
 use crate::app::widgets::theme;
 use crate::interact::SelectionMode;
-use eframe::egui::{Context, ViewportCommand};
+use eframe::egui::{Context, ThemePreference, ViewportCommand};
 
 /// Does a window command. The palette belongs to the app, which shows it.
 pub fn apply(ctx: &Context, state: &mut State, command: WindowCommand) {
@@ -26,7 +26,7 @@ pub fn apply(ctx: &Context, state: &mut State, command: WindowCommand) {
         WindowCommand::CloseHelp => state.help = None,
         WindowCommand::CloseMessages => state.notices.list.clear(),
         WindowCommand::ToggleTheme => {
-            state.settings.theme = if state.dark { Brightness::Light } else { Brightness::Dark };
+            state.settings.theme = if state.dark { ThemePreference::Light } else { ThemePreference::Dark };
             theme::apply(ctx, state.settings.theme);
         }
         WindowCommand::ZoomIn => zoom(0.1),

@@ -8,8 +8,8 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
         WorkCommand::CancelMethod => jobs.pipeline.method_mut(MethodSlot::First).cancel(),
         WorkCommand::CancelSecond => jobs.pipeline.method_mut(MethodSlot::Second).cancel(),
-        WorkCommand::FindThreshold(choice) => {
-            ThresholdPlan::of(state, choice).into_iter().for_each(|plan| jobs.thresholds.begin(plan));
+        WorkCommand::FindThreshold(search) => {
+            ThresholdPlan::of(state, *search).into_iter().for_each(|plan| jobs.thresholds.begin(plan));
         }
         WorkCommand::CancelThreshold => jobs.thresholds.cancel(),
         WorkCommand::Measure { thorough } => {

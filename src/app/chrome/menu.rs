@@ -15,6 +15,7 @@ use crate::scene::generate::Kind;
 use crate::scene::presets;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{self, PopupCloseBehavior, Ui};
+use std::sync::LazyLock;
 
 struct Listed {
     name: String,
@@ -23,23 +24,17 @@ struct Listed {
 }
 
 /// The presets, read once.
-pub struct MenuMemory {
-    presets: Vec<Listed>,
-}
-
-impl Default for MenuMemory {
-    fn default() -> Self {
-        let listed = |preset: &presets::Preset| {
-            let scene = preset.load().map(|f| f.scene).unwrap_or_default();
-            let name = if scene.name.is_empty() { preset.id.to_owned() } else { scene.name };
-            Listed { name, is_failure: preset.is_failure(), notes: scene.notes }
-        };
-        MenuMemory { presets: presets::ALL.iter().map(listed).collect() }
-    }
-}
+static PRESETS: LazyLock<Vec<Listed>> = LazyLock::new(|| {
+    let listed = |preset: &presets::Preset| {
+        let scene = preset.load().map(|f| f.scene).unwrap_or_default();
+        let name = if scene.name.is_empty() { preset.id.to_owned() } else { scene.name };
+        Listed { name, is_failure: preset.is_failure(), notes: scene.notes }
+    };
+    presets::ALL.iter().map(listed).collect()
+});
 
 /// Draws the bar.
-pub fn show(ui: &mut Ui, state: &State, memory: &mut MenuMemory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Panel::top("menu").show(ui, |ui| {
         let width = ui.available_width();
@@ -47,9 +42,9 @@ pub fn show(ui: &mut Ui, state: &State, memory: &mut MenuMemory) -> Vec<Command>
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| file(ui, state, &mut asked));
             ui.menu_button("Edit", |ui| edit(ui, state, &mut asked));
-            ui.menu_button("Scene", |ui| scene(ui, state, memory, &mut asked));
+            ui.menu_button("Scene", |ui| scene(ui, state, &mut asked));
             ui.menu_button("View", |ui| view(ui, state, &mut asked));
-            ui.menu_button("Tools", |ui| tools(ui, state, memory, &mut asked));
+            ui.menu_button("Tools", |ui| tools(ui, state, &mut asked));
             ui.menu_button("Help", |ui| help(ui, state, &mut asked));
             // In a narrow window they would reach past its edge; the menus have all of them.
             if !is_narrow {
@@ -155,11 +150,11 @@ fn edit(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     }
 }
 
-fn scene(ui: &mut Ui, state: &State, memory: &MenuMemory, asked: &mut Vec<Command>) {
+fn scene(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.set_min_width(260.0);
     entries(ui, NewObject::ALL.map(|kind| Command::Edit(EditCommand::Add(kind, None))), asked);
     ui.separator();
-    ui.menu_button("Presets", |ui| presets_of(ui, memory, false, asked));
+    ui.menu_button("Presets", |ui| presets_of(ui, false, asked));
     ui.menu_button("Recordings", |ui| {
         entries(ui, (0..recordings::ALL.len()).map(|v| Command::Document(DocumentCommand::Recording(v))), asked);
     });
@@ -190,8 +185,8 @@ fn random_scenes(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
 }
 
 /// The presets of failures, or all others.
-fn presets_of(ui: &mut Ui, memory: &MenuMemory, failures: bool, asked: &mut Vec<Command>) {
-    let listed = memory.presets.iter().enumerate().filter(|(_, preset)| preset.is_failure == failures);
+fn presets_of(ui: &mut Ui, failures: bool, asked: &mut Vec<Command>) {
+    let listed = PRESETS.iter().enumerate().filter(|(_, preset)| preset.is_failure == failures);
     for (index, preset) in listed {
         if ui.button(&preset.name).on_hover_text(&preset.notes).clicked() {
             asked.push(DocumentCommand::Preset(index).into());
@@ -228,14 +223,14 @@ fn panels(ui: &mut Ui, panels: impl IntoIterator<Item = Panel>, state: &State, a
 }
 
 /// Tools and their commands; research tools appear where developer panels are on.
-fn tools(ui: &mut Ui, state: &State, memory: &MenuMemory, asked: &mut Vec<Command>) {
+fn tools(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     let tools = Panel::tiles().into_iter().filter(|panel| panel.is_tool() && !HELP.contains(panel));
     let (of_developers, tools): (Vec<Panel>, Vec<Panel>) = tools.partition(|panel| panel.is_developer());
     panels(ui, tools, state, asked);
     ui.separator();
     item(ui, state, ViewCommand::Flip, asked);
-    ui.menu_button("Failures explained", |ui| presets_of(ui, memory, true, asked));
+    ui.menu_button("Failures explained", |ui| presets_of(ui, true, asked));
     ui.separator();
     item(ui, state, ViewCommand::ToggleDeveloper, asked);
     if state.settings.developer {
@@ -258,7 +253,7 @@ fn view(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     });
     ui.menu_button("Arrangement", |ui| {
         for task in Task::ALL {
-            ticked(ui, task.name(), WindowCommand::ArrangeFor(task), state.arrangement.task() == task, asked);
+            ticked(ui, task.name(), WindowCommand::ArrangeFor(task), state.arrangement.task == task, asked);
         }
     });
     ui.menu_button("Colours", |ui| {

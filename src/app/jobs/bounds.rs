@@ -58,7 +58,6 @@ const BUDGET: f64 = 2.0e6;
 impl Query for BoundsRequest {
     type Value = BoundsResult;
     type State = ();
-    const THREAD: &'static str = "bounds";
     const WHAT: &'static str = "Computing the bounds";
     const ADVICE: &'static str = "Move the reflector to try again.";
 

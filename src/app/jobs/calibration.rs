@@ -44,7 +44,6 @@ impl CalibrationQuery {
 impl Query for CalibrationQuery {
     type Value = Calibrated;
     type State = ();
-    const THREAD: &'static str = "calibration";
     const WHAT: &'static str = "The calibration";
     const ADVICE: &'static str = "Select another point to try again.";
 

@@ -34,7 +34,6 @@ pub struct ChirpResult {
 impl Query for ChirpQuery {
     type Value = ChirpResult;
     type State = KeptSignal;
-    const THREAD: &'static str = "chirps";
     const WHAT: &'static str = "Computing the beat";
 
     fn compute(&self, kept: &mut KeptSignal, _: &Task) -> Result<ChirpResult, Failure> {

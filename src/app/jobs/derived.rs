@@ -18,9 +18,7 @@ pub trait Query: Clone + PartialEq + Send + 'static {
     type Value: Send + 'static;
     /// State that the thread keeps between queries.
     type State: Default + 'static;
-    /// Name of the thread.
-    const THREAD: &'static str;
-    /// Subject of the message about a panic, at the beginning of a sentence.
+    /// Subject of the message about a panic, at the beginning of a sentence. It is the name of the thread, too.
     const WHAT: &'static str;
     /// The user's remedy after a panic, as a sentence.
     const ADVICE: &'static str = "Change the scene to try again.";
@@ -71,7 +69,7 @@ impl<Q: Query> Derived<Q> {
             let value = query.compute(state, task);
             (query, value)
         };
-        let worker = Worker::spawn(Q::THREAD, Q::State::default, work, wake);
+        let worker = Worker::spawn(Q::WHAT, Q::State::default, work, wake);
         Derived { worker, asked: None, made: None, waiting: Vec::new(), requests: 0 }
     }
 
@@ -169,7 +167,6 @@ mod tests {
     impl Query for Square {
         type Value = u32;
         type State = u32;
-        const THREAD: &'static str = "squares";
         const WHAT: &'static str = "Squaring";
         const ADVICE: &'static str = "Choose another number.";
 

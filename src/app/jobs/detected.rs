@@ -5,6 +5,7 @@ use crate::app::shared::Shared;
 use crate::engine::EngineFrame;
 use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::radar::capitalised;
 use std::sync::Arc;
 
 /// Maps whose detected cells are 1 and others 0.
@@ -45,7 +46,8 @@ impl Detector {
         let target = Some(&full.lambda).filter(|_| target_is_wanted);
         let mut found = [target, outputs[0], outputs[1]].into_iter().enumerate().map(|(slot, map)| {
             let found = self.kept[slot].try_of((map?.into(), full.scale, cfar), |(map, scale, cfar)| {
-                let detected = cfar.detect_lambda(map, *scale).map_err(|e| sentence(&e.to_string()))?;
+                let detected =
+                    cfar.detect_lambda(map, *scale).map_err(|e| format!("{}.", capitalised(&e.to_string())))?;
                 Ok(Arc::new(detected.as_map()))
             });
             found.cloned().map_err(|error: String| detected.error = Some(error)).ok()
@@ -54,11 +56,4 @@ impl Detector {
         drop(found);
         Detected { target, outputs: [first, second], ..detected }
     }
-}
-
-/// The message with a capital letter and a full stop.
-fn sentence(message: &str) -> String {
-    let mut letters = message.chars();
-    let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().collect());
-    format!("{first}{}.", letters.as_str())
 }

@@ -53,7 +53,6 @@ impl Query for DopplerQuery {
     type Value = DopplerResult;
     /// The last map, so that another colour map or normalisation does not compute it again.
     type State = Memo<(Source, bool), DopplerMade>;
-    const THREAD: &'static str = "range-Doppler";
     const WHAT: &'static str = "Computing the range-Doppler map";
 
     fn compute(&self, kept: &mut Self::State, task: &Task) -> Result<DopplerResult, Failure> {

@@ -101,7 +101,6 @@ impl KindsQuery {
 impl Query for KindsQuery {
     type Value = Made;
     type State = KeptFates;
-    const THREAD: &'static str = "kinds of failure";
     const WHAT: &'static str = "Telling kinds of failure apart";
 
     fn compute(&self, kept: &mut KeptFates, _: &Task) -> Result<Made, Failure> {

@@ -50,7 +50,6 @@ impl Answered {
 impl Query for Answered {
     type Value = Outcome;
     type State = ();
-    const THREAD: &'static str = "lessons";
     const WHAT: &'static str = "Judging the answer";
     const ADVICE: &'static str = "Change it to try again.";
 

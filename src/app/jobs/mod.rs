@@ -58,7 +58,7 @@ pub use listening::{Listening, is_live};
 pub use memo::Memo;
 pub use method::Refusal;
 pub use phasors::{PhasorsQuery, PhasorsResult};
-pub use pipeline::{Pipeline, Wants};
+pub use pipeline::{Pipeline, Want};
 use rows::RowJob;
 pub use run_time::RunTimePlan;
 pub use scene_maps::Scores;
@@ -72,6 +72,7 @@ use crate::app::state::{Command, DocumentCommand, Panel, Purpose, RowsCommand, S
 use crate::interact::Autosave;
 use crate::platform;
 use eframe::egui::{Context, DroppedFile};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -106,12 +107,9 @@ pub struct Jobs {
 
 impl Jobs {
     /// Starts every thread. The autosave is kept in `folder`; there is none without it.
-    ///
-    /// # Errors
-    /// When no autosave can be kept in `folder`.
-    pub fn start(ctx: &Context, folder: Option<&Path>, dialogs: Dialogs) -> std::io::Result<Jobs> {
+    pub fn start(ctx: &Context, folder: Option<&Path>, dialogs: Dialogs) -> Jobs {
         let wake = platform::waker(ctx);
-        Ok(Jobs {
+        Jobs {
             pipeline: Pipeline::start(wake.clone()),
             thresholds: RowJob::start(wake.clone()),
             failures: Failures::start(folder, ctx),
@@ -124,10 +122,10 @@ impl Jobs {
             exports: Exports(Background::new(ctx.clone())),
             listening: Listening::new(ctx.clone()),
             dialogs,
-            autosave: folder.map(Autosave::claim).transpose()?,
+            autosave: folder.map(Autosave::claim),
             wake: ctx.clone(),
             folder: folder.map(Path::to_path_buf),
-        })
+        }
     }
 
     /// Takes in work finished since the last frame. Returns the commands of chosen files, lessons, frames, thresholds and searches.
@@ -166,7 +164,7 @@ impl Jobs {
     }
 
     /// Asks for the values that this frame's panels need, if they changed; `wants` has the maps and methods they read.
-    pub fn ask(&mut self, state: &mut State, wants: Wants) {
+    pub fn ask(&mut self, state: &mut State, wants: &BTreeSet<Want>) {
         self.pipeline.ask(state, wants);
         self.lessons.ask(state);
         self.several.ask(state);

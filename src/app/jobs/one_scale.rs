@@ -6,20 +6,14 @@ use crate::app::state::MapKind;
 use crate::engine::{EngineFrame, ReadyMap};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use std::collections::BTreeMap;
-
-/// A map on a scale shared with others.
-#[derive(Clone)]
-pub struct Rescaled {
-    pub map: Shared<RangeAngleMap>,
-    pub scale: LambdaScale,
-}
+use std::sync::Arc;
 
 /// A map, its own scale and the common one.
 type Rescaling = (Shared<RangeAngleMap>, LambdaScale, LambdaScale);
 
 /// The last maps on a common scale.
 #[derive(Default)]
-pub struct OneScale(BTreeMap<MapKind, Memo<Rescaling, Rescaled>>);
+pub struct OneScale(BTreeMap<MapKind, Memo<Rescaling, ReadyMap>>);
 
 impl OneScale {
     /// The inputs, the target and the outputs on a common scale. It ends at the highest peak of inputs and target and spans as many decibels as the widest of
@@ -28,7 +22,7 @@ impl OneScale {
         &mut self,
         frame: &EngineFrame,
         outputs: [Option<&Shared<RangeAngleMap>>; 2],
-    ) -> BTreeMap<MapKind, Rescaled> {
+    ) -> BTreeMap<MapKind, ReadyMap> {
         let ready = |map: &ReadyMap| (Shared::from(&map.lambda), map.scale);
         let of_frame =
             [(MapKind::Input0, &frame.first), (MapKind::Input1, &frame.last), (MapKind::Target, &frame.full)];
@@ -55,10 +49,10 @@ fn common(scales: impl Iterator<Item = LambdaScale> + Clone) -> LambdaScale {
     LambdaScale { peak, floor: peak - span }
 }
 
-fn rescaled((map, own, scale): &Rescaling) -> Rescaled {
+fn rescaled((map, own, scale): &Rescaling) -> ReadyMap {
     let decades = |lambda: f32| own.floor + f64::from(lambda) * (own.peak - own.floor);
     let lambda = map.lambda.mapv(|lambda| scale.lambda(decades(lambda)) as f32);
-    Rescaled { map: Shared::new(RangeAngleMap { lambda }), scale: *scale }
+    ReadyMap { lambda: Arc::new(RangeAngleMap { lambda }), scale: *scale }
 }
 
 #[cfg(test)]
@@ -72,7 +66,7 @@ mod tests {
         let scale = common([weak, strong].into_iter());
         let map = Shared::new(RangeAngleMap { lambda: array![[1.0f32, 0.5, 0.0]] });
         let [of_strong, of_weak] = [strong, weak].map(|own| rescaled(&(map.clone(), own, scale)));
-        assert_eq!(of_strong.map.lambda, map.lambda, "the strongest stays as it is");
-        assert_eq!(of_weak.map.lambda, array![[0.75f32, 0.25, 0.0]], "20 dB of 80 dB");
+        assert_eq!(of_strong.lambda.lambda, map.lambda, "the strongest stays as it is");
+        assert_eq!(of_weak.lambda.lambda, array![[0.75f32, 0.25, 0.0]], "20 dB of 80 dB");
     }
 }

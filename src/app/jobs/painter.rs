@@ -49,7 +49,7 @@ impl Painter {
             return picture.clone();
         }
         let (rows, mut columns) = subject.map.lambda.dim();
-        let is_mask = matches!(subject.paint, Paint::Above { .. } | Paint::Detections { .. });
+        let is_mask = matches!(subject.paint, Paint::Above { .. });
         let end = end_of(subject);
         let pixels = match subject.projection {
             Projection::RangeAngle => {
@@ -126,20 +126,16 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
     // NaN marks cells beyond the maximum range of a Cartesian map.
     let shown = |v: f32, colour: Color32| if v.is_nan() { OUTSIDE } else { colour };
     match (subject.paint, minus) {
-        (Paint::Lambda(colours), _) => {
-            let table = colour_table(colours);
-            cells.map(|&v| shown(v, table[(v * 255.0 + 0.5) as u8 as usize])).collect()
-        }
-        (Paint::Doubt(colours), _) => {
+        (Paint::Lambda(colours) | Paint::Doubt(colours), _) => {
             let table = colour_table(colours);
             cells.map(|&v| shown(v, table[(v / end * 255.0 + 0.5) as u8 as usize])).collect()
         }
-        (Paint::Above { eta, dark }, _) => {
+        (Paint::Above { eta, dark }, None) => {
             let mask = theme::mask(dark);
             cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
         }
         // Ghosts are drawn over the picture, once the output is judged.
-        (Paint::Detections { eta, dark }, Some(target)) => {
+        (Paint::Above { eta, dark }, Some(target)) => {
             let verdicts = told_apart(map, target, [eta, TARGET_ETA], &[]);
             let colours = fills(&verdicts.into_raw_vec_and_offset().0, map.dim(), dark);
             cells.zip(colours).map(|(&v, colour)| shown(v, colour)).collect()
@@ -156,7 +152,7 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
                 .map(|(&v, &m)| shown(v, table[(127.5 * (1.0 + (v - m) / end) + 0.5) as u8 as usize]))
                 .collect()
         }
-        (Paint::Difference { .. } | Paint::Detections { .. }, None) => vec![OUTSIDE; map.len()],
+        (Paint::Difference { .. }, None) => vec![OUTSIDE; map.len()],
     }
 }
 
@@ -230,7 +226,7 @@ mod tests {
             let subject = Subject {
                 map: lambda(array![[0.0f32, 0.0], [0.8, 0.8]]),
                 minus: Some(lambda(array![[0.0f32, 0.95], [0.89, 0.95]])),
-                paint: Paint::Detections { eta: 0.5, dark },
+                paint: Paint::Above { eta: 0.5, dark },
                 projection: Projection::RangeAngle,
                 is_fine: false,
             };

@@ -47,7 +47,6 @@ pub struct PhasorsResult {
 impl Query for PhasorsQuery {
     type Value = PhasorsResult;
     type State = KeptSignal;
-    const THREAD: &'static str = "phasors";
     const WHAT: &'static str = "Computing the phasors";
     const ADVICE: &'static str = "Move the pointer to try again.";
 

@@ -58,10 +58,10 @@ impl Pipeline {
     }
 
     /// Asks the workers for the values that this frame's panels need, if they changed.
-    pub fn ask(&mut self, state: &State, wants: Wants) {
+    pub fn ask(&mut self, state: &State, wants: &BTreeSet<Want>) {
         let pictures = state.pictured();
         let drawn = pictures.iter().any(|kind| kind.slot() == Some(MethodSlot::First)) || state.marks_output();
-        let read = [drawn || wants.output, wants.second];
+        let read = [drawn || wants.contains(&Want::Output), wants.contains(&Want::Second)];
         let source = Source::of(state);
         for slot in MethodSlot::BOTH {
             let wanted = state.method_in(slot).filter(|_| read[slot as usize]).map(|method| Origin {
@@ -76,9 +76,10 @@ impl Pipeline {
         let request = self.maps_request(state, source, (pictures, read), wants);
         let is_recorded = request.source.recording.is_some();
         self.maps.ask(request, state.editor.dragged().is_some());
+        let listed = wants.contains(&Want::Listed) || is_recorded;
         for slot in MethodSlot::BOTH {
             match read[slot as usize] {
-                true => self.ask_method(state, slot, slot == MethodSlot::First && (wants.listed || is_recorded)),
+                true => self.ask_method(state, slot, slot == MethodSlot::First && listed),
                 false if slot == MethodSlot::Second => self.methods[slot as usize].rest(),
                 false => {}
             }
@@ -91,10 +92,10 @@ impl Pipeline {
         state: &State,
         source: Source,
         (pictures, read): (BTreeSet<MapKind>, [bool; 2]),
-        wants: Wants,
+        wants: &BTreeSet<Want>,
     ) -> MapsRequest {
         let map = |kind| pictures.contains(&kind);
-        let all = wants.every_map;
+        let all = wants.contains(&Want::EveryMap);
         let output = read.contains(&true);
         let settings = &state.settings;
         let layout = settings.heard(state.radar());
@@ -136,7 +137,7 @@ impl Pipeline {
             cfar: settings.cfar,
             etas: MethodSlot::BOTH.map(|slot| if is_read(slot) { self.eta(state, slot) } else { TARGET_ETA }),
             scores: output && (source.recording.is_some() || !source.scene.objects.is_empty() || is_noise),
-            roc: wants.roc,
+            roc: wants.contains(&Want::Roc),
             source,
         }
     }
@@ -244,31 +245,14 @@ impl Pipeline {
     }
 }
 
-/// Values of maps and methods that panels read, besides the pictures of maps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Wants {
+/// A value of maps and methods that panels read, besides the pictures of maps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Want {
     /// The numbers of every map.
-    pub every_map: bool,
-    pub output: bool,
-    pub second: bool,
-    pub listed: bool,
-    pub roc: bool,
-}
-
-impl Wants {
-    /// No values.
-    pub const NOTHING: Wants = Wants { every_map: false, output: false, second: false, listed: false, roc: false };
+    EveryMap,
     /// The first method's output.
-    pub const OUTPUT: Wants = Wants { output: true, ..Wants::NOTHING };
-
-    /// The values of two panels together.
-    pub fn and(self, other: Wants) -> Wants {
-        Wants {
-            every_map: self.every_map || other.every_map,
-            output: self.output || other.output,
-            second: self.second || other.second,
-            listed: self.listed || other.listed,
-            roc: self.roc || other.roc,
-        }
-    }
+    Output,
+    Second,
+    Listed,
+    Roc,
 }

@@ -35,9 +35,7 @@ pub trait Plan: Send + Sync + 'static {
     type Row: Send + 'static;
     /// Result of the whole run.
     type End: Send + 'static;
-    /// Name of the thread.
-    const THREAD: &'static str;
-    /// Subject of the message about a panic, at the beginning of a sentence.
+    /// Subject of the message about a panic, at the beginning of a sentence. It is the name of the thread, too.
     const WHAT: &'static str;
     /// The user's remedy after a panic, as a sentence.
     const ADVICE: &'static str;
@@ -76,7 +74,7 @@ impl<P: Plan> RowJob<P> {
                 if task.is_cancelled() { Err(Failure::Cancelled) } else { Ok(end) }
             };
         // Threads of its own: on shared ones the maps would wait for the work.
-        let worker = Worker::spawn(P::THREAD, || platform::pool(P::THREAD), run, wake);
+        let worker = Worker::spawn(P::WHAT, || platform::pool(P::WHAT), run, wake);
         RowJob { worker, plan: None, arriving: None, rows: Vec::new(), end: None, note: None }
     }
 
@@ -130,7 +128,7 @@ impl<P: Plan> RowJob<P> {
 
     /// The reason why the last run ended early, if it did.
     pub fn note(&self) -> Option<&str> {
-        self.note.as_deref()
+        self.plan.as_ref().and(self.note.as_deref())
     }
 
     /// Takes in finished work. Returns a message for the user.
@@ -168,7 +166,6 @@ mod tests {
     impl Plan for Count {
         type Row = u32;
         type End = u32;
-        const THREAD: &'static str = "test";
         const WHAT: &'static str = "Counting";
         const ADVICE: &'static str = "Try another number.";
 

@@ -16,7 +16,6 @@ impl Plan for RunTimePlan {
     type Row = FrontRow;
     /// Time of one bare transform, milliseconds.
     type End = f64;
-    const THREAD: &'static str = "run time";
     const WHAT: &'static str = "The measurement";
     const ADVICE: &'static str = "Measure again.";
 

@@ -3,7 +3,7 @@
 use super::detected::{Detected, Detector};
 use super::heard::Heard;
 use super::memo::Memo;
-use super::one_scale::{OneScale, Rescaled};
+use super::one_scale::OneScale;
 use super::painter::{Painter, Picture, largest_difference};
 use super::recorded::{RecordedMaps, Unexplained};
 use super::source::Source;
@@ -96,7 +96,7 @@ pub struct MapsResult {
     /// The unexplained part of a recording, where its map is in sight, or the reason why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
     pub detected: Detected,
-    pub on_one_scale: BTreeMap<MapKind, Rescaled>,
+    pub on_one_scale: BTreeMap<MapKind, ReadyMap>,
     pub pictures: BTreeMap<MapKind, Picture>,
     /// Figures of the requested pairs.
     pub scores: [Option<Scores>; 2],
@@ -158,7 +158,7 @@ impl MapsState {
         for &kind in &request.pictures {
             if let Some(mut subject) = subject(&frame, unexplained.as_ref(), &request, &detected, kind) {
                 if let Some(rescaled) = on_one_scale.get(&kind) {
-                    subject.map = rescaled.map.clone();
+                    subject.map = Shared::from(&rescaled.lambda);
                 }
                 pictures.insert(kind, self.painter.paint(&request.source.radar, kind, &subject));
             }
@@ -301,10 +301,7 @@ fn subject(
                 None => (output, of_pair, request.etas[slot?]),
                 Some(_) => (shared(&detected.outputs[slot?]), target.filter(|_| of_pair.is_some()), DETECTED),
             };
-            match target {
-                Some(target) => (output, Some(target), Paint::Detections { eta, dark }),
-                None => (output, None, Paint::Above { eta, dark }),
-            }
+            (output, target, Paint::Above { eta, dark })
         }
         MapKind::Difference | MapKind::SecondDifference => (
             output,

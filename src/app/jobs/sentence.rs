@@ -23,13 +23,13 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
     match (subject.paint, minus) {
         (Paint::Lambda(_), _) => peaks(radar, map),
         (Paint::Doubt(_), _) => doubt(radar, map),
-        (Paint::Above { eta, .. }, _) => match map.iter().filter(|v| **v > eta).count() {
+        (Paint::Above { eta, .. }, None) => match map.iter().filter(|v| **v > eta).count() {
             0 => "No cell exceeds the threshold.".to_owned(),
             count => {
                 format!("{} above the threshold; {}", counted(count, "cell", "cells"), lowered(&peaks(radar, map)))
             }
         },
-        (Paint::Detections { eta, .. }, Some(target)) => {
+        (Paint::Above { eta, .. }, Some(target)) => {
             let of = |kind| {
                 map.iter().zip(target).filter(move |(v, t)| CellVerdict::of(**t > TARGET_ETA, **v > eta) == kind)
             };
@@ -40,7 +40,7 @@ pub fn sentence(radar: &Radar, subject: &Subject) -> String {
             format!("{hits} hit, {alarms}, {misses} missed; {}", lowered(&peaks(radar, map)))
         }
         (Paint::Difference { .. }, Some(target)) => largest_difference(radar, map, target),
-        (Paint::Detections { .. } | Paint::Difference { .. }, None) => "There is no target to compare with.".to_owned(),
+        (Paint::Difference { .. }, None) => "There is no target to compare with.".to_owned(),
     }
 }
 
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn detections_are_counted() {
         let (output, target) = (map(&[(9, 9, 0.95), (99, 99, 0.9)]), map(&[(9, 9, 0.95), (200, 9, 1.0)]));
-        let told = said(Paint::Detections { eta: 0.8, dark: true }, output.clone(), Some(target));
+        let told = said(Paint::Above { eta: 0.8, dark: true }, output.clone(), Some(target));
         assert!(told.starts_with("1 cell hit, 1 false alarm, 1 missed; peaks"), "{told}");
         let told = said(Paint::Above { eta: 0.8, dark: true }, output, None);
         assert!(told.starts_with("2 cells above the threshold; peaks"), "{told}");

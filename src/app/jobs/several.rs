@@ -53,7 +53,7 @@ pub struct SeveralMaps {
     worker: Worker<(u64, Request), ()>,
     arriving: Receiver<Arrival>,
     asked: Option<Request>,
-    shown: Vec<Small>,
+    pub shown: Vec<Small>,
     requests: u64,
 }
 
@@ -106,11 +106,6 @@ impl SeveralMaps {
             .iter()
             .map(|variant| Small { made: made(variant), variant: variant.clone(), is_current: false })
             .collect();
-    }
-
-    /// The small maps on screen.
-    pub fn shown(&self) -> &[Small] {
-        &self.shown
     }
 
     /// Whether the worker is busy.

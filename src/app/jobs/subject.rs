@@ -9,13 +9,8 @@ use crate::picture::ColourMap;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
     Lambda(ColourMap),
+    /// Cells above a threshold; beside a target by their verdict against it: flat fills with an outline around each patch.
     Above {
-        eta: f32,
-        /// Whether the window is dark.
-        dark: bool,
-    },
-    /// Cells above a threshold by their verdict against the target: flat fills with an outline around each patch.
-    Detections {
         eta: f32,
         /// Whether the window is dark.
         dark: bool,
@@ -37,7 +32,7 @@ pub enum Paint {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
     pub map: Shared<RangeAngleMap>,
-    /// Subtracted by [`Paint::Difference`]; the target of [`Paint::Detections`].
+    /// Subtracted by [`Paint::Difference`]; the target beside [`Paint::Above`].
     pub minus: Option<Shared<RangeAngleMap>>,
     pub paint: Paint,
     pub projection: Projection,

@@ -34,7 +34,6 @@ impl TheoryRequest {
 impl Query for TheoryRequest {
     type Value = TheoryResult;
     type State = ();
-    const THREAD: &'static str = "theory";
     const WHAT: &'static str = "Computing the theory";
     const ADVICE: &'static str = "Move the reflector to try again.";
 

@@ -2,7 +2,7 @@
 
 use super::derived::Failure;
 use super::rows::{Plan, Teller};
-use crate::app::state::{State, ThresholdChoice};
+use crate::app::state::State;
 use crate::evaluate::threshold::{KeptThreshold, ThresholdSearch};
 use crate::radar::counted;
 use crate::reconstruct::Reconstructor;
@@ -26,17 +26,13 @@ pub struct KeptEta {
 
 impl ThresholdPlan {
     /// The search for the method in use, with the radar, floor and normalisation in use; `None` where there is no method.
-    pub fn of(state: &State, choice: ThresholdChoice) -> Option<Self> {
-        let ThresholdChoice { false_alarm_percent, kinds, count } = choice;
+    pub fn of(state: &State, search: ThresholdSearch) -> Option<Self> {
         let search = ThresholdSearch {
             radar: state.radar().clone(),
             layout: state.settings.heard(state.radar()),
             floor: state.settings.floor,
             normalisation: state.settings.normalisation,
-            kinds,
-            count,
-            false_alarm_percent,
-            ..ThresholdSearch::default()
+            ..search
         };
         Some(ThresholdPlan { search, method: state.method()?.clone() })
     }
@@ -45,7 +41,6 @@ impl ThresholdPlan {
 impl Plan for ThresholdPlan {
     type Row = KeptEta;
     type End = ();
-    const THREAD: &'static str = "thresholds";
     const WHAT: &'static str = "The search for a threshold";
     const ADVICE: &'static str = "Choose another method.";
 

@@ -95,7 +95,6 @@ pub struct LogQuery {
 impl Query for LogQuery {
     type Value = Log;
     type State = ();
-    const THREAD: &'static str = "training log";
     const WHAT: &'static str = "Reading the log";
     const ADVICE: &'static str = "Open it again.";
 

@@ -1,7 +1,7 @@
 //! The bounds panel: the ambiguity function around a reflector, and the Cramer-Rao bound of its position.
 
-use crate::app::content::{Content, Cx};
-use crate::app::jobs::{BoundsRequest, BoundsResult, Jobs};
+use crate::app::content::Content;
+use crate::app::jobs::{BoundsRequest, BoundsResult};
 use crate::app::state::{BoundsSettings, Command, Elements, State, ViewCommand};
 use crate::app::widgets::{
     Axis, Bar, Chart, Computed, Inks, MARK, NumberField, Texture, axes, choice, colour_table, computed, cross,
@@ -14,22 +14,11 @@ use eframe::egui::{Grid, Sense, Stroke, TextureId, TextureOptions, Ui, Vec2, vec
 use egui_plot::LineStyle;
 use std::f64::consts::TAU;
 
-pub struct BoundsPanel;
-
-impl Content for BoundsPanel {
-    type Asks = BoundsRequest;
-    /// Texture of the ambiguity function.
-    type Remembers = Texture;
-    const TELLS_ANSWERS: bool = true;
-
-    fn asks(state: &State, _: &Jobs) -> Option<BoundsRequest> {
-        BoundsRequest::of(state)
-    }
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.value, cx.memory)
-    }
-}
+/// Remembers texture of the ambiguity function.
+pub const PANEL: Content<Texture, BoundsRequest> = Content {
+    tells_answers: true,
+    ..Content::computed(|state, _| BoundsRequest::of(state), |ui, cx| show(ui, cx.state, cx.value, cx.memory))
+};
 
 /// Draws the panel with the bounds.
 pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, BoundsResult>, texture: &mut Texture) -> Vec<Command> {
@@ -104,7 +93,7 @@ fn picture(ui: &mut Ui, result: &BoundsResult, texture: TextureId) {
     let map = area.with_max_x(area.right() - axes::RIGHT + 12.0);
     let drawn = chart.show(ui, map, Sense::hover());
     let middle = drawn.at([0.0, 0.0]);
-    edged([3.0, 1.4], MARK, |stroke| cross(drawn.painter(), middle, Vec2::splat(5.0), stroke));
+    edged([3.0, 1.4], MARK, |stroke| cross(&drawn.painter, middle, Vec2::splat(5.0), stroke));
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
     drawn.tell(|[columns, metres]| Some(likeness_at(result, half, columns, metres)));
 }

@@ -1,7 +1,7 @@
 //! The chirp panel: frequency against time of the sent chirp and of its echoes, the sampled beat, and the beat's spectrum.
 
-use crate::app::content::{Content, Cx};
-use crate::app::jobs::{ChirpQuery, ChirpResult, Jobs};
+use crate::app::content::Content;
+use crate::app::jobs::{ChirpQuery, ChirpResult};
 use crate::app::state::{ChirpSettings, Command, RadarCommand, State, ViewCommand};
 use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{Axis, Chart, Computed, Drawn, Inks, NumberField, axes, labelled, padded};
@@ -44,21 +44,10 @@ const SPECTRUM_DB: f64 = 100.0;
 /// Shortest and longest chirp duration that dragging reaches, seconds.
 const DRAGGED_SECONDS: [f64; 2] = [1e-6, 1e-2];
 
-pub struct ChirpPanel;
-
-impl Content for ChirpPanel {
-    type Asks = ChirpQuery;
-    type Remembers = ();
-    const TELLS_ANSWERS: bool = true;
-
-    fn asks(state: &State, _: &Jobs) -> Option<ChirpQuery> {
-        Some(ChirpQuery::of(state))
-    }
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.value)
-    }
-}
+pub const PANEL: Content<(), ChirpQuery> = Content {
+    tells_answers: true,
+    ..Content::computed(|state, _| Some(ChirpQuery::of(state)), |ui, cx| show(ui, cx.state, cx.value))
+};
 
 /// Draws the panel with the beat. A low panel scrolls to its charts.
 pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>) -> Vec<Command> {
@@ -258,7 +247,7 @@ impl Shown<'_> {
             }
             let radius = if response.hovered() || response.dragged() { HANDLE + 1.5 } else { HANDLE };
             let stroke = Stroke::new(1.0, ui.visuals().text_color());
-            drawn.painter().circle(centre, radius, Inks::of(ui.visuals()).selected, stroke);
+            drawn.painter.circle(centre, radius, Inks::of(ui.visuals()).selected, stroke);
             response.on_hover_cursor(icon).on_hover_text(name);
         }
         set(self.state.radar(), radar, asked);

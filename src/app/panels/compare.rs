@@ -1,8 +1,8 @@
 //! The panel that compares two methods on the scene on screen: side by side, or flipped in place.
 
 use super::map::{self, MapMemory, caption_of, is_updating, map_input, marks_of, verdict};
-use crate::app::content::{Content, Cx, Nothing};
-use crate::app::jobs::{Jobs, Wants};
+use crate::app::content::{Content, Cx};
+use crate::app::jobs::{Jobs, Want};
 use crate::app::state::{Command, Compare, Layout, MapKind, MapView, MethodSlot, State, ViewCommand, WorkCommand};
 use crate::app::widgets::{LIST_HEIGHT, button, choice, labelled, method_list, padded, percent, progress};
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
@@ -10,30 +10,24 @@ use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 /// Height of a map's title, points.
 const TITLE: f32 = 18.0;
 
-pub struct ComparePanel;
+pub const PANEL: Content<MapMemory> =
+    Content { wants: &[Want::Output, Want::Second], marks_age: true, ..Content::drawn(draw) };
 
-impl Content for ComparePanel {
-    type Asks = Nothing;
-    type Remembers = MapMemory;
-    const WANTS: Wants = Wants { second: true, ..Wants::OUTPUT };
-    const MARKS_AGE: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let Cx { state, jobs, memory, .. } = cx;
-        let kinds = state.settings.compare.maps();
-        let textures: Vec<_> = kinds.iter().map(|kind| memory.texture(ui, jobs, *kind)).collect();
-        let projection = state.settings.projection;
-        let mut view = *state.map_views.of(projection);
-        let marks = marks_of(ui, state);
-        let maps = kinds.iter().zip(textures).map(|(kind, texture)| {
-            let title = title(state, jobs, *kind);
-            (title, map_input(state, jobs, &marks, texture, *kind))
-        });
-        let (maps, progress) = (maps.collect(), jobs.pipeline.method(MethodSlot::Second).progress());
-        let asked = show(ui, state, maps, progress, &mut view, &mut memory.hand);
-        *state.map_views.of(projection) = view;
-        asked
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, MapMemory>) -> Vec<Command> {
+    let Cx { state, jobs, memory, .. } = cx;
+    let kinds = state.settings.compare.maps();
+    let textures: Vec<_> = kinds.iter().map(|kind| memory.texture(ui, jobs, *kind)).collect();
+    let projection = state.settings.projection;
+    let mut view = *state.map_views.of(projection);
+    let marks = marks_of(ui, state);
+    let maps = kinds.iter().zip(textures).map(|(kind, texture)| {
+        let title = title(state, jobs, *kind);
+        (title, map_input(state, jobs, &marks, texture, *kind))
+    });
+    let (maps, progress) = (maps.collect(), jobs.pipeline.method(MethodSlot::Second).progress());
+    let asked = show(ui, state, maps, progress, &mut view, &mut memory.hand);
+    *state.map_views.of(projection) = view;
+    asked
 }
 
 /// The title of a compared map: method, verdict and figures.
@@ -208,19 +202,6 @@ mod tests {
         assert!(first.right() < second.left() && below.right() < beside.left());
         assert!(first.bottom() < below.top() && (first.width() - second.width()).abs() < 30.0);
         seen::assert_readable(panel.output());
-    }
-
-    #[test]
-    fn flipping_shows_the_other_map_in_the_same_place() {
-        let mut panel = panel(Layout::Flip);
-        let first = panel.get_by_label("Output map").rect();
-        assert!(panel.query_by_label("Second output map").is_none());
-        panel.clicks(&["Flip maps"]);
-        assert_eq!(panel.state().asked, [Command::View(ViewCommand::Flip)]);
-        panel.state_mut().state.settings.compare.flip();
-        panel.run_steps(2);
-        assert_eq!(panel.get_by_label("Second output map").rect(), first);
-        assert!(panel.query_by_label("Output map").is_none());
     }
 
     /// The comparison of the last command.

@@ -3,7 +3,7 @@
 mod false_alarms;
 mod settings;
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 pub use false_alarms::Search;
 
 use crate::app::jobs::{Refusal, Scores};
@@ -52,36 +52,31 @@ pub struct Run<'a> {
     pub search: Search<'a>,
 }
 
-pub struct ControlsPanel;
+pub const PANEL: Content<ThresholdSearch> = Content::drawn(draw);
 
-impl Content for ControlsPanel {
-    type Asks = Nothing;
-    type Remembers = ThresholdSearch;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, jobs) = (&*cx.state, cx.jobs);
-        let pipeline = &jobs.pipeline;
-        let run = Run {
-            progress: pipeline.method(MethodSlot::First).progress(),
-            refusal: pipeline.method(MethodSlot::First).refusal(),
-            output: pipeline.output().map(|o| (o.method(), o.took)),
-            // Hidden while a question is open: the number of blobs answers many questions.
-            scores: map::scores(state, jobs, MethodSlot::First),
-            echoes: map::echoes_found(state, jobs, MethodSlot::First),
-            outdated: pipeline.output_is_outdated(),
-            wanted: pipeline.maps.wants_ends(),
-            detector_error: pipeline.detector_error(),
-            search: Search { progress: jobs.thresholds.progress(), note: jobs.thresholds.note() },
-        };
-        let input = Input {
-            state,
-            eta: pipeline.eta(state, MethodSlot::First),
-            range_db: pipeline.range_db(),
-            run,
-            uses: state.uses(),
-        };
-        show(ui, input, cx.memory)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, ThresholdSearch>) -> Vec<Command> {
+    let (state, jobs) = (&*cx.state, cx.jobs);
+    let pipeline = &jobs.pipeline;
+    let run = Run {
+        progress: pipeline.method(MethodSlot::First).progress(),
+        refusal: pipeline.method(MethodSlot::First).refusal(),
+        output: pipeline.output().map(|o| (o.method(), o.took)),
+        // Hidden while a question is open: the number of blobs answers many questions.
+        scores: map::scores(state, jobs, MethodSlot::First),
+        echoes: map::echoes_found(state, jobs, MethodSlot::First),
+        outdated: pipeline.output_is_outdated(),
+        wanted: pipeline.maps.wants_ends(),
+        detector_error: pipeline.detector_error(),
+        search: Search { progress: jobs.thresholds.progress(), note: jobs.thresholds.note() },
+    };
+    let input = Input {
+        state,
+        eta: pipeline.eta(state, MethodSlot::First),
+        range_db: pipeline.range_db(),
+        run,
+        uses: state.uses(),
+    };
+    show(ui, input, cx.memory)
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ThresholdSearch) -> Vec<Command> {

@@ -1,21 +1,12 @@
 //! The disturbances panel: an interfering radar, and a wall that mirrors.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::{Quantity, labelled, scrolled};
 use crate::scene::{Interferer, Mirror};
 use eframe::egui::{Grid, Ui};
 
-pub struct DisturbancesPanel;
-
-impl Content for DisturbancesPanel {
-    type Asks = Nothing;
-    type Remembers = ();
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state)
-    }
-}
+pub const PANEL: Content = Content::drawn(|ui, cx| show(ui, cx.state));
 
 pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
@@ -109,7 +100,7 @@ mod tests {
     fn panel(state: State) -> Harness<'static, State> {
         let draw = move |ui: &mut Ui, state: &mut State| {
             for command in show(ui, state) {
-                state.editor.edit("disturbances", None, |scene, _| match command {
+                state.editor.edit(None, |scene, _| match command {
                     Command::Radar(RadarCommand::SetInterferer(interferer)) => {
                         scene.disturbances.interferer = interferer;
                     }

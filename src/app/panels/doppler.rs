@@ -1,8 +1,8 @@
 //! The range-Doppler panel: the map of range against radial velocity, the radar's chirps, and the timeline on which the scene plays.
 
 use super::recording::frame_slider;
-use crate::app::content::{Content, Cx};
-use crate::app::jobs::{DopplerQuery, DopplerResult, Jobs};
+use crate::app::content::Content;
+use crate::app::jobs::{DopplerQuery, DopplerResult};
 use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
 use crate::app::widgets::{
     Axis, Bar, Chart, Computed, Drawn, MARK, MARK_EDGE, NumberField, Texture, axes, colour_table, computed, edged,
@@ -23,21 +23,10 @@ const MARKS: usize = 200;
 /// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.
 const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
 
-pub struct DopplerPanel;
-
-impl Content for DopplerPanel {
-    type Asks = DopplerQuery;
-    type Remembers = Texture;
-    const TELLS_ANSWERS: bool = true;
-
-    fn asks(state: &State, _: &Jobs) -> Option<DopplerQuery> {
-        DopplerQuery::of(state)
-    }
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.value, cx.memory)
-    }
-}
+pub const PANEL: Content<Texture, DopplerQuery> = Content {
+    tells_answers: true,
+    ..Content::computed(|state, _| DopplerQuery::of(state), |ui, cx| show(ui, cx.state, cx.value, cx.memory))
+};
 
 pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, DopplerResult>, texture: &mut Texture) -> Vec<Command> {
     padded(ui, |ui, asked| {
@@ -95,13 +84,13 @@ fn timeline(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.add_enabled_ui(state.scene().is_moving(), |ui| {
         ui.horizontal_wrapped(|ui| {
             play(ui, state, "Let every object move by its velocity; all maps follow", asked);
-            let mut seconds = state.timeline.seconds();
+            let mut seconds = state.timeline.seconds;
             let slider = Slider::new(&mut seconds, 0.0..=TIMELINE_SECONDS).fixed_decimals(2).suffix(" s");
             let tooltip = "Time at which the scene is looked at; its file has time 0";
             if labelled(ui, "Time", tooltip, slider).changed() {
                 asked.push(ViewCommand::SetTime(seconds).into());
             }
-            if state.timeline.seconds() > 0.0 {
+            if state.timeline.seconds > 0.0 {
                 press(ui, "Back to 0 s", "", ViewCommand::SetTime(0.0), asked);
             }
         });
@@ -116,7 +105,7 @@ fn frames_played(ui: &mut Ui, state: &State, frames: [u64; 2], asked: &mut Vec<C
 }
 
 fn play(ui: &mut Ui, state: &State, tip: &str, asked: &mut Vec<Command>) {
-    press(ui, if state.timeline.is_playing() { "Pause" } else { "Play" }, tip, ViewCommand::TogglePlay, asked);
+    press(ui, if state.timeline.is_playing { "Pause" } else { "Play" }, tip, ViewCommand::TogglePlay, asked);
 }
 
 /// Writes why there is no map, or a note on the map.
@@ -184,12 +173,12 @@ fn marks(ui: &Ui, state: &State, drawn: &Drawn, radar: &Radar) {
     for (index, object) in state.scene().objects.iter().take(MARKS).enumerate() {
         let blob = DopplerBlob::of(radar, object);
         let at = drawn.at([blob.apparent_velocity_metres_per_second, blob.apparent_range_metres]);
-        edged([3.0, 1.4], MARK, |stroke| drawn.painter().circle_stroke(at, 7.0, stroke));
+        edged([3.0, 1.4], MARK, |stroke| drawn.painter.circle_stroke(at, 7.0, stroke));
         let name = if blob.is_folded() { format!("{} folded", index + 1) } else { format!("{}", index + 1) };
         let galley = ui.painter().layout_no_wrap(name, axes::tick_font(), MARK);
         let rect = Align2::LEFT_CENTER.anchor_size(at + vec2(9.0, 0.0), galley.size());
-        drawn.painter().rect_filled(rect.expand(2.0), 2.0, MARK_EDGE);
-        drawn.painter().galley(rect.min, galley, MARK);
+        drawn.painter.rect_filled(rect.expand(2.0), 2.0, MARK_EDGE);
+        drawn.painter.galley(rect.min, galley, MARK);
     }
 }
 

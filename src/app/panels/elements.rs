@@ -7,8 +7,8 @@ mod strip;
 mod tests;
 
 use self::strip::MOST_MILLIMETRES;
-use crate::app::content::{Content, Cx};
-use crate::app::jobs::{Calibrated, CalibrationQuery, Jobs};
+use crate::app::content::Content;
+use crate::app::jobs::{Calibrated, CalibrationQuery};
 use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::{Computed, NumberField, labelled, press, scrolled};
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
@@ -32,20 +32,8 @@ impl Default for ElementsMemory {
     }
 }
 
-pub struct ElementsPanel;
-
-impl Content for ElementsPanel {
-    type Asks = CalibrationQuery;
-    type Remembers = ElementsMemory;
-
-    fn asks(state: &State, _: &Jobs) -> Option<CalibrationQuery> {
-        CalibrationQuery::of(state)
-    }
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.value, cx.memory)
-    }
-}
+pub const PANEL: Content<ElementsMemory, CalibrationQuery> =
+    Content::computed(|state, _| CalibrationQuery::of(state), |ui, cx| show(ui, cx.state, cx.value, cx.memory));
 
 /// Draws the panel with the calibration on the selected point; `None` where no point is selected.
 pub fn show(ui: &mut Ui, state: &State, found: Computed<'_, Calibrated>, memory: &mut ElementsMemory) -> Vec<Command> {

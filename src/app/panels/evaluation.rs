@@ -1,6 +1,6 @@
 //! The evaluation panel: methods on the test sets of the tables, beside the figures that the thesis prints.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::jobs::Memo;
 use crate::app::state::{Command, FailureChoice, RowsCommand};
 use crate::app::widgets::{bar, scrolled_both, start_or_cancel, warning};
@@ -52,26 +52,21 @@ pub struct Line {
 /// Scenes of each set that the button tries.
 const SCENES_A_SET: u32 = 10;
 
-pub struct EvaluationPanel;
+/// Remembers figures of the rows of this version.
+pub const PANEL: Content<Memo<u64, Vec<Line>>> = Content::drawn(draw);
 
-impl Content for EvaluationPanel {
-    type Asks = Nothing;
-    /// Figures of the rows of this version.
-    type Remembers = Memo<u64, Vec<Line>>;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, job) = (&*cx.state, &cx.jobs.failures);
-        let table = &job.table;
-        let lines = &*cx.memory.of(table.version(), |_| lines(table.rows()));
-        let input = Input {
-            method: state.method().map(|m| m.name()),
-            radar: if lines.is_empty() { state.radar() } else { &table.conditions().radar },
-            progress: job.run.progress(),
-            lines,
-            note: job.run.note(),
-        };
-        show(ui, input)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, Memo<u64, Vec<Line>>>) -> Vec<Command> {
+    let (state, job) = (&*cx.state, &cx.jobs.failures);
+    let table = &job.table;
+    let lines = &*cx.memory.of(table.version(), |_| lines(table.rows()));
+    let input = Input {
+        method: state.method().map(|m| m.name()),
+        radar: if lines.is_empty() { state.radar() } else { &table.conditions().radar },
+        progress: job.run.progress(),
+        lines,
+        note: job.run.note(),
+    };
+    show(ui, input)
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {

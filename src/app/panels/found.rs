@@ -1,7 +1,7 @@
 //! The found panel: the method's echoes as a list of angle, range and strength.
 
-use crate::app::content::{Content, Cx, Nothing};
-use crate::app::jobs::Wants;
+use crate::app::content::{Content, Cx};
+use crate::app::jobs::Want;
 use crate::app::state::{Command, EditCommand, MapKind, MethodSlot};
 use crate::app::widgets::{CONVENTION, angle_degrees, headings, padded, plain, right_aligned, signed};
 use crate::interact::SelectionMode;
@@ -37,31 +37,24 @@ pub struct Input<'a> {
     pub has_ranges: bool,
 }
 
-pub struct FoundPanel;
+pub const PANEL: Content =
+    Content { wants: &[Want::Output, Want::Listed], marks_age: true, tells_answers: true, ..Content::drawn(draw) };
 
-impl Content for FoundPanel {
-    type Asks = Nothing;
-    type Remembers = ();
-    const WANTS: Wants = Wants { listed: true, ..Wants::OUTPUT };
-    const MARKS_AGE: bool = true;
-    const TELLS_ANSWERS: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
-        let output = pipeline.output_of(state);
-        let recording = state.editor.document().recording();
-        let input = Input {
-            draws_only: state.method().map(|m| m.name()).filter(|_| !state.finds_reflectors()),
-            method: output.map(|o| o.method()),
-            found: output.and_then(|o| o.found.as_deref()),
-            attempts: output.map_or(&[], |o| o.attempts.as_slice()),
-            objects: &state.editor.scene().objects,
-            refusal: pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str()),
-            stale: pipeline.is_stale(MapKind::Output),
-            has_ranges: state.radar().samples > 1 || recording.is_some_and(|r| r.range_metres.is_some()),
-        };
-        show(ui, input)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
+    let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
+    let output = pipeline.output_of(state);
+    let recording = state.editor.document().recording();
+    let input = Input {
+        draws_only: state.method().map(|m| m.name()).filter(|_| !state.finds_reflectors()),
+        method: output.map(|o| o.method()),
+        found: output.and_then(|o| o.found.as_deref()),
+        attempts: output.map_or(&[], |o| o.attempts.as_slice()),
+        objects: &state.editor.scene().objects,
+        refusal: pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str()),
+        stale: pipeline.is_stale(MapKind::Output),
+        has_ranges: state.radar().samples > 1 || recording.is_some_and(|r| r.range_metres.is_some()),
+    };
+    show(ui, input)
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {

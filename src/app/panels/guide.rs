@@ -1,6 +1,6 @@
 //! The guide panel: chapters on the maps, with buttons that set up their examples.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::state::{
     Command, DocumentCommand, MapKind, Panel, Projection, RadarCommand, ViewCommand, WindowCommand,
 };
@@ -138,31 +138,17 @@ fn heading(chapter: &str) -> &str {
     chapter.lines().next().unwrap_or_default().trim_start_matches('#').trim()
 }
 
-/// State of the guide, kept between frames.
-#[derive(Default)]
-pub struct GuideMemory {
-    open: usize,
-}
-
-pub struct GuidePanel;
-
-impl Content for GuidePanel {
-    type Asks = Nothing;
-    type Remembers = GuideMemory;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.memory)
-    }
-}
+/// Remembers the number of the open chapter.
+pub const PANEL: Content<usize> = Content::drawn(|ui, cx| show(ui, cx.memory));
 
 /// Draws the panel: one chapter, and the buttons to the others.
-pub fn show(ui: &mut Ui, memory: &mut GuideMemory) -> Vec<Command> {
+pub fn show(ui: &mut Ui, open: &mut usize) -> Vec<Command> {
     padded(ui, |ui, asked| {
-        turn(ui, &mut memory.open);
+        turn(ui, open);
         ui.separator();
-        let Some((chapter, steps)) = chapters().zip(CHAPTERS).nth(memory.open) else { return };
+        let Some((chapter, steps)) = chapters().zip(CHAPTERS).nth(*open) else { return };
         // Each chapter keeps its own scroll position.
-        let area = ScrollArea::vertical().id_salt(("chapter", memory.open)).auto_shrink([false, false]);
+        let area = ScrollArea::vertical().id_salt(("chapter", *open)).auto_shrink([false, false]);
         area.show(ui, |ui| {
             ui.set_max_width(ui.available_width().min(620.0));
             ui.heading(heading(chapter));
@@ -211,12 +197,12 @@ mod tests {
 
     #[test]
     fn a_button_asks_for_its_preset_and_its_conventions() {
-        let draw = |ui: &mut Ui, state: &mut (GuideMemory, Vec<Command>)| {
+        let draw = |ui: &mut Ui, state: &mut (usize, Vec<Command>)| {
             let commands = show(ui, &mut state.0);
             state.1.extend(commands);
         };
         let mut guide = Harness::builder().with_size([640.0, 2000.0]).build_ui_state(draw, Default::default());
-        guide.state_mut().0.open = 3;
+        guide.state_mut().0 = 3;
         guide.run();
         guide.get_by_role_and_label(egui::accesskit::Role::Button, "Hamming").click();
         guide.step();
@@ -226,27 +212,27 @@ mod tests {
 
     #[test]
     fn previous_next_and_contents_lead_to_every_chapter() {
-        let draw = |ui: &mut Ui, memory: &mut GuideMemory| _ = show(ui, memory);
-        let mut guide = Harness::builder().with_size([360.0, 600.0]).build_ui_state(draw, GuideMemory::default());
-        let button = |guide: &mut Harness<'_, GuideMemory>, name: &str| {
+        let draw = |ui: &mut Ui, open: &mut usize| _ = show(ui, open);
+        let mut guide = Harness::builder().with_size([360.0, 600.0]).build_ui_state(draw, 0);
+        let button = |guide: &mut Harness<'_, usize>, name: &str| {
             guide.get_by_role_and_label(egui::accesskit::Role::Button, name).click();
             guide.run();
         };
         let titles: Vec<&str> = chapters().map(heading).collect();
         assert!(titles.iter().all(|t| !t.is_empty()));
         button(&mut guide, "Previous");
-        assert_eq!(guide.state().open, 0, "there is none before the first");
+        assert_eq!(*guide.state(), 0, "there is none before the first");
         for chapter in 1..titles.len() {
             button(&mut guide, "Next");
-            assert_eq!(guide.state().open, chapter);
+            assert_eq!(*guide.state(), chapter);
         }
         button(&mut guide, "Next");
-        assert_eq!(guide.state().open, titles.len() - 1, "nor one after the last");
+        assert_eq!(*guide.state(), titles.len() - 1, "nor one after the last");
         button(&mut guide, "Contents");
         button(&mut guide, titles[2]);
-        assert_eq!(guide.state().open, 2);
+        assert_eq!(*guide.state(), 2);
         button(&mut guide, "Previous");
-        assert_eq!(guide.state().open, 1);
+        assert_eq!(*guide.state(), 1);
     }
 
     #[test]

@@ -2,26 +2,16 @@
 
 mod number;
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::state::{Command, EditCommand, NewObject, State};
 use crate::app::widgets::{angle_of_place_degrees, button, choices, press, scrolled, signed};
 use crate::interact::Coordinates;
-use crate::radar::{Radar, counted};
+use crate::radar::{Radar, capitalised, counted};
 use crate::scene::{MAX_NAME_CHARACTERS, Object, Scene};
 use eframe::egui::{self, Grid, TextEdit, Ui};
 use number::number;
 
-pub struct InspectorPanel;
-
-impl Content for InspectorPanel {
-    type Asks = Nothing;
-    type Remembers = ();
-    const TELLS_ANSWERS: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state)
-    }
-}
+pub const PANEL: Content = Content { tells_answers: true, ..Content::drawn(|ui, cx| show(ui, cx.state)) };
 
 pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
     scrolled(ui, |ui, asked| match state.editor.selection().is_empty() {
@@ -79,7 +69,7 @@ fn selected(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
 }
 
 fn title(ui: &mut Ui, object: &Object, index: usize, asked: &mut Vec<Command>) {
-    let (mut name, kind) = (object.name().to_owned(), format!("{} {}", capital(object.noun()), index + 1));
+    let (mut name, kind) = (object.name().to_owned(), format!("{} {}", capitalised(object.noun()), index + 1));
     let hint = egui::RichText::new(&kind).strong();
     let edit = TextEdit::singleline(&mut name).id_salt(index).char_limit(MAX_NAME_CHARACTERS).hint_text(hint);
     let response = ui.add(edit.desired_width(130.0).font(egui::FontSelection::Default));
@@ -119,11 +109,6 @@ fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) 
     } else if y < 0.0 {
         ui.colored_label(ui.visuals().warn_fg_color, "Behind the array: it appears mirrored in front of it.");
     }
-}
-
-fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map(|c| c.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -189,14 +174,6 @@ mod tests {
         let mut inspector = panel(Editor::new(Scene::default()), Coordinates::Cartesian);
         inspector.clicks(&["Add a point"]);
         assert_eq!(inspector.state().1, [Command::Edit(EditCommand::Add(NewObject::Point, None))]);
-    }
-
-    #[test]
-    fn a_number_that_is_typed_is_one_step() {
-        let mut inspector = panel(of(&[[1.0, 10.0]]), Coordinates::Cartesian);
-        enter(&mut inspector, "y", "12.5");
-        assert_eq!(places(&inspector), [[1.0, 12.5]]);
-        assert_eq!(inspector.state().0.editor.history().depth(), 1);
     }
 
     const THREE: [[f64; 2]; 3] = [[1.0, 10.0], [2.0, 12.0], [3.0, 12.0]];

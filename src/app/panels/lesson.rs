@@ -3,7 +3,7 @@
 mod answer;
 mod list;
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::state::{Command, LessonCommand, LessonRun, State};
 use crate::app::widgets::{LARGE_TEXT_RATIO, button, inline, large, press};
 pub use answer::LessonMemory;
@@ -11,17 +11,12 @@ use answer::{answer, answered, judgement, requirements};
 use eframe::egui::{self, ScrollArea, TextureId, TextureOptions, Ui};
 use list::list;
 
-pub struct LessonPanel;
+pub const PANEL: Content<LessonMemory> = Content::drawn(draw);
 
-impl Content for LessonPanel {
-    type Asks = Nothing;
-    type Remembers = LessonMemory;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let hidden = cx.jobs.lessons.hidden();
-        let texture = hidden.map(|image| cx.memory.hidden.of(ui.ctx(), "hidden", image, TextureOptions::NEAREST));
-        show(ui, cx.state, texture, cx.memory)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, LessonMemory>) -> Vec<Command> {
+    let hidden = cx.jobs.lessons.hidden();
+    let texture = hidden.map(|image| cx.memory.hidden.of(ui.ctx(), "hidden", image, TextureOptions::NEAREST));
+    show(ui, cx.state, texture, cx.memory)
 }
 
 /// Draws the lesson, or the list of lessons; `hidden` is the map to reproduce, where a challenge hides its scene.

@@ -1,12 +1,12 @@
 //! The objects panel: a list of the scene's objects, with place and reflectivity. A click selects an object.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::state::{Command, EditCommand, State};
-use crate::app::widgets::{axes, focus_after_click, keep_arrows};
+use crate::app::widgets::{axes, focus_after_click, list_keys};
 use crate::interact::{Coordinates, Field, SelectionMode};
 use crate::scene::Object;
 use eframe::egui::style::ScrollAnimation;
-use eframe::egui::{self, Align2, FontId, Key, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, FontId, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 
 /// State of the list, kept between frames.
 #[derive(Default)]
@@ -19,16 +19,10 @@ pub struct ObjectsMemory {
 
 const ROW_HEIGHT: f32 = 20.0;
 
-pub struct ObjectsPanel;
+/// Rows that Page Up and Page Down pass.
+const ROWS_A_PAGE: usize = 10;
 
-impl Content for ObjectsPanel {
-    type Asks = Nothing;
-    type Remembers = ObjectsMemory;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.memory)
-    }
-}
+pub const PANEL: Content<ObjectsMemory> = Content::drawn(|ui, cx| show(ui, cx.state, cx.memory));
 
 pub fn show(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory) -> Vec<Command> {
     let mut asked = Vec::new();
@@ -42,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory) -> Vec<Comma
         list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Objects"));
         focus_after_click(&list, &mut memory.was_clicked);
         if list.has_focus() {
-            asked.extend(keys(ui, &list, state));
+            asked.extend(keys(&list, state));
         }
         heading(ui, state.settings.coordinates);
         rows(ui, state, memory, &mut asked);
@@ -51,26 +45,14 @@ pub fn show(ui: &mut Ui, state: &State, memory: &mut ObjectsMemory) -> Vec<Comma
 }
 
 /// Handles the arrow keys: an arrow selects the next object, with Shift the objects between, too.
-fn keys(ui: &Ui, list: &Response, state: &State) -> Option<Command> {
-    keep_arrows(list, [false, true]);
-    let last = state.editor.scene().objects.len() - 1;
-    ui.input_mut(|i| {
-        let mut asked = None;
-        for (modifiers, mode) in [(Modifiers::SHIFT, SelectionMode::Range), (Modifiers::NONE, SelectionMode::Replace)] {
-            let mut steps = |key| i.count_and_consume_key(modifiers, key);
-            let (down, up) = (steps(Key::ArrowDown), steps(Key::ArrowUp));
-            if down == up {
-                continue;
-            }
-            let to = match state.editor.selection().latest() {
-                Some(from) => (from + down).saturating_sub(up).min(last),
-                None if down > up => 0,
-                None => last,
-            };
-            asked = Some(Command::Edit(EditCommand::Select(vec![to], mode)));
-        }
-        asked
-    })
+fn keys(list: &Response, state: &State) -> Option<Command> {
+    let (now, count) = (state.editor.selection().latest(), state.editor.scene().objects.len());
+    let modes = [(Modifiers::SHIFT, SelectionMode::Range), (Modifiers::NONE, SelectionMode::Replace)];
+    let asked = modes.map(|(modifiers, mode)| {
+        let to = list_keys(list, modifiers, now, count, ROWS_A_PAGE)?;
+        Some(Command::Edit(EditCommand::Select(vec![to], mode)))
+    });
+    asked.into_iter().flatten().last()
 }
 
 /// Right ends of the columns, as parts of the width.
@@ -166,6 +148,7 @@ mod tests {
     use crate::interact::Selection;
     use crate::radar::Radar;
     use crate::scene::Scene;
+    use eframe::egui::Key;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

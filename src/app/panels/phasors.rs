@@ -1,7 +1,7 @@
 //! The phasors panel: the contribution of every element to the cell under the cursor, added head to tail in the complex plane.
 
-use crate::app::content::{Content, Cx};
-use crate::app::jobs::{Jobs, PhasorsQuery, PhasorsResult};
+use crate::app::content::Content;
+use crate::app::jobs::{PhasorsQuery, PhasorsResult};
 use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
 use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{
@@ -27,21 +27,13 @@ pub struct PhasorsMemory {
     is_playing: bool,
 }
 
-pub struct PhasorsPanel;
-
-impl Content for PhasorsPanel {
-    type Asks = PhasorsQuery;
-    type Remembers = PhasorsMemory;
-    const TELLS_ANSWERS: bool = true;
-
-    fn asks(state: &State, jobs: &Jobs) -> Option<PhasorsQuery> {
-        PhasorsQuery::of(state, &jobs.pipeline)
-    }
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.value, cx.memory)
-    }
-}
+pub const PANEL: Content<PhasorsMemory, PhasorsQuery> = Content {
+    tells_answers: true,
+    ..Content::computed(
+        |state, jobs| PhasorsQuery::of(state, &jobs.pipeline),
+        |ui, cx| show(ui, cx.state, cx.value, cx.memory),
+    )
+};
 
 /// Draws the panel with the chains.
 pub fn show(
@@ -201,7 +193,7 @@ fn arrow(drawn: &Drawn, end: [f64; 2]) {
     let (from, to) = (drawn.at([0.0, 0.0]), drawn.at(end));
     let back = HEAD * (from - to).normalized();
     let ends = [from, to + Rot2::from_angle(0.4) * back, to + Rot2::from_angle(-0.4) * back];
-    edged([4.0, 1.8], MARK, |stroke| ends.map(|end| drawn.painter().line_segment([end, to], stroke)));
+    edged([4.0, 1.8], MARK, |stroke| ends.map(|end| drawn.painter.line_segment([end, to], stroke)));
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod places;
 mod strip;
 mod table;
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::state::{Command, RadarCommand, State};
 use crate::app::widgets::{Quantity, headings, labelled, scrolled_both};
 use crate::lesson::Step;
@@ -23,21 +23,15 @@ struct Free {
     ends: bool,
 }
 
-pub struct RadarPanel;
+/// Remembers lesson and step of the challenge whose constant was scrolled into sight.
+pub const PANEL: Content<Option<(String, usize)>> = Content { tells_answers: true, ..Content::drawn(draw) };
 
-impl Content for RadarPanel {
-    type Asks = Nothing;
-    /// Lesson and step of the challenge whose constant was scrolled into sight.
-    type Remembers = Option<(String, usize)>;
-    const TELLS_ANSWERS: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let run = cx.state.lesson.as_ref().filter(|run| !run.is_predicting());
-        let step = run.map(|run| (run.id.clone(), run.step));
-        let is_new = std::mem::replace(cx.memory, step.clone()) != step;
-        let sought = run.filter(|_| is_new).and_then(|run| solved_by(run.current()?));
-        show(ui, cx.state, sought)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, Option<(String, usize)>>) -> Vec<Command> {
+    let run = cx.state.lesson.as_ref().filter(|run| !run.is_predicting());
+    let step = run.map(|run| (run.id.clone(), run.step));
+    let is_new = std::mem::replace(cx.memory, step.clone()) != step;
+    let sought = run.filter(|_| is_new).and_then(|run| solved_by(run.current()?));
+    show(ui, cx.state, sought)
 }
 
 /// The constant or the group by which the challenge of a lesson's step is solved: the first that its solution changes.

@@ -1,6 +1,6 @@
 //! The recording panel: the layouts that the file may have, as small range profiles, its frames, its antennas, and doubts about it.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::state::{CardPlan, Command, DocumentCommand, Purpose, Way, WorkCommand};
 use crate::app::widgets::{Inks, NumberField, button, choice, labelled, scrolled, warning};
 use crate::platform;
@@ -14,19 +14,14 @@ use egui_plot::{Line, Plot, PlotPoints};
 const PROFILE: egui::Vec2 = vec2(180.0, 44.0);
 const SHOWN_DB: f64 = 80.0;
 
-pub struct RecordingPanel;
+/// Remembers the UDP port in the field of a capture card.
+pub const PANEL: Content<Option<u16>> = Content::drawn(draw);
 
-impl Content for RecordingPanel {
-    type Asks = Nothing;
-    /// The UDP port in the field of a capture card.
-    type Remembers = Option<u16>;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let recording = cx.state.editor.document().recording().cloned();
-        let listening = &cx.jobs.listening;
-        let card = (!platform::IN_A_BROWSER).then(|| (listening.plan(), listening.summary()));
-        show(ui, recording.as_deref(), card, cx.memory)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, Option<u16>>) -> Vec<Command> {
+    let recording = cx.state.editor.document().recording().cloned();
+    let listening = &cx.jobs.listening;
+    let card = (!platform::IN_A_BROWSER).then(|| (listening.plan(), listening.summary()));
+    show(ui, recording.as_deref(), card, cx.memory)
 }
 
 /// A capture card: port and configuration while the program listens, and numbers of frames and packets since then.

@@ -1,7 +1,7 @@
 //! The ROC panel: detection against false alarm of the scene on screen, over every threshold.
 
-use crate::app::content::{Content, Cx, Nothing};
-use crate::app::jobs::Wants;
+use crate::app::content::{Content, Cx};
+use crate::app::jobs::Want;
 use crate::app::state::{Command, MethodSlot};
 use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{Axis, Chart, Inks, Tick, percent};
@@ -32,26 +32,19 @@ pub struct Input<'a> {
     pub refusal: Option<&'a str>,
 }
 
-pub struct RocPanel;
+pub const PANEL: Content = Content { wants: &[Want::Output, Want::Roc], tells_answers: true, ..Content::drawn(draw) };
 
-impl Content for RocPanel {
-    type Asks = Nothing;
-    type Remembers = ();
-    const WANTS: Wants = Wants { roc: true, ..Wants::OUTPUT };
-    const TELLS_ANSWERS: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
-        let shown = pipeline.maps.result();
-        let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
-        let method = pipeline.output().map_or("output", |o| o.method());
-        let refusal = pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str());
-        let eta = pipeline.eta(state, MethodSlot::First);
-        let cfar = state.settings.cfar;
-        let is_now = shown.is_some_and(|r| r.request.etas[0] == eta && r.request.cfar == cfar);
-        let metrics = pipeline.scores_in(MethodSlot::First).filter(|_| is_now).map(|scores| scores.metrics);
-        show(ui, Input { points, method, eta, cfar, metrics, refusal })
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
+    let (state, pipeline) = (&*cx.state, &cx.jobs.pipeline);
+    let shown = pipeline.maps.result();
+    let points = pipeline.output().and(shown).and_then(|r| r.roc.as_deref()).map(Vec::as_slice);
+    let method = pipeline.output().map_or("output", |o| o.method());
+    let refusal = pipeline.method(MethodSlot::First).refusal().map(|r| r.reason.as_str());
+    let eta = pipeline.eta(state, MethodSlot::First);
+    let cfar = state.settings.cfar;
+    let is_now = shown.is_some_and(|r| r.request.etas[0] == eta && r.request.cfar == cfar);
+    let metrics = pipeline.scores_in(MethodSlot::First).filter(|_| is_now).map(|scores| scores.metrics);
+    show(ui, Input { points, method, eta, cfar, metrics, refusal })
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {

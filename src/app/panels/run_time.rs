@@ -1,6 +1,6 @@
 //! The run-time panel: run time against error on this machine, drawn while it is measured.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::legend::{self, Entry, Sign};
 use crate::app::widgets::{Axis, Chart, Tick, bar, choice, padded, start_or_cancel, warning};
@@ -38,23 +38,18 @@ pub struct RunTimeMemory {
     reflectors: Option<usize>,
 }
 
-pub struct RunTimePanel;
+pub const PANEL: Content<RunTimeMemory> = Content::drawn(draw);
 
-impl Content for RunTimePanel {
-    type Asks = Nothing;
-    type Remembers = RunTimeMemory;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let job = &cx.jobs.run_time;
-        let input = Input {
-            radar: job.plan().map_or(cx.state.radar(), |plan| &plan.radar),
-            progress: job.progress(),
-            rows: job.rows(),
-            bare_fft_ms: job.end().copied(),
-            note: job.note(),
-        };
-        show(ui, input, cx.memory)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, RunTimeMemory>) -> Vec<Command> {
+    let job = &cx.jobs.run_time;
+    let input = Input {
+        radar: job.plan().map_or(cx.state.radar(), |plan| &plan.radar),
+        progress: job.progress(),
+        rows: job.rows(),
+        bare_fft_ms: job.end().copied(),
+        note: job.note(),
+    };
+    show(ui, input, cx.memory)
 }
 
 pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut RunTimeMemory) -> Vec<Command> {

@@ -1,6 +1,6 @@
 //! The panel that compares settings: one map several times, side by side, for several values of one constant.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::Content;
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, State, Variant, ViewCommand};
 use crate::app::widgets::{NumberField, Texture, choice, labelled, member_box, method_lines, padded};
@@ -9,18 +9,9 @@ use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, TextureOptions, U
 /// Height of a map's name.
 const NAME: f32 = 18.0;
 
-pub struct SeveralPanel;
-
-impl Content for SeveralPanel {
-    type Asks = Nothing;
-    /// Textures of the maps.
-    type Remembers = Vec<Texture>;
-    const TELLS_ANSWERS: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        show(ui, cx.state, cx.jobs.several.shown(), cx.memory)
-    }
-}
+/// Remembers textures of the maps.
+pub const PANEL: Content<Vec<Texture>> =
+    Content { tells_answers: true, ..Content::drawn(|ui, cx| show(ui, cx.state, &cx.jobs.several.shown, cx.memory)) };
 
 /// Draws the panel with these maps. A click on a map gives the scene its value.
 pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Texture>) -> Vec<Command> {

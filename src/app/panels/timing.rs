@@ -1,6 +1,6 @@
 //! The timing panel: duration of each stage of the last update, and the skipped stages with their reasons.
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::state::Command;
 use crate::app::widgets::{headings, scrolled};
 use crate::engine::{EngineReport, StageOutcome};
@@ -19,23 +19,18 @@ pub struct Update<'a> {
     pub outdated: bool,
 }
 
-pub struct TimingPanel;
+pub const PANEL: Content = Content::drawn(draw);
 
-impl Content for TimingPanel {
-    type Asks = Nothing;
-    type Remembers = ();
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let pipeline = &cx.jobs.pipeline;
-        let update = pipeline.maps.result().map(|r| Update {
-            report: &r.frame.report,
-            took: r.took,
-            painted: r.painted,
-            output: pipeline.output().map(|o| (o.method(), o.took)),
-            outdated: pipeline.output_is_outdated(),
-        });
-        show(ui, update)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
+    let pipeline = &cx.jobs.pipeline;
+    let update = pipeline.maps.result().map(|r| Update {
+        report: &r.frame.report,
+        took: r.took,
+        painted: r.painted,
+        output: pipeline.output().map(|o| (o.method(), o.took)),
+        outdated: pipeline.output_is_outdated(),
+    });
+    show(ui, update)
 }
 
 pub fn show(ui: &mut Ui, update: Option<Update<'_>>) -> Vec<Command> {

@@ -1,32 +1,23 @@
 //! The training panel: the loss in the log of a training.
 
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::{Jobs, LOG_INTERVAL, Log, LogQuery, Watched};
-use crate::app::state::{Command, Purpose, State};
+use crate::app::jobs::{LOG_INTERVAL, Log, LogQuery, Watched};
+use crate::app::state::{Command, Purpose};
 use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{Axis, Chart, Computed, button, padded, theme, warning};
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 use std::path::Path;
 
-pub struct TrainingPanel;
+pub const PANEL: Content<(), LogQuery> =
+    Content { marks_age: true, ..Content::computed(|_, jobs| jobs.training.as_ref().map(Watched::query), draw) };
 
-impl Content for TrainingPanel {
-    type Asks = LogQuery;
-    type Remembers = ();
-    const MARKS_AGE: bool = true;
-
-    fn asks(_: &State, jobs: &Jobs) -> Option<LogQuery> {
-        jobs.training.as_ref().map(Watched::query)
+fn draw(ui: &mut Ui, cx: Cx<'_, (), LogQuery>) -> Vec<Command> {
+    let path = cx.jobs.training.as_ref().map(|watched| watched.path.as_path());
+    if path.is_some() {
+        ui.ctx().request_repaint_after(LOG_INTERVAL);
     }
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let path = cx.jobs.training.as_ref().map(|watched| watched.path.as_path());
-        if path.is_some() {
-            ui.ctx().request_repaint_after(LOG_INTERVAL);
-        }
-        show(ui, path, cx.value)
-    }
+    show(ui, path, cx.value)
 }
 
 /// Draws the log at `path`, or the error of its last reading.

@@ -1,24 +1,17 @@
 //! The values panel: the value of every map under the pointer, in one small table.
 
 use super::map::{Cells, cells, is_updating};
-use crate::app::content::{Content, Cx, Nothing};
-use crate::app::jobs::Wants;
+use crate::app::content::{Content, Cx};
+use crate::app::jobs::Want;
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
 use crate::app::widgets::{CONVENTION, direction, headings, padded, right_aligned};
 use eframe::egui::{Grid, RichText, ScrollArea, Ui};
 
 /// The maps that are listed, from the inputs to the differences.
-pub const LISTED: [MapKind; 9] = [
-    MapKind::Input0,
-    MapKind::Input1,
-    MapKind::Target,
-    MapKind::Output,
-    MapKind::Second,
-    MapKind::Difference,
-    MapKind::Doubt,
-    MapKind::SecondDifference,
-    MapKind::Unexplained,
-];
+pub const LISTED: [MapKind; 9] = {
+    use MapKind::*;
+    [Input0, Input1, Target, Output, Second, Difference, Doubt, SecondDifference, Unexplained]
+};
 
 /// Headings of the table, with their tooltips.
 const COLUMNS: [(&str, &str); 3] = [
@@ -42,26 +35,20 @@ pub struct Row<'a> {
     pub updating: bool,
 }
 
-pub struct ValuesPanel;
+pub const PANEL: Content =
+    Content { wants: &[Want::Output, Want::EveryMap], tells_answers: true, ..Content::drawn(draw) };
 
-impl Content for ValuesPanel {
-    type Asks = Nothing;
-    type Remembers = ();
-    const WANTS: Wants = Wants { every_map: true, ..Wants::OUTPUT };
-    const TELLS_ANSWERS: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, jobs) = (&*cx.state, cx.jobs);
-        let compares = state.arrangement.shown().contains(&Panel::Compare);
-        let listed = |kind: &MapKind| compares || kind.slot() != Some(MethodSlot::Second);
-        let row = |kind: MapKind| {
-            let method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| o.method());
-            let cells = cells(jobs, kind)?;
-            Some(Row { kind, method, cells, updating: is_updating(jobs, kind) })
-        };
-        let rows: Vec<Row<'_>> = LISTED.into_iter().filter(listed).filter_map(row).collect();
-        show(ui, state, &rows)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
+    let (state, jobs) = (&*cx.state, cx.jobs);
+    let compares = state.arrangement.shown().contains(&Panel::Compare);
+    let listed = |kind: &MapKind| compares || kind.slot() != Some(MethodSlot::Second);
+    let row = |kind: MapKind| {
+        let method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| o.method());
+        let cells = cells(jobs, kind)?;
+        Some(Row { kind, method, cells, updating: is_updating(jobs, kind) })
+    };
+    let rows: Vec<Row<'_>> = LISTED.into_iter().filter(listed).filter_map(row).collect();
+    show(ui, state, &rows)
 }
 
 /// Draws the panel with the maps to list.

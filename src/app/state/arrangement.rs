@@ -26,7 +26,7 @@ pub struct Arrangement {
     pub maximised: Option<Panel>,
     /// The task on screen.
     #[serde(default)]
-    task: Task,
+    pub task: Task,
     /// The task before a panel switched to its own.
     #[serde(default)]
     before: Option<Task>,
@@ -68,9 +68,9 @@ impl Arrangement {
         }
     }
 
-    /// A large lesson with the scene and the maps that lessons ask about, for a projector.
+    /// A large lesson with the scene and the maps that lessons ask about, for a projector: its text is read from afar, and has more room.
     pub fn of_a_lesson() -> Self {
-        Arrangement::of(task_layouts::projected_lesson())
+        Arrangement::of(task_layouts::lesson("lesson", [0.68, 1.3]))
     }
 
     /// An arrangement without panels, in place of one that is being drawn.
@@ -81,11 +81,6 @@ impl Arrangement {
     /// Scene, the ends' maps, target and output, large, for an audience.
     pub fn presentation() -> Self {
         Arrangement::of(task_layouts::presentation())
-    }
-
-    /// The task on screen.
-    pub fn task(&self) -> Task {
-        self.task
     }
 
     /// Switches to the panels of a task, as the user left them.

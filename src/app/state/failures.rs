@@ -4,7 +4,6 @@ use super::view::MapView;
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::rows::Row;
 use crate::evaluate::sets::{Case, SceneSet};
-use crate::evaluate::worsen::{Aim, WorseningMeasure};
 use crate::interact::Document;
 use crate::maps::Normalisation;
 use crate::radar::Radar;
@@ -65,26 +64,6 @@ pub struct FailureChoice {
     /// Generated scenes of each kind.
     pub count: u32,
     pub seed: u64,
-}
-
-/// Aim and limits of a search near the scene on screen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SearchChoice {
-    pub aim: Aim,
-    pub measure: WorseningMeasure,
-    /// Largest distance that objects may move, metres.
-    pub within_metres: f64,
-    pub tries: u32,
-}
-
-/// The required rate of false alarms for a threshold, and the scenes to try the method on.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ThresholdChoice {
-    /// The rate, percent of the target's dark cells.
-    pub false_alarm_percent: f64,
-    pub kinds: Vec<Kind>,
-    /// Scenes of each kind.
-    pub count: u32,
 }
 
 /// The row whose scene was opened last.

@@ -6,7 +6,7 @@ use crate::view::View;
 use std::sync::Arc;
 
 /// Scene, radar and view at one moment.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Setup {
     pub view: View,
     pub radar: Radar,

@@ -15,6 +15,7 @@ use std::sync::Arc;
 type Answered = (Guess, Option<Result<Judgement, String>>);
 
 /// State of the window before a lesson.
+#[derive(Default)]
 pub struct Before {
     pub setup: Setup,
     pub scene_view: SceneView,
@@ -23,6 +24,7 @@ pub struct Before {
 }
 
 /// A lesson in progress.
+#[derive(Default)]
 pub struct LessonRun {
     /// Key under which its progress is kept.
     pub id: String,
@@ -51,21 +53,7 @@ pub struct LessonRun {
 impl LessonRun {
     /// A lesson at its first step.
     pub fn new(id: String, lesson: Arc<Lesson>, before: Before) -> Self {
-        LessonRun {
-            id,
-            lesson,
-            step: 0,
-            guess: None,
-            judgement: None,
-            measured: None,
-            gave_up: false,
-            set_up: None,
-            depth: 0,
-            closed: Vec::new(),
-            before,
-            part: None,
-            answered: BTreeMap::new(),
-        }
+        LessonRun { id, lesson, before, ..LessonRun::default() }
     }
 
     /// The step on screen. A lesson has at least one, and `step` is kept among them.

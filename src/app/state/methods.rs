@@ -8,6 +8,7 @@ use std::sync::Arc;
 const ROBUST: [&str; 2] = ["capon", "baseline"];
 
 /// Every method, and the preferred one.
+#[derive(Default)]
 pub struct Methods {
     pub all: Vec<Arc<dyn Reconstructor>>,
     /// Name of the method in use where the user chose none.

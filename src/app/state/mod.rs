@@ -39,7 +39,7 @@ pub use command::{
 };
 pub use command_table::{Entry, listed, listed_on_a_page, shortcuts};
 pub use cuts::{CutMap, PinnedCut, pin_cut};
-pub use failures::{Conditions, FailureChoice, Failures, OpenedRow, SearchChoice, ThresholdChoice};
+pub use failures::{Conditions, FailureChoice, Failures, OpenedRow};
 pub use guided::{Guided, Setup};
 pub use help::HelpPage;
 pub use lesson_run::{Before, LessonRun};
@@ -49,9 +49,7 @@ pub use methods::Methods;
 pub use notices::{Notice, Notices};
 pub use panel::{MapKind, MethodSlot, Panel};
 pub use save_question::{Doubt, SaveAnswer, SaveQuestion};
-pub use settings::{
-    BoundsSettings, Brightness, ChirpSettings, Compare, Elements, Layout, PhasorMap, PhasorSettings, Settings,
-};
+pub use settings::{BoundsSettings, ChirpSettings, Compare, Elements, Layout, PhasorMap, PhasorSettings, Settings};
 pub use several::{MAX_MAPS as MAX_MAPS_AT_ONCE, Parameter, Several, Variant};
 pub use synonyms::synonyms;
 pub use task_layouts::Task;
@@ -72,6 +70,7 @@ use std::sync::Arc;
 const RECENT: usize = 10;
 
 /// All state that commands change.
+#[derive(Default)]
 pub struct State {
     /// The document in the editor: scene, radar and file.
     pub editor: Editor,
@@ -113,8 +112,8 @@ impl State {
     }
 
     /// Opens another document; undo brings the last one back with its file.
-    pub fn set_document(&mut self, label: &str, document: Document) {
-        self.editor.open(label, document);
+    pub fn set_document(&mut self, document: Document) {
+        self.editor.open(document);
         self.scene_view.fit = true;
     }
 
@@ -248,12 +247,12 @@ impl State {
     pub fn can_undo(&self) -> bool {
         // Undo does not leave a lesson's step.
         let is_left = self.lesson.as_ref().is_none_or(|run| self.editor.history().depth() > run.depth);
-        is_left && (self.editor.history().undo_label().is_some() || self.guided.can_undo(&self.setup()))
+        is_left && (self.editor.history().depth() > 0 || self.guided.can_undo(&self.setup()))
     }
 
     /// Whether an undone change can be done again.
     pub fn can_redo(&self) -> bool {
-        self.editor.history().redo_label().is_some()
+        self.editor.history().can_redo()
     }
 
     /// Undoes the last change of the scene, or all changes of a button of the guide.
@@ -302,17 +301,13 @@ impl State {
         self.method().is_some_and(|method| method.finds_reflectors())
     }
 
-    /// The second method of the panel "Compare": the chosen one, else a robust one, else any other.
-    pub fn second_method(&self) -> Option<&Arc<dyn Reconstructor>> {
-        let first = self.method().map(|m| m.name());
-        self.methods.second_to(first, &self.settings.compare.second)
-    }
-
     /// The method of a slot.
     pub fn method_in(&self, slot: MethodSlot) -> Option<&Arc<dyn Reconstructor>> {
         match slot {
             MethodSlot::First => self.method(),
-            MethodSlot::Second => self.second_method(),
+            MethodSlot::Second => {
+                self.methods.second_to(self.method().map(|m| m.name()), &self.settings.compare.second)
+            }
         }
     }
 

@@ -6,18 +6,10 @@ use crate::interact::{Coordinates, Snap};
 use crate::maps::Aperture;
 use crate::radar::{Decibels, End, Layout as ElementLayout, LayoutError, Mimo, Radar};
 use crate::view::View;
+use eframe::egui::ThemePreference;
 use serde::{Deserialize, Serialize};
 use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
-
-/// Theme of the window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Brightness {
-    #[default]
-    System,
-    Light,
-    Dark,
-}
 
 /// The user's settings of the panel Chirp.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -37,7 +29,7 @@ pub struct Settings {
     pub snap: Snap,
     /// Coordinates in which places are shown and entered.
     pub coordinates: Coordinates,
-    pub theme: Brightness,
+    pub theme: ThemePreference,
     pub bounds: BoundsSettings,
     pub phasors: PhasorSettings,
     pub chirp: ChirpSettings,
@@ -202,24 +194,16 @@ impl Default for Compare {
 
 impl Compare {
     /// The maps offered for flipping.
-    pub const OFFERED: [MapKind; 9] = [
-        MapKind::Input0,
-        MapKind::Input1,
-        MapKind::Target,
-        MapKind::Output,
-        MapKind::Second,
-        MapKind::OutputAbove,
-        MapKind::SecondAbove,
-        MapKind::Difference,
-        MapKind::SecondDifference,
-    ];
+    pub const OFFERED: [MapKind; 9] = {
+        use MapKind::*;
+        [Input0, Input1, Target, Output, Second, OutputAbove, SecondAbove, Difference, SecondDifference]
+    };
 
     /// The maps to be made. They include both flipped ones, so that the other is there at once.
     pub fn maps(&self) -> Vec<MapKind> {
+        use MapKind::*;
         match self.layout {
-            Layout::Beside => {
-                vec![MapKind::Output, MapKind::Second, MapKind::Difference, MapKind::SecondDifference]
-            }
+            Layout::Beside => vec![Output, Second, Difference, SecondDifference],
             Layout::Flip => self.maps.to_vec(),
         }
     }

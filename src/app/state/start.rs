@@ -1,11 +1,7 @@
 //! The state of a first start.
 
-use super::{
-    Arrangement, Failures, Guided, MapViews, MethodTimes, Methods, Notices, Pointer, SceneView, Settings, State,
-    Timeline,
-};
+use super::{Methods, State};
 use crate::interact::{Document, Editor};
-use crate::lesson::Progress;
 use crate::reconstruct::Reconstructor;
 use crate::scene::presets;
 use std::sync::Arc;
@@ -13,30 +9,8 @@ use std::sync::Arc;
 impl State {
     /// The state of a first start with these methods.
     pub fn new(methods: Vec<Arc<dyn Reconstructor>>) -> State {
-        State {
-            editor: Editor::of(Document::shipped(presets::default_scene())),
-            settings: Settings::default(),
-            methods: Methods::new(methods),
-            method_times: MethodTimes::default(),
-            arrangement: Arrangement::default(),
-            notices: Notices::default(),
-            scene_view: SceneView::default(),
-            map_views: MapViews::default(),
-            pointer: Pointer::default(),
-            pins: Vec::new(),
-            guided: Guided::default(),
-            save_question: None,
-            failures: Failures::default(),
-            lesson: None,
-            before_presenting: None,
-            progress: Progress::default(),
-            recent: Vec::new(),
-            captions: true,
-            tells_first_drag: false,
-            timeline: Timeline::default(),
-            help: None,
-            dark: false,
-        }
+        let editor = Editor::of(Document::shipped(presets::default_scene()));
+        State { editor, methods: Methods::new(methods), captions: true, ..State::default() }
     }
 }
 

@@ -102,14 +102,9 @@ fn failures() -> Tree<Panel> {
     tree("failures", column([(0.42, above), (0.58, tabs([Panel::Failures]))]), [])
 }
 
-/// A lesson on the whole screen: its text is read from afar, and has more room.
-pub fn projected_lesson() -> Tree<Panel> {
-    lesson("lesson", [0.68, 1.3])
-}
-
 /// A lesson large, with the scene and the controls of challenges, one map large, the others that lessons ask about, and the target above
 /// its threshold. `part` of the height is the lesson's, and the maps are so many times as wide.
-fn lesson(name: &'static str, [part, times]: [f32; 2]) -> Tree<Panel> {
+pub fn lesson(name: &'static str, [part, times]: [f32; 2]) -> Tree<Panel> {
     let controls = [Panel::Radar, Panel::Inspector];
     let scene = tabs([Panel::Scene].into_iter().chain(controls));
     let left = column([(part, tabs([Panel::Lesson])), (1.0 - part, scene)]);

@@ -11,8 +11,8 @@ pub const TIMELINE_SECONDS: f64 = 5.0;
 pub struct Timeline {
     /// The document's scene, and the scene at the chosen time; `None` at time 0.
     moved: Option<(Arc<Scene>, Arc<Scene>)>,
-    seconds: f64,
-    is_playing: bool,
+    pub seconds: f64,
+    pub is_playing: bool,
     /// Time until a recording's next frame is due, seconds.
     until_frame: f64,
 }
@@ -23,16 +23,6 @@ const FRAME_SECONDS: f64 = 0.1;
 const READING_PART: f64 = 0.5;
 
 impl Timeline {
-    /// The time, seconds.
-    pub fn seconds(&self) -> f64 {
-        self.seconds
-    }
-
-    /// Whether the scene or the recording plays.
-    pub fn is_playing(&self) -> bool {
-        self.is_playing
-    }
-
     /// Sets the time of the scene. The end of the timeline stops playing.
     pub fn set(&mut self, document: &Arc<Scene>, seconds: f64) {
         self.seconds = if seconds.is_finite() { seconds.clamp(0.0, TIMELINE_SECONDS) } else { 0.0 };
@@ -124,11 +114,11 @@ mod tests {
         timeline.set(&document, 1.5);
         timeline.play(&document, true);
         timeline.follow(&document);
-        assert_eq!(timeline.seconds(), 1.5);
+        assert_eq!(timeline.seconds, 1.5);
         let edited = scene();
         assert!(Arc::ptr_eq(timeline.scene(&edited), &edited));
         timeline.follow(&edited);
-        assert_eq!((timeline.seconds(), timeline.is_playing()), (0.0, false));
+        assert_eq!((timeline.seconds, timeline.is_playing), (0.0, false));
     }
 
     #[test]
@@ -136,8 +126,8 @@ mod tests {
         let (document, mut timeline) = (scene(), Timeline::default());
         timeline.play(&document, true);
         timeline.set(&document, 99.0);
-        assert_eq!((timeline.seconds(), timeline.is_playing()), (TIMELINE_SECONDS, false));
+        assert_eq!((timeline.seconds, timeline.is_playing), (TIMELINE_SECONDS, false));
         timeline.play(&document, true);
-        assert_eq!((timeline.seconds(), timeline.is_playing()), (0.0, true));
+        assert_eq!((timeline.seconds, timeline.is_playing), (0.0, true));
     }
 }

@@ -1,8 +1,8 @@
 //! State of the switches among the commands, which menus tick.
 
 use super::command::{Command, EditCommand, ViewCommand, WindowCommand};
-use super::settings::Brightness;
 use super::{Panel, Projection, State, Units};
+use eframe::egui::ThemePreference;
 
 impl State {
     /// Whether the switch of a command is on; `None` where the command is no switch.
@@ -35,11 +35,11 @@ impl State {
             Command::Window(command) => match command {
                 WindowCommand::TogglePanel(panel) => Some(self.arrangement.is_open(*panel)),
                 WindowCommand::Maximise(panel) => Some(self.arrangement.is_maximised(*panel)),
-                WindowCommand::ArrangeFor(task) => Some(self.arrangement.task() == *task),
+                WindowCommand::ArrangeFor(task) => Some(self.arrangement.task == *task),
                 WindowCommand::Present => Some(self.is_presenting()),
                 WindowCommand::ToggleTheme => Some(match settings.theme {
-                    Brightness::System => self.dark,
-                    chosen => chosen == Brightness::Dark,
+                    ThemePreference::System => self.dark,
+                    chosen => chosen == ThemePreference::Dark,
                 }),
                 WindowCommand::ToggleCaptions => Some(self.captions),
                 _ => None,

@@ -1,5 +1,6 @@
 //! Axes of maps, charts and the scene, with ticks at round numbers and labels that neither collide nor leave the panel.
 
+use super::numbers::plain;
 use eframe::egui::{self, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
 /// Space for tick labels and an axis title, points.
@@ -33,12 +34,7 @@ pub fn ticks(low: f64, high: f64, count: f32) -> Vec<f64> {
 
 /// A number with as many decimals as ticks `step` apart need.
 pub fn tick_text(value: f64, step: f64) -> String {
-    let digits = (-step.abs().log10() - 1e-9).ceil().clamp(0.0, 6.0) as usize;
-    let text = format!("{value:.digits$}");
-    match text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
-        true => text.trim_start_matches('-').to_owned(),
-        false => text.replace('-', "−"),
-    }
+    plain(value, (-step.abs().log10() - 1e-9).ceil().clamp(0.0, 6.0) as usize)
 }
 
 /// A mark of an axis.

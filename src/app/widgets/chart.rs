@@ -34,7 +34,7 @@ pub struct Drawn {
     /// The pointer's response on it.
     pub response: Response,
     transform: PlotTransform,
-    painter: Painter,
+    pub painter: Painter,
 }
 
 impl<'a> Chart<'a> {
@@ -190,11 +190,6 @@ impl Drawn {
         if let Some(told) = at.and_then(|at| what([at.x, at.y])) {
             self.response.on_hover_text_at_pointer(told);
         }
-    }
-
-    /// A painter for marks over the lines, clipped at the frame.
-    pub fn painter(&self) -> &Painter {
-        &self.painter
     }
 }
 

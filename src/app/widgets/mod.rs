@@ -19,6 +19,7 @@ mod numbers;
 mod padded;
 mod progress;
 #[cfg(test)]
+#[path = "tests/seen.rs"]
 pub mod seen;
 mod text_entry;
 pub mod theme;
@@ -33,7 +34,7 @@ pub use labelled::{Quantity, choice, labelled};
 pub use method_menu::{
     LIST_HEIGHT, kind_boxes, kind_names, member_box, method_lines, method_list, method_menu, ticking_menu,
 };
-pub use nudge::{focus_after_click, focused_steps, keep_arrows, nudge, pan_keys, zoom_keys};
+pub use nudge::{focus_after_click, focused_steps, keep_arrows, list_keys, nudge, pan_keys, zoom_keys};
 pub use number_field::{NumberField, Wanted};
 pub use numbers::{
     CONVENTION, angle_degrees, angle_of_place_degrees, difference, direction, level, lowest_db, percent, plain, signed,

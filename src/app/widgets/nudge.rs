@@ -71,6 +71,32 @@ pub fn keep_arrows(response: &Response, [horizontal_arrows, vertical_arrows]: [b
     response.ctx.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
 }
 
+/// Where arrow keys, Page Up and Down, Home and End with `modifiers` lead in a list of `count` rows from the row `now`, if they are pressed.
+pub fn list_keys(
+    list: &Response,
+    modifiers: Modifiers,
+    now: Option<usize>,
+    count: usize,
+    rows_a_page: usize,
+) -> Option<usize> {
+    keep_arrows(list, [false, true]);
+    let (by, end) = list.ctx.input_mut(|i| {
+        let mut times = |key| i.count_and_consume_key(modifiers, key) as isize;
+        let lines = times(Key::ArrowDown) - times(Key::ArrowUp);
+        let pages = times(Key::PageDown) - times(Key::PageUp);
+        (lines + rows_a_page as isize * pages, times(Key::End) - times(Key::Home))
+    });
+    let last = count.checked_sub(1)?;
+    match (end.signum(), now) {
+        (1, _) => Some(last),
+        (-1, _) => Some(0),
+        _ if by == 0 => None,
+        (_, Some(now)) => Some(now.saturating_add_signed(by).min(last)),
+        (_, None) if by > 0 => Some(0),
+        (_, None) => Some(last),
+    }
+}
+
 /// Gives `list` the keyboard's focus after a click on one of its rows, if one `was_clicked`. It waits for the frame after the click: egui takes the focus away
 /// from a widget that the click did not hit, and the click may have moved the rows.
 pub fn focus_after_click(list: &Response, was_clicked: &mut bool) {

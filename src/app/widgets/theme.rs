@@ -1,8 +1,13 @@
 //! Colours and spacing of the interface.
 
-use crate::app::state::Brightness;
 use eframe::egui::style::{ScrollFadeStyle, ScrollStyle};
-use eframe::egui::{self, Color32, Context, CornerRadius, Visuals};
+use eframe::egui::{self, Color32, Context, CornerRadius, ThemePreference, Visuals};
+
+/// The colour of the dark or of the light theme.
+fn ink(is_dark: bool, dark: [u8; 3], light: [u8; 3]) -> Color32 {
+    let [r, g, b] = if is_dark { dark } else { light };
+    Color32::from_rgb(r, g, b)
+}
 
 /// Colours of the scene and of marks over maps.
 #[derive(Debug, Clone, Copy)]
@@ -25,10 +30,7 @@ pub struct Inks {
 impl Inks {
     /// The inks of the light or dark theme.
     pub fn of(visuals: &Visuals) -> Self {
-        let ink = |dark: [u8; 3], light: [u8; 3]| {
-            let [r, g, b] = if visuals.dark_mode { dark } else { light };
-            Color32::from_rgb(r, g, b)
-        };
+        let ink = |dark, light| ink(visuals.dark_mode, dark, light);
         Inks {
             ground: ink([24, 28, 36], [252, 253, 255]),
             beyond: ink([14, 16, 20], [226, 230, 237]),
@@ -54,25 +56,17 @@ pub const CAPTION_INK: Color32 = Color32::WHITE;
 
 /// Cells below a threshold, and above it.
 pub fn mask(dark: bool) -> [Color32; 2] {
-    match dark {
-        true => [Color32::from_rgb(18, 22, 30), Color32::from_rgb(255, 214, 90)],
-        false => [Color32::from_rgb(252, 253, 255), Color32::from_rgb(176, 84, 0)],
-    }
+    [ink(dark, [18, 22, 30], [252, 253, 255]), ink(dark, [255, 214, 90], [176, 84, 0])]
 }
 
 /// Colour of a right or a wrong answer.
 pub fn verdict(visuals: &Visuals, is_right: bool) -> Color32 {
-    let rgb = Color32::from_rgb;
-    match (is_right, visuals.dark_mode) {
-        (true, true) => rgb(120, 220, 150),
-        (true, false) => rgb(0, 104, 52),
-        (false, _) => visuals.warn_fg_color,
-    }
+    if is_right { ink(visuals.dark_mode, [120, 220, 150], [0, 104, 52]) } else { visuals.warn_fg_color }
 }
 
 /// Colour of the ring around the control with the keyboard's focus.
 pub fn focus(dark: bool) -> Color32 {
-    if dark { Color32::from_rgb(120, 190, 255) } else { Color32::from_rgb(0, 92, 200) }
+    ink(dark, [120, 190, 255], [0, 92, 200])
 }
 
 /// Scroll bars that are always visible, with faded edges of scrolled content.
@@ -88,41 +82,28 @@ fn scroll() -> ScrollStyle {
 }
 
 /// Sets up both themes and selects `theme`.
-pub fn apply(ctx: &Context, theme: Brightness) {
+pub fn apply(ctx: &Context, theme: ThemePreference) {
     for of in [egui::Theme::Dark, egui::Theme::Light] {
         ctx.style_mut_of(of, |style| {
             style.visuals.widgets.noninteractive.corner_radius = CornerRadius::same(4);
             style.spacing.item_spacing = egui::vec2(6.0, 4.0);
             style.spacing.slider_width = 110.0;
             style.spacing.scroll = scroll();
-            if of == egui::Theme::Dark {
-                style.visuals.panel_fill = Color32::from_rgb(30, 33, 40);
-                style.visuals.extreme_bg_color = Color32::from_rgb(18, 20, 25);
-                style.visuals.override_text_color = Some(Color32::from_rgb(218, 223, 232));
-                style.visuals.weak_text_color = Some(Color32::from_rgb(172, 180, 194));
-                style.visuals.error_fg_color = Color32::from_rgb(255, 140, 130);
-                style.visuals.warn_fg_color = Color32::from_rgb(255, 190, 92);
-                style.visuals.hyperlink_color = Color32::from_rgb(116, 180, 255);
-                style.visuals.selection.bg_fill = Color32::from_rgb(38, 92, 150);
-                // Boxes that are not ticked, and the rails of sliders.
-                style.visuals.widgets.inactive.bg_fill = Color32::from_rgb(104, 112, 128);
-            } else {
-                style.visuals.panel_fill = Color32::from_rgb(245, 247, 250);
-                style.visuals.override_text_color = Some(Color32::from_rgb(34, 40, 52));
-                style.visuals.weak_text_color = Some(Color32::from_rgb(78, 88, 106));
-                style.visuals.error_fg_color = Color32::from_rgb(176, 24, 32);
-                style.visuals.warn_fg_color = Color32::from_rgb(140, 78, 0);
-                style.visuals.hyperlink_color = Color32::from_rgb(0, 92, 184);
-                style.visuals.selection.bg_fill = Color32::from_rgb(176, 210, 250);
-                style.visuals.widgets.inactive.bg_fill = Color32::from_rgb(138, 146, 160);
-            }
+            let visuals = &mut style.visuals;
+            let ink = |dark, light| ink(of == egui::Theme::Dark, dark, light);
+            visuals.panel_fill = ink([30, 33, 40], [245, 247, 250]);
+            visuals.extreme_bg_color = ink([18, 20, 25], [255; 3]);
+            visuals.override_text_color = Some(ink([218, 223, 232], [34, 40, 52]));
+            visuals.weak_text_color = Some(ink([172, 180, 194], [78, 88, 106]));
+            visuals.error_fg_color = ink([255, 140, 130], [176, 24, 32]);
+            visuals.warn_fg_color = ink([255, 190, 92], [140, 78, 0]);
+            visuals.hyperlink_color = ink([116, 180, 255], [0, 92, 184]);
+            visuals.selection.bg_fill = ink([38, 92, 150], [176, 210, 250]);
+            // Boxes that are not ticked, and the rails of sliders.
+            visuals.widgets.inactive.bg_fill = ink([104, 112, 128], [138, 146, 160]);
         });
     }
-    ctx.set_theme(match theme {
-        Brightness::System => egui::ThemePreference::System,
-        Brightness::Light => egui::ThemePreference::Light,
-        Brightness::Dark => egui::ThemePreference::Dark,
-    });
+    ctx.set_theme(theme);
 }
 
 #[cfg(test)]
@@ -143,7 +124,7 @@ mod tests {
     #[test]
     fn a_box_that_is_not_ticked_is_seen_in_dark_and_light() {
         let ctx = Context::default();
-        apply(&ctx, Brightness::Dark);
+        apply(&ctx, ThemePreference::Dark);
         for theme in [egui::Theme::Dark, egui::Theme::Light] {
             let visuals = ctx.style_of(theme).visuals.clone();
             for ground in [visuals.panel_fill, visuals.window_fill] {
@@ -156,7 +137,7 @@ mod tests {
     #[test]
     fn every_text_is_readable_in_dark_and_light() {
         let ctx = Context::default();
-        apply(&ctx, Brightness::Dark);
+        apply(&ctx, ThemePreference::Dark);
         for theme in [egui::Theme::Dark, egui::Theme::Light] {
             let visuals = ctx.style_of(theme).visuals.clone();
             let inks = Inks::of(&visuals);

@@ -59,7 +59,7 @@ pub enum Aim {
 }
 
 /// The settings of a search.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct WorseningSearch {
     /// The radar.
     pub radar: Radar,

@@ -13,9 +13,8 @@ mod store;
 
 use super::{Editor, Restored};
 use crate::platform::{self, Claim, Instant, fs};
+use crate::task::{Reply, Task, Worker};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread::JoinHandle;
 use std::time::Duration;
 use store::{AutosaveStore, StartPlan};
 
@@ -25,17 +24,16 @@ const MIN_COPY_INTERVAL: Duration = Duration::from_millis(250);
 /// Most windows that keep copies at once.
 const SLOTS: u32 = 64;
 
-type Answer = Result<(), String>;
-
 /// The copies of one window.
 pub struct Autosave {
     store: AutosaveStore,
-    jobs: Option<Sender<StartPlan>>,
-    answers: (Sender<Answer>, Receiver<Answer>),
-    pending: usize,
-    thread: Option<JoinHandle<()>>,
+    /// Writes the latest plan of those that wait.
+    worker: Worker<StartPlan, Result<(), String>>,
+    /// Errors of plans that were carried out at once.
+    problems: Vec<String>,
+    is_busy: bool,
     last: Option<(StartPlan, Instant)>,
-    /// Held while the window lives; the system releases it however the process ends. It is the last field, so that the thread ends before.
+    /// Held while the window lives; the system releases it however the process ends.
     _lock: Option<fs::Lock>,
 }
 
@@ -43,19 +41,15 @@ impl Autosave {
     /// Takes the first slot in `folder` that no other window holds. A slot with copies of a dead window comes first.
     ///
     /// Where the file system has no locks, the first slot is shared.
-    /// # Errors
-    /// When the system can't start a thread.
-    pub fn claim(folder: &Path) -> std::io::Result<Autosave> {
+    pub fn claim(folder: &Path) -> Autosave {
         // Without a folder there is no lock; writing a copy will say why.
         let _reported_later = fs::create_dir_all(folder);
         let (stem, lock) = claim_slot(folder);
         let store = AutosaveStore::new(folder, stem);
-        let answers = channel();
-        let (jobs, thread) = match platform::WRITES_WAIT {
-            true => writer(store.clone(), answers.0.clone()).map(|(jobs, thread)| (Some(jobs), Some(thread)))?,
-            false => (None, None),
-        };
-        Ok(Autosave { store, jobs, answers, pending: 0, thread, last: None, _lock: lock })
+        let kept = store.clone();
+        let write = move |(): &mut (), plan: StartPlan, _: &Task| kept.carry_out(&plan);
+        let worker = Worker::spawn("autosave", || (), write, || ());
+        Autosave { store, worker, problems: Vec::new(), is_busy: false, last: None, _lock: lock }
     }
 
     /// Reads the copies of a dead window in this slot. A file that can't be read is set aside, not deleted.
@@ -86,13 +80,18 @@ impl Autosave {
     /// # Errors
     /// Name of a file that could not be written, and the reason.
     pub fn keep_now(&mut self, editor: &Editor) -> Result<(), String> {
-        self.ask(StartPlan::of(editor));
-        let mut result = Ok(());
-        while self.pending > 0 {
-            self.pending -= 1;
-            result = self.answers.1.recv().unwrap_or_else(|_| Err("the autosave has stopped".to_owned()));
+        self.worker.cancel();
+        self.wait();
+        self.poll();
+        let plan = StartPlan::of(editor);
+        self.last = Some((plan.clone(), Instant::now()));
+        self.store.carry_out(&plan)
+    }
+
+    fn wait(&self) {
+        while self.worker.is_busy() {
+            std::thread::sleep(Duration::from_millis(1));
         }
-        result
     }
 
     /// Whether the unsaved documents of `editor` are on disk as they are.
@@ -102,56 +101,33 @@ impl Autosave {
 
     /// Errors since the last call.
     pub fn poll(&mut self) -> Vec<String> {
-        let mut problems = Vec::new();
-        while let Ok(answer) = self.answers.1.try_recv() {
-            self.pending -= 1;
-            problems.extend(answer.err());
-        }
-        problems
+        self.is_busy &= self.worker.is_busy();
+        let told = self.worker.replies().into_iter().filter_map(|reply| match reply {
+            Reply::Done { result, .. } => result.err(),
+            Reply::Panicked { message, .. } => Some(message),
+        });
+        std::mem::take(&mut self.problems).into_iter().chain(told).collect()
     }
 
     /// Whether files are being written.
     pub fn is_busy(&self) -> bool {
-        self.pending > 0
+        self.is_busy
     }
 
     fn ask(&mut self, plan: StartPlan) {
         self.last = Some((plan.clone(), Instant::now()));
-        let sent = match &self.jobs {
-            Some(jobs) => jobs.send(plan).is_ok(),
-            None => self.answers.0.send(self.store.carry_out(&plan)).is_ok(),
-        };
-        self.pending += usize::from(sent);
+        self.is_busy = true;
+        match platform::WRITES_WAIT {
+            true => _ = self.worker.request(plan),
+            false => self.problems.extend(self.store.carry_out(&plan).err()),
+        }
     }
 }
 
 impl Drop for Autosave {
     fn drop(&mut self) {
-        self.jobs = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread was reported for each file that it did not write.
-            let _panicked = thread.join();
-        }
+        self.wait();
     }
-}
-
-/// Starts the thread that writes files. Only the latest plan of those that wait matters; each has an answer.
-fn writer(mut store: AutosaveStore, answer: Sender<Answer>) -> std::io::Result<(Sender<StartPlan>, JoinHandle<()>)> {
-    let (jobs, asked) = channel::<StartPlan>();
-    let work = move || {
-        while let Ok(plan) = asked.recv() {
-            let plans: Vec<StartPlan> = std::iter::once(plan).chain(asked.try_iter()).collect();
-            let count = plans.len();
-            let result = plans.into_iter().next_back().map_or(Ok(()), |p| store.carry_out(&p));
-            for answered in 1..=count {
-                let result = if answered == count { result.clone() } else { Ok(()) };
-                if answer.send(result).is_err() {
-                    return;
-                }
-            }
-        }
-    };
-    std::thread::Builder::new().name("autosave".to_owned()).spawn(work).map(|thread| (jobs, thread))
 }
 
 fn claim_slot(folder: &Path) -> (String, Option<fs::Lock>) {

@@ -2,12 +2,12 @@
 
 use crate::files::read_bounded;
 use crate::interact::{Document, Editor, Restored};
-use crate::platform::fs;
+use crate::platform::{self, fs};
 use crate::scene::file::{self, MAX_FILE_BYTES, SceneFileError};
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 const TABLE: &str = "document";
 
@@ -114,16 +114,16 @@ impl AutosaveStore {
             }
         }
         restored.left = behind.iter().map(|b| b.document.clone()).collect();
-        *self.behind.lock().unwrap_or_else(PoisonError::into_inner) = behind;
+        *platform::lock(&self.behind) = behind;
         restored
     }
 
     /// Writes the documents of `plan` and then deletes other files, so that at no moment a document is in no file.
-    pub(super) fn carry_out(&mut self, plan: &StartPlan) -> Result<(), String> {
+    pub(super) fn carry_out(&self, plan: &StartPlan) -> Result<(), String> {
         if plan.documents().next().is_some() {
             fs::create_dir_all(&self.folder).map_err(|e| format!("{}: {e}", self.folder.display()))?;
         }
-        let mut behind = self.behind.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut behind = platform::lock(&self.behind);
         for document in &plan.left {
             if behind.iter().any(|b| b.document.untouched_since(document)) {
                 continue;

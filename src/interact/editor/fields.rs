@@ -31,13 +31,13 @@ impl Editor {
             field.set(object, value);
         }
         changed.check_room(&[])?;
-        self.edit("edit numbers", Some(&format!("{field:?}")), |scene, _| *scene = changed);
+        self.edit(Some(&format!("{field:?}")), |scene, _| *scene = changed);
         Ok(())
     }
 
     /// Names the selected object, where it is one. Letters in a row are one step until [`Editor::seal`].
     pub fn name_selected(&mut self, name: &str) {
-        self.edit("name", Some("name"), |scene, selection| {
+        self.edit(Some("name"), |scene, selection| {
             let object = selection.single().and_then(|index| scene.objects.get_mut(index));
             object.into_iter().for_each(|object| object.set_name(name));
         });

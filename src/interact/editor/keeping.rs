@@ -27,7 +27,7 @@ impl Editor {
             (Some(unsaved), asked) => {
                 let mut editor = Editor::of(unsaved);
                 if let Some(asked) = asked {
-                    editor.open("open", asked);
+                    editor.open(asked);
                 }
                 editor
             }
@@ -79,12 +79,12 @@ impl Editor {
     }
 
     /// Puts another document in the place of this one. Undo brings this one back, path and all.
-    pub fn open(&mut self, label: &str, document: Document) {
+    pub fn open(&mut self, document: Document) {
         self.cancel_drag();
         let before = self.snapshot();
         self.replace(document);
         self.selection = Selection::default();
-        self.history.push(label, None, before);
+        self.history.push(None, before);
         self.history.seal();
         if let Some(path) = self.document.path().filter(|_| !self.is_modified()).map(Path::to_owned) {
             self.note_kept(&self.document.clone(), &path);
@@ -97,13 +97,13 @@ impl Editor {
         let before = self.snapshot();
         self.replace(document);
         self.selection.clamp(self.scene().objects.len());
-        self.history.push("another frame", Some("frame"), before);
+        self.history.push(Some("frame"), before);
     }
 
     /// Puts the document `id` of [`Editor::left`] back on screen, as one undo step; false where there is none.
     pub fn recover(&mut self, id: u64) -> bool {
         let found = self.left.iter().find(|d| d.id() == id).cloned();
-        found.map(|document| self.open("recover", document)).is_some()
+        found.map(|document| self.open(document)).is_some()
     }
 
     /// Drops the document `id` from [`Editor::left`]: only the history holds its last state then.

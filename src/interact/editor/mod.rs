@@ -89,7 +89,7 @@ impl Editor {
 
     /// Changes the scene as one undo step, or as part of the last one where both carry the same `key`. Nothing is recorded
     /// where nothing changed. Returns whether something did.
-    pub fn edit(&mut self, label: &str, key: Option<&str>, change: impl FnOnce(&mut Scene, &mut Selection)) -> bool {
+    pub fn edit(&mut self, key: Option<&str>, change: impl FnOnce(&mut Scene, &mut Selection)) -> bool {
         let before = self.snapshot();
         change(self.document.scene_mut(), &mut self.selection);
         self.selection.clamp(self.scene().objects.len());
@@ -97,19 +97,14 @@ impl Editor {
             self.document = before.document;
             return false;
         }
-        self.history.push(label, key, before);
+        self.history.push(key, before);
         true
     }
 
     /// Changes the radar, as [`Editor::edit`] does the scene.
     /// # Errors
     /// [`RadarError`] for a radar that makes no sense or asks for too much memory; nothing changes then.
-    pub fn edit_radar(
-        &mut self,
-        label: &str,
-        merge_key: Option<&str>,
-        change: impl FnOnce(&mut Radar),
-    ) -> Result<bool, RadarError> {
+    pub fn edit_radar(&mut self, merge_key: Option<&str>, change: impl FnOnce(&mut Radar)) -> Result<bool, RadarError> {
         let mut radar = Radar::clone(self.radar());
         change(&mut radar);
         radar.validate()?;
@@ -124,14 +119,13 @@ impl Editor {
             self.document.scene_mut().disturbances.elements = fitted;
         }
         *self.document.radar_mut() = radar;
-        self.history.push(label, merge_key, before);
+        self.history.push(merge_key, before);
         Ok(true)
     }
 
     /// Adds an object and selects it.
     pub fn add(&mut self, object: Object) {
-        let label = format!("add {}", object.noun());
-        self.edit(&label, None, |scene, selection| {
+        self.edit(None, |scene, selection| {
             *selection = Selection::of([scene.objects.len()]);
             scene.objects.push(object);
         });
@@ -139,7 +133,7 @@ impl Editor {
 
     /// Deletes the selected objects.
     pub fn delete_selected(&mut self) {
-        self.edit("delete", None, |scene, selection| {
+        self.edit(None, |scene, selection| {
             for index in std::mem::take(selection).iter().rev() {
                 scene.objects.remove(index);
             }
@@ -150,9 +144,9 @@ impl Editor {
         self.selected().cloned().collect()
     }
 
-    fn insert_copies(&mut self, label: &str, objects: Vec<Object>) -> Result<(), SceneError> {
+    fn insert_copies(&mut self, objects: Vec<Object>) -> Result<(), SceneError> {
         self.scene().check_room(&objects)?;
-        self.edit(label, None, |scene, selection| {
+        self.edit(None, |scene, selection| {
             let first = scene.objects.len();
             *selection = Selection::of(first..first + objects.len());
             scene.objects.extend(objects.into_iter().map(|mut o| {
@@ -169,7 +163,7 @@ impl Editor {
     pub fn duplicate_selected(&mut self) -> Result<(), SceneError> {
         let mut copies = self.selected_objects();
         copies.iter_mut().for_each(|copy| copy.set_name(""));
-        self.insert_copies("duplicate", copies)
+        self.insert_copies(copies)
     }
 
     /// The selected objects as TOML; `None` where nothing is selected.
@@ -183,13 +177,13 @@ impl Editor {
     pub fn paste(&mut self, text: &str) -> Result<usize, clipboard::PasteError> {
         let objects = clipboard::from_text(text, self.radar())?;
         let count = objects.len();
-        self.insert_copies("paste", objects)?;
+        self.insert_copies(objects)?;
         Ok(count)
     }
 
     /// Moves the selected objects. Nudges in a row are one step until [`Editor::seal`].
     pub fn nudge(&mut self, dx_metres: f64, dy_metres: f64) {
-        self.edit("nudge", Some("nudge"), |scene, selection| {
+        self.edit(Some("nudge"), |scene, selection| {
             for i in selection.iter() {
                 scene.objects[i].translate(dx_metres, dy_metres);
             }
@@ -275,7 +269,7 @@ impl Editor {
         if let Some(drag) = self.drag.take()
             && drag.before.document.scene() != self.scene()
         {
-            self.history.push("drag", None, drag.before);
+            self.history.push(None, drag.before);
         }
     }
 

@@ -63,7 +63,7 @@ fn everything_can_be_undone() {
     e.paste(&text).unwrap();
     e.select([0, 1], SelectionMode::Replace);
     e.delete_selected();
-    e.open("open", Document::default());
+    e.open(Document::default());
     assert_eq!(e.history().depth(), 6, "add, duplicate, nudges, paste, delete, open");
     while e.undo() {}
     assert_eq!(*e.scene(), start);
@@ -108,10 +108,10 @@ fn count(path: &Path) -> usize {
 fn the_radar_is_part_of_the_document() {
     let (_folder, a, _) = two_files();
     let mut e = Editor::of(Document::read(&a).unwrap());
-    assert_eq!(e.edit_radar("carrier", None, |r| r.carrier = Carrier::TwoWay), Ok(true));
-    assert_eq!(e.edit_radar("window", None, |r| r.window = WindowFunction::Hamming), Ok(true));
-    assert_eq!(e.edit_radar("window", None, |r| r.window = WindowFunction::Hamming), Ok(false));
-    assert!(e.is_modified() && e.edit_radar("elements", None, |r| (r.elements, r.samples) = (65536, 65536)).is_err());
+    assert_eq!(e.edit_radar(None, |r| r.carrier = Carrier::TwoWay), Ok(true));
+    assert_eq!(e.edit_radar(None, |r| r.window = WindowFunction::Hamming), Ok(true));
+    assert_eq!(e.edit_radar(None, |r| r.window = WindowFunction::Hamming), Ok(false));
+    assert!(e.is_modified() && e.edit_radar(None, |r| (r.elements, r.samples) = (65536, 65536)).is_err());
     assert_eq!(e.history().depth(), 2);
     e.save(&a).unwrap();
     assert!(!e.is_modified());
@@ -120,7 +120,7 @@ fn the_radar_is_part_of_the_document() {
     assert_eq!((e.radar().window, e.is_modified()), (WindowFunction::Hann, true), "the file has the other window");
     e.redo();
     assert!(!e.is_modified());
-    e.open("new scene", Document::default());
+    e.open(Document::default());
     assert_eq!(**e.radar(), Radar::default());
     e.undo();
     assert_eq!(e.radar().carrier, Carrier::TwoWay);
@@ -139,9 +139,9 @@ fn saving_under_another_name_moves_the_document() {
     e.redo();
     assert_eq!(e.document().title(), "c.toml");
     // Over the file of a document that undo may bring back.
-    e.open("open", Document::read(&b).unwrap());
+    e.open(Document::read(&b).unwrap());
     e.save(&a).unwrap();
-    e.open("open", Document::read(&a).unwrap());
+    e.open(Document::read(&a).unwrap());
     assert_eq!((count(&a), e.document().title()), (2, "a.toml".to_owned()));
 }
 
@@ -160,7 +160,7 @@ fn a_copy_that_loses_something_saves_nothing() {
     e.undo();
     assert_eq!(e.save(&npz).unwrap(), Saved::Whole);
     assert_eq!(e.document().title(), "s.npz");
-    e.open("open", Document::read(&a).unwrap());
+    e.open(Document::read(&a).unwrap());
     e.add(Object::Line(Line::vertical(0.0, 9.0, 0.1, 40)));
     e.save(&npz).unwrap();
     e.undo();
@@ -183,7 +183,7 @@ fn an_unsaved_document_stays_until_saved_or_discarded() {
     let (_folder, a, b) = two_files();
     let mut e = Editor::of(Document::read(&a).unwrap());
     e.add(Object::Point(Point::new(5.0, 5.0)));
-    e.open("open", Document::read(&b).unwrap());
+    e.open(Document::read(&b).unwrap());
     let left = |e: &Editor| e.left().iter().map(Document::title).collect::<Vec<_>>();
     assert_eq!(left(&e), ["a.toml •"]);
     e.add(Object::Point(Point::new(5.0, 5.0)));
@@ -199,7 +199,7 @@ fn an_unsaved_document_stays_until_saved_or_discarded() {
     e.save(&a).unwrap();
     e.undo();
     assert_eq!((left(&e), e.document().title()), (vec![], "b.toml •".to_owned()));
-    e.open("new scene", Document::default());
+    e.open(Document::default());
     let id = e.left()[0].id();
     e.discard(id);
     assert!(e.left().is_empty() && !e.recover(id));

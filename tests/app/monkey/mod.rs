@@ -72,7 +72,7 @@ impl Monkey {
             cancel.click();
             app.step();
         }
-        let (editor, arrangement) = (app.state().editor(), app.state().arrangement());
+        let (editor, arrangement) = (&app.state().editor, &app.state().arrangement);
         let crowded = editor.scene().objects.len() > MANY_OBJECTS;
         let discarded = editor.left().first().filter(|_| editor.left().len() > MANY_UNSAVED).map(|d| d.id());
         let may_train = arrangement.is_open(Panel::Training);

@@ -32,7 +32,7 @@ pub struct Witness {
 }
 
 fn unsaved(app: &App) -> Moment {
-    let editor = app.editor();
+    let editor = &app.editor;
     let on_screen = Some(editor.document()).filter(|d| d.is_modified());
     editor.left().iter().chain(on_screen).map(Kept::of).collect()
 }
@@ -52,7 +52,7 @@ impl Witness {
     /// Checks that a window that was started after a kill has all documents that were unsaved at one of the moments. The error names those missing of
     /// the latest moment.
     pub fn compare(&self, app: &App) -> Result<(), String> {
-        let editor = app.editor();
+        let editor = &app.editor;
         let back = |kept: &Kept| editor.left().iter().chain([editor.document()]).any(|d| kept.is(d));
         if self.moments.is_empty() || self.moments.iter().any(|m| m.iter().all(back)) {
             return Ok(());
@@ -67,7 +67,7 @@ pub fn files_are_whole(folder: &Path, app: &App) {
     for name in FILES {
         Document::read(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"));
     }
-    let document = app.editor().document();
+    let document = app.editor.document();
     if let Some(path) = document.path().filter(|_| !document.is_modified()) {
         let on_disk = Document::read(path).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!((on_disk.scene(), on_disk.radar()), (document.scene(), document.radar()), "{}", path.display());

@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 /// The bar for a method that finds reflectors in a recording, or for a scene without methods.
-fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'static, (MenuMemory, Vec<Command>)> {
+fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'static, Vec<Command>> {
     let mut state = match finds_reflectors {
         true => {
             let radar = Radar { elements: 64, samples: 32, ..Radar::default() };
@@ -22,14 +22,13 @@ fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'stat
     };
     state.settings.developer = developer;
     state.editor.add(Object::Point(Point::new(0.0, 9.0)));
-    let draw = move |ui: &mut Ui, asked: &mut (MenuMemory, Vec<Command>)| {
-        let commands = show(ui, &state, &mut asked.0);
-        asked.1.extend(commands);
+    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+        asked.extend(show(ui, &state));
     };
-    Harness::builder().with_size([width, 800.0]).build_ui_state(draw, (MenuMemory::default(), vec![]))
+    Harness::builder().with_size([width, 800.0]).build_ui_state(draw, vec![])
 }
 
-fn bar(width: f32) -> Harness<'static, (MenuMemory, Vec<Command>)> {
+fn bar(width: f32) -> Harness<'static, Vec<Command>> {
     bar_for(width, true, true)
 }
 
@@ -43,7 +42,7 @@ fn panels_for_developers_are_listed_where_their_switch_is_on() {
     }
     let mut menu = bar(900.0);
     menu.clicks(&["Tools", "Training"]);
-    assert_eq!(menu.state().1, [Command::Window(WindowCommand::OpenPanel(Panel::Training))]);
+    assert_eq!(*menu.state(), [Command::Window(WindowCommand::OpenPanel(Panel::Training))]);
 }
 
 #[test]
@@ -91,7 +90,7 @@ fn the_help_menu_lists_its_pages() {
         assert!(menu.query_by_label(name).is_some(), "{name}");
     }
     menu.clicks(&["Keys and pointer"]);
-    assert_eq!(menu.state().1, [Command::Window(WindowCommand::Help(HelpPage::Keys))]);
+    assert_eq!(*menu.state(), [Command::Window(WindowCommand::Help(HelpPage::Keys))]);
 }
 
 #[test]
@@ -105,12 +104,12 @@ fn random_scenes_have_a_menu_of_their_own_with_their_seed() {
     assert!(Kind::all().all(is_listed));
     menu.get_by_label_contains(name).click();
     menu.run();
-    assert_eq!(menu.state().1, [Command::Document(DocumentCommand::RandomScene(Kind::Walls))]);
+    assert_eq!(*menu.state(), [Command::Document(DocumentCommand::RandomScene(Kind::Walls))]);
     assert!(menu.query_by_label("Fit scene").is_none(), "the menu has closed");
     menu.clicks(&["Scene", "Random scene"]);
     menu.enters("Next: seed", "7");
     let next = DocumentCommand::SetNextRandom { seed: 7, number: 0 };
-    assert_eq!(menu.state().1.last(), Some(&Command::Document(next)));
+    assert_eq!(menu.state().last(), Some(&Command::Document(next)));
 }
 
 #[test]
@@ -132,7 +131,7 @@ fn menus_ask_for_what_they_list() {
     let preset = presets::ALL.iter().position(|p| p.id == "four-reflectors").unwrap();
     let projection = Command::View(ViewCommand::SetProjection(Projection::Cartesian));
     assert_eq!(
-        menu.state().1,
+        *menu.state(),
         [
             Command::Edit(EditCommand::Add(NewObject::Line, None)),
             projection,
@@ -165,9 +164,9 @@ fn every_kind_of_body_has_a_button_where_there_is_room() {
     }
     let kinds = [NewObject::Wall, NewObject::Box, NewObject::Post, NewObject::Polygon];
     let wanted: Vec<Command> = kinds.map(|kind| Command::Edit(EditCommand::Add(kind, None))).to_vec();
-    assert_eq!(wide.state().1, wanted);
+    assert_eq!(*wide.state(), wanted);
     let mut medium = bar(1000.0);
     assert!(labels.iter().all(|label| medium.query_by_label(label).is_none()));
     medium.clicks(&["+ Body", "Add post"]);
-    assert_eq!(medium.state().1, wanted[2..3]);
+    assert_eq!(*medium.state(), wanted[2..3]);
 }

@@ -63,7 +63,6 @@ pub struct Run {
 impl Plan for Run {
     type Row = (u64, Row);
     type End = Vec<Unfit>;
-    const THREAD: &'static str = "failures";
     const WHAT: &'static str = "Trying methods";
     const ADVICE: &'static str = "Leave the method out, or try another seed.";
 

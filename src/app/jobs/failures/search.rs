@@ -2,26 +2,24 @@
 
 use crate::app::jobs::derived::Failure;
 use crate::app::jobs::rows::{Plan, RowJob, Teller};
-use crate::app::state::{SearchChoice, State};
-use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningSearch as Job};
+use crate::app::state::State;
+use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningSearch};
 use crate::radar::counted;
 use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// A search, its first scene and that scene's document, and the user's choices.
-struct SearchPlan {
-    job: Job,
+/// A search, its first scene, that scene's document, and the method.
+pub struct SearchPlan {
+    search: WorseningSearch,
     scene: Arc<Scene>,
     document: u64,
-    choice: SearchChoice,
     method: Arc<dyn Reconstructor>,
 }
 
 impl Plan for SearchPlan {
     type Row = Finding;
     type End = ();
-    const THREAD: &'static str = "search";
     const WHAT: &'static str = "The search";
     const ADVICE: &'static str = "Choose another method, or move something.";
 
@@ -30,10 +28,10 @@ impl Plan for SearchPlan {
         let on_try = |tries: u32, path: &[Finding]| {
             path[told..].iter().for_each(|finding| teller.row(finding.clone()));
             told = path.len();
-            teller.part(tries as f32 / self.job.tries.max(1) as f32);
+            teller.part(tries as f32 / self.search.tries.max(1) as f32);
             !teller.task.is_cancelled()
         };
-        let outcome = self.job.run(&self.scene, self.method.as_ref(), teller.task, on_try);
+        let outcome = self.search.run(&self.scene, self.method.as_ref(), teller.task, on_try);
         let outcome = outcome.map_err(|error| error.to_string())?;
         // Findings of the last batch before it was stopped.
         outcome.path[told..].iter().for_each(|finding| teller.row(finding.clone()));
@@ -43,7 +41,8 @@ impl Plan for SearchPlan {
 
 /// The worker of searches, and the path of the last one.
 pub struct Search {
-    job: RowJob<SearchPlan>,
+    /// Its rows are the path: the first scene, and every later one that was better for the aim than all before it.
+    pub job: RowJob<SearchPlan>,
     /// Whether `poll` has reported the end of the search.
     told: bool,
 }
@@ -55,28 +54,19 @@ impl Search {
     }
 
     /// Begins a search near the scene on screen.
-    pub fn begin(&mut self, state: &State, choice: SearchChoice) {
+    pub fn begin(&mut self, state: &State, search: WorseningSearch) {
         let Some(method) = state.method().cloned() else { return };
         let scene = state.editor.scene().clone();
-        let job = Job {
+        let search = WorseningSearch {
             radar: state.radar().clone(),
             floor: state.settings.floor,
             normalisation: state.settings.normalisation,
             layout: state.settings.heard(state.radar()),
-            aim: choice.aim,
-            measure: choice.measure,
-            within_metres: choice.within_metres,
-            tries: choice.tries,
-            seed: 0,
+            ..search
         };
         let document = state.editor.document().id();
         self.told = false;
-        self.job.begin(SearchPlan { job, scene, document, choice, method });
-    }
-
-    /// Stops soon; its findings stay.
-    pub fn cancel(&mut self) {
-        self.job.cancel();
+        self.job.begin(SearchPlan { search, scene, document, method });
     }
 
     /// Drops the search with its path.
@@ -85,30 +75,10 @@ impl Search {
         self.told = true;
     }
 
-    /// Finished part of the search, 0 to 1, while it runs.
-    pub fn progress(&self) -> Option<f32> {
-        self.job.progress()
-    }
-
-    /// The reason why the search ended early, unless it was dropped since.
-    pub fn note(&self) -> Option<&str> {
-        self.job.plan().and(self.job.note())
-    }
-
-    /// Choices and method of the last search, unless it was dropped.
-    pub fn subject(&self) -> Option<(SearchChoice, &'static str)> {
-        self.job.plan().map(|plan| (plan.choice, plan.method.name()))
-    }
-
-    /// The first scene, and every later one that was better for the aim than all before it.
-    pub fn path(&self) -> &[Finding] {
-        self.job.rows()
-    }
-
     /// Centres of every object along the path, `[x, y]` in metres, while the search's document is on screen.
     pub fn trails(&self, document: u64) -> Vec<Vec<[f64; 2]>> {
         let is_shown = self.job.plan().is_some_and(|plan| plan.document == document);
-        let scenes = self.path().iter().map(|finding| &finding.scene.objects).filter(|_| is_shown);
+        let scenes = self.job.rows().iter().map(|finding| &finding.scene.objects).filter(|_| is_shown);
         let objects = scenes.clone().map(Vec::len).max().unwrap_or(0);
         (0..objects).map(|i| scenes.clone().filter_map(|of| Some(of.get(i)?.centre_metres())).collect()).collect()
     }
@@ -128,13 +98,14 @@ impl Search {
 
     /// The result of the search in words.
     pub fn summary(&self) -> Option<String> {
-        let (choice, method) = self.subject()?;
-        let [start, .., end] = self.path() else {
-            let nothing = if choice.aim == Aim::Repair { "right" } else { "worse" };
-            return (self.progress().is_none() && self.note().is_none())
-                .then(|| format!("No scene {nothing} for {method} within {} m.", choice.within_metres));
+        let SearchPlan { search, method, .. } = self.job.plan()?;
+        let method = method.name();
+        let [start, .., end] = self.job.rows() else {
+            let nothing = if search.aim == Aim::Repair { "right" } else { "worse" };
+            return (self.job.progress().is_none() && self.job.note().is_none())
+                .then(|| format!("No scene {nothing} for {method} within {} m.", search.within_metres));
         };
-        let told = |finding: &Finding| match choice.measure {
+        let told = |finding: &Finding| match search.measure {
             WorseningMeasure::SquaredError => format!("SE {:.1}", finding.metrics.squared_error),
             WorseningMeasure::Missed => format!("{} missed", finding.failures.missed()),
             WorseningMeasure::Ghosts => counted(finding.failures.ghosts.len(), "ghost", "ghosts"),

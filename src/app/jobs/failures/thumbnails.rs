@@ -157,7 +157,6 @@ type Last<'a> = Option<(&'a Row, Trial)>;
 impl Plan for MissingThumbnails {
     type Row = ();
     type End = ();
-    const THREAD: &'static str = "thumbnails";
     const WHAT: &'static str = "Drawing small maps";
     const ADVICE: &'static str = "Their rows stay.";
 

@@ -1,6 +1,6 @@
 //! Choice of the output's threshold by its rate of false alarms.
 
-use crate::app::state::{Command, ThresholdChoice, WorkCommand};
+use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::{
     NumberField, bar, kind_boxes, kind_names, labelled, rarely, row, row_of, start_or_cancel, ticking_menu,
 };
@@ -79,9 +79,7 @@ fn start(ui: &mut Ui, method: &str, search: &Search<'_>, chosen: &ThresholdSearc
     let tips = [problem.as_deref().unwrap_or(&tip), "Stop the search; η stays as it is"];
     let button = ("Find η", WorkCommand::CancelThreshold);
     if start_or_cancel(ui, button, search.progress.is_some(), problem.is_none(), tips, asked) {
-        let ThresholdSearch { false_alarm_percent, count, .. } = *chosen;
-        let choice = ThresholdChoice { false_alarm_percent, kinds: chosen.kinds.clone(), count };
-        asked.push(WorkCommand::FindThreshold(choice).into());
+        asked.push(WorkCommand::FindThreshold(Box::new(chosen.clone())).into());
     }
     bar(ui, search.progress, 100.0);
 }
@@ -116,9 +114,8 @@ mod tests {
         let mut fields = fields(ThresholdSearch { false_alarm_percent: 0.5, count: 80, ..ThresholdSearch::default() });
         seen::assert_readable(fields.output());
         fields.clicks(&["Find η"]);
-        let kinds = vec![Kind::Set1, Kind::Set2, Kind::Set3];
-        let choice = ThresholdChoice { false_alarm_percent: 0.5, kinds, count: 80 };
-        assert_eq!(fields.state().asked, [WorkCommand::FindThreshold(choice).into()]);
+        let search = fields.state().chosen.clone();
+        assert_eq!(fields.state().asked, [WorkCommand::FindThreshold(Box::new(search)).into()]);
     }
 
     #[test]

@@ -69,9 +69,9 @@ impl Markers {
         for (place, name) in self.places.into_iter().zip(NAMES) {
             let Some(place) = place else { continue };
             let at = pos2(drawn.at([place, 0.0]).x, drawn.rect.top());
-            drawn.painter().vline(at.x, drawn.rect.y_range(), Stroke::new(1.5, ink));
+            drawn.painter.vline(at.x, drawn.rect.y_range(), Stroke::new(1.5, ink));
             if drawn.rect.x_range().contains(at.x) {
-                axes::text_on_patch(drawn.painter(), at + vec2(6.0, 3.0), Align2::LEFT_TOP, name);
+                axes::text_on_patch(&drawn.painter, at + vec2(6.0, 3.0), Align2::LEFT_TOP, name);
             }
         }
     }

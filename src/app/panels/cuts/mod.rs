@@ -3,8 +3,8 @@
 mod markers;
 mod trace;
 
-use crate::app::content::{Content, Cx, Nothing};
-use crate::app::jobs::Wants;
+use crate::app::content::Content;
+use crate::app::jobs::Want;
 use crate::app::state::{Command, CutMap, MapKind, State, Units, ViewCommand};
 use crate::app::widgets::{
     Axis, Chart, Inks, NumberField, Span, axes, button, choice, choices, direction, labelled, lowest_db, press,
@@ -46,19 +46,11 @@ struct View {
     markers: Markers,
 }
 
-pub struct CutsPanel;
-
-impl Content for CutsPanel {
-    type Asks = Nothing;
-    type Remembers = CutsMemory;
-    const WANTS: Wants = Wants { every_map: true, ..Wants::OUTPUT };
-    const TELLS_ANSWERS: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let maps = cx.jobs.pipeline.cut_maps();
-        show(ui, cx.state, &maps, cx.memory)
-    }
-}
+pub const PANEL: Content<CutsMemory> = Content {
+    wants: &[Want::Output, Want::EveryMap],
+    tells_answers: true,
+    ..Content::drawn(|ui, cx| show(ui, cx.state, &cx.jobs.pipeline.cut_maps(), cx.memory))
+};
 
 /// Draws the panel of maps that can be cut: angle cut above (or left), range profile below (or right).
 pub fn show(ui: &mut Ui, state: &State, maps: &[CutMap], memory: &mut CutsMemory) -> Vec<Command> {

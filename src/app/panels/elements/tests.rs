@@ -20,7 +20,7 @@ struct Panel {
 
 impl Panel {
     fn set(&mut self, elements: BuiltArray) {
-        self.state.editor.edit("elements", None, |scene, _| scene.disturbances.elements = elements);
+        self.state.editor.edit(None, |scene, _| scene.disturbances.elements = elements);
     }
 }
 

@@ -122,8 +122,8 @@ pub fn show(
     let (table, opened) = (&input.job.table, input.opened());
     // The dot of a scene tried by two methods has the colour of the scene's set.
     let grouping = if memory.view == View::Methods { Column::Set } else { memory.grouping };
-    let points = &*memory.made.of((order.stamp(), subject, grouping), |(_, subject, grouping)| {
-        Points::of(table, order.filtered(), subject, *grouping)
+    let points = &*memory.made.of((order.stamp, subject, grouping), |(_, subject, grouping)| {
+        Points::of(table, &order.filtered, subject, *grouping)
     });
     if let Some(told) = &points.told {
         ui.label(told);
@@ -154,7 +154,7 @@ pub fn show(
     if points.bars.is_none() {
         dots(ui, &drawn, points, boxed);
         if let Some(dot) = opened {
-            drawn.painter().circle_stroke(drawn.at(dot.at), 5.0, around);
+            drawn.painter.circle_stroke(drawn.at(dot.at), 5.0, around);
         }
     }
     let boxed = rubber_box(ui, &drawn, points, &mut memory.start)
@@ -226,7 +226,7 @@ fn dots(ui: &Ui, drawn: &Drawn, points: &Points, boxed: Option<&Boxed>) {
         };
         mesh.add_colored_rect(Rect::from_center_size(drawn.at(dot.at), size), colour);
     }
-    drawn.painter().add(mesh);
+    drawn.painter.add(mesh);
 }
 
 fn nearest(drawn: &Drawn, points: &Points, at: Pos2) -> Option<Dot> {
@@ -261,7 +261,7 @@ fn rubber_box(ui: &Ui, drawn: &Drawn, points: &Points, start: &mut Option<Pos2>)
         drawn_box = Rect::from_x_y_ranges(drawn_box.x_range(), drawn.rect.y_range());
     }
     let ink = Inks::of(ui.visuals()).selected;
-    drawn.painter().rect(drawn_box, 0.0, ink.gamma_multiply(0.12), Stroke::new(1.0, ink), StrokeKind::Middle);
+    drawn.painter.rect(drawn_box, 0.0, ink.gamma_multiply(0.12), Stroke::new(1.0, ink), StrokeKind::Middle);
     if !drawn.response.drag_stopped() {
         if !drawn.response.dragged() {
             *start = None;

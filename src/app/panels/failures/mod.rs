@@ -11,7 +11,7 @@ mod points;
 mod shared;
 mod table;
 
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, fates_of};
 use crate::app::state::{Command, MethodSlot, RowsCommand, State};
 use crate::evaluate::worsen::summary;
@@ -36,20 +36,15 @@ pub struct FailuresMemory {
     opened: opened::OpenedMemory,
 }
 
-pub struct FailuresPanel;
+pub const PANEL: Content<FailuresMemory> = Content::drawn(draw);
 
-impl Content for FailuresPanel {
-    type Asks = Nothing;
-    type Remembers = FailuresMemory;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, jobs) = (&*cx.state, cx.jobs);
-        let own = jobs.own_scenes(state);
-        let input = Input { state, job: &jobs.failures, own: own.as_deref(), now: now(state, jobs) };
-        let asked = show(ui, &input, cx.memory);
-        cx.state.failures.in_sight = cx.memory.table.in_sight.clone();
-        asked
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, FailuresMemory>) -> Vec<Command> {
+    let (state, jobs) = (&*cx.state, cx.jobs);
+    let own = jobs.own_scenes(state);
+    let input = Input { state, job: &jobs.failures, own: own.as_deref(), now: now(state, jobs) };
+    let asked = show(ui, &input, cx.memory);
+    cx.state.failures.in_sight = cx.memory.table.in_sight.clone();
+    asked
 }
 
 /// Figures of the method in use for the row on screen.
@@ -87,7 +82,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
             let panel = beside_or_below(ui.available_size()).frame(Frame::NONE);
             panel.show(ui, |ui| chart(ui, input, memory, &mut asked));
         }
-        let open = table::show(ui, input, memory.order.shown(), &mut memory.sort, &mut memory.table);
+        let open = table::show(ui, input, &memory.order.shown, &mut memory.sort, &mut memory.table);
         asked.extend(open.map(|v| Command::Rows(RowsCommand::Show(v))));
     });
     asked
@@ -118,7 +113,7 @@ fn update(ui: &Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
 /// Draws the number of shown rows, the button of the box, and the choice of chart.
 fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
     ui.horizontal_wrapped(|ui| {
-        let (shown, all) = (memory.order.shown().len(), input.job.table.rows().len());
+        let (shown, all) = (memory.order.shown.len(), input.job.table.rows().len());
         let rows = counted(all, "row", "rows");
         ui.weak(if shown == all { rows } else { format!("{shown} of {rows}") });
         if let Some(boxed) = &memory.boxed {

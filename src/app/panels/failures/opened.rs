@@ -1,7 +1,7 @@
 //! The opened row: its figures beside the current ones, the search for a worse or a repaired scene, and the button that keeps the scene.
 
 use super::input::{Input, Now};
-use crate::app::state::{Command, Purpose, RowsCommand, SearchChoice};
+use crate::app::state::{Command, Purpose, RowsCommand};
 use crate::app::widgets::{NumberField, choice, labelled, percent, press, progress, warning};
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
@@ -80,7 +80,7 @@ fn fates(row: &Row) -> String {
 
 fn search(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut Vec<Command>) {
     let searched = &input.job.search;
-    if let Some(part) = searched.progress() {
+    if let Some(part) = searched.job.progress() {
         if progress(ui, part, 140.0, "Stop looking; what was found stays") {
             asked.push(RowsCommand::CancelSearch.into());
         }
@@ -93,15 +93,15 @@ fn search(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut
         let worse = "Look near the scene on screen for one that the method in use does worse on; the way there is drawn on the scene";
         let repair = "Look for the smallest move of its objects after which the method in use is right";
         for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
-            let WorseningSearch { measure, within_metres, tries, .. } = memory.search;
-            press(ui, title, tip, RowsCommand::Search(SearchChoice { aim, measure, within_metres, tries }), asked);
+            let search = Box::new(WorseningSearch { aim, ..memory.search.clone() });
+            press(ui, title, tip, RowsCommand::Search(search), asked);
         }
     }
     if let Some(summary) = searched.summary() {
         ui.label(summary);
     }
-    warning(ui, searched.note());
-    if searched.progress().is_none() && searched.path().len() > 1 {
+    warning(ui, searched.job.note());
+    if searched.job.progress().is_none() && searched.job.rows().len() > 1 {
         let tip = "Put what was found on screen; undo brings this scene back";
         press(ui, "Show", tip, RowsCommand::TakeFinding, asked);
         press(ui, "Forget", "Forget the search; its path is no longer drawn", RowsCommand::ForgetSearch, asked);

@@ -51,27 +51,15 @@ struct Key {
 pub struct Order {
     of: Option<Key>,
     when: Option<Instant>,
-    filtered: Vec<usize>,
-    shown: Vec<usize>,
-    stamp: u64,
+    /// Indices of the rows that pass the filter, in the order in which they came.
+    pub filtered: Vec<usize>,
+    /// Indices of the filtered rows in the box, sorted.
+    pub shown: Vec<usize>,
+    /// Rises with every computation.
+    pub stamp: u64,
 }
 
 impl Order {
-    /// Indices of the rows that pass the filter, in the order in which they came.
-    pub fn filtered(&self) -> &[usize] {
-        &self.filtered
-    }
-
-    /// Indices of the filtered rows in the box, sorted: the rows of the table.
-    pub fn shown(&self) -> &[usize] {
-        &self.shown
-    }
-
-    /// A number that rises with every computation.
-    pub fn stamp(&self) -> u64 {
-        self.stamp
-    }
-
     /// Filters and sorts again if something changed. Without a sorting rows stay in the order in which they came; rows outside a box are not shown. Returns the
     /// time until the next call, if new rows wait for it.
     pub fn update(
@@ -151,13 +139,13 @@ mod tests {
     #[test]
     fn only_filtered_rows_in_the_box_are_put_in_order_once() {
         let (mut asked, mut order) = asked();
-        assert_eq!((order.filtered(), order.shown()), (&[2, 3, 4, 5][..], &[5, 3][..]));
-        let stamp = order.stamp();
+        assert_eq!((&order.filtered[..], &order.shown[..]), (&[2, 3, 4, 5][..], &[5, 3][..]));
+        let stamp = order.stamp;
         asked.update(&mut order);
-        assert_eq!(order.stamp(), stamp);
+        assert_eq!(order.stamp, stamp);
         asked.table.replace(Vec::new(), Conditions::default());
         asked.update(&mut order);
-        assert!(order.shown().is_empty(), "rows of another table do not stay");
+        assert!(order.shown.is_empty(), "rows of another table do not stay");
     }
 
     #[test]
@@ -167,7 +155,7 @@ mod tests {
         assert!(asked.update(&mut order).is_some(), "a moment later");
         asked.boxed = None;
         asked.update(&mut order);
-        assert_eq!(order.shown(), [6, 5, 4, 3, 2], "at once when something else changed");
+        assert_eq!(order.shown, [6, 5, 4, 3, 2], "at once when something else changed");
     }
 
     #[test]

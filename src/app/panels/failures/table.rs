@@ -4,12 +4,12 @@ use super::cells;
 use super::input::Input;
 use super::order::Sort;
 use crate::app::jobs::{THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail};
-use crate::app::widgets::{Texture, colour_table, focus_after_click, keep_arrows};
+use crate::app::widgets::{Texture, colour_table, focus_after_click, list_keys};
 use crate::evaluate::rows::Column;
 use crate::picture::ColourMap;
 use eframe::egui::{
-    self, Align, Color32, ColorImage, FontId, Id, Key, Label, Layout, Modifiers, Rect, Response, RichText, ScrollArea,
-    Sense, Stroke, TextureOptions, Ui, Vec2, pos2, vec2,
+    self, Align, Color32, ColorImage, FontId, Id, Label, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Stroke,
+    TextureOptions, Ui, Vec2, pos2, vec2,
 };
 use egui_extras::{Column as TableColumn, TableBuilder, TableRow};
 use std::collections::HashMap;
@@ -58,7 +58,11 @@ pub fn show(
     list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ListBox, true, "Rows"));
     focus_after_click(&list, &mut memory.was_clicked);
     if list.has_focus() {
-        open = keys(ui, &list, opened, shown, memory.room[1]);
+        let now = opened.and_then(|row| shown.iter().position(|shown| *shown == row));
+        let page = ((memory.room[1] / ROW) as usize).max(1);
+        open = list_keys(&list, Modifiers::NONE, now, shown.len(), page)
+            .map(|to| shown[to])
+            .filter(|row| opened != Some(*row));
     }
     let height = ui.available_height();
     // An opened row is scrolled into sight, and stays there when its figures take some of the room.
@@ -95,29 +99,6 @@ pub fn show(
     let generation = input.job.table.generation();
     pictures.retain(|(table, row), _| *table == generation && in_sight.contains(row));
     open
-}
-
-/// Handles arrow keys, Page Up and Down, Home and End. Returns the index of the row to open.
-fn keys(ui: &Ui, list: &Response, opened: Option<usize>, shown: &[usize], room: f32) -> Option<usize> {
-    keep_arrows(list, [false, true]);
-    let page = ((room / ROW) as isize).max(1);
-    let (by, end) = ui.input_mut(|i| {
-        let mut times = |key| i.count_and_consume_key(Modifiers::NONE, key) as isize;
-        let lines = times(Key::ArrowDown) - times(Key::ArrowUp);
-        let pages = times(Key::PageDown) - times(Key::PageUp);
-        (lines + page * pages, times(Key::End) - times(Key::Home))
-    });
-    let last = shown.len().checked_sub(1)?;
-    let now = opened.and_then(|row| shown.iter().position(|shown| *shown == row));
-    let to = match (end.signum(), now) {
-        (1, _) => last,
-        (-1, _) => 0,
-        _ if by == 0 => return None,
-        (_, Some(now)) => now.saturating_add_signed(by).min(last),
-        (_, None) if by > 0 => 0,
-        (_, None) => last,
-    };
-    (Some(to) != now).then(|| shown[to])
 }
 
 /// Draws a row. Returns whether it was clicked.

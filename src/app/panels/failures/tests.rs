@@ -1,9 +1,8 @@
 use super::*;
 use crate::app::jobs::{Failures, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, some_row};
-use crate::app::state::{Conditions, FailureChoice, OpenedRow, Purpose, SearchChoice};
+use crate::app::state::{Conditions, FailureChoice, OpenedRow, Purpose};
 use crate::app::widgets::seen::{self, User};
 use crate::evaluate::rows::{Column, Row};
-use crate::evaluate::worsen::{Aim, WorseningMeasure};
 use crate::platform::Instant;
 use crate::reconstruct::{Baseline, CAPON, Reconstructor};
 use crate::scene::generate::Kind;
@@ -52,11 +51,9 @@ fn every_button_is_one_command() {
     let mut panel = panel(0);
     panel.clicks(&["Try", "Worse", "Keep", "Open…"]);
     let choice = FailureChoice { methods: vec!["capon"], kinds: vec![Kind::Set2], own: false, count: 20, seed: 0 };
-    let search =
-        SearchChoice { aim: Aim::Worsen, measure: WorseningMeasure::SquaredError, within_metres: 2.0, tries: 256 };
     let asked = [
         Command::Rows(RowsCommand::Try(choice)),
-        Command::Rows(RowsCommand::Search(search)),
+        Command::Rows(RowsCommand::Search(Box::default())),
         Command::Rows(RowsCommand::KeepScene(String::new())),
         Command::AskFile(Purpose::OpenRows),
     ];
@@ -92,12 +89,12 @@ fn a_box_in_the_scatter_plot_selects_rows() {
     let (from, to) = (chart.left_top() + vec2(2.0, 2.0), chart.center_bottom() - vec2(0.0, 2.0));
     panel.drags(&[0.0, 0.3, 0.6, 1.0].map(|part| from + (to - from) * part));
     panel.run_steps(2);
-    let shown = panel.state().memory.order.shown().to_vec();
+    let shown = panel.state().memory.order.shown.to_vec();
     let last = *shown.last().unwrap();
     assert!((90..110).contains(&last) && shown == (0..=last).collect::<Vec<_>>(), "the left half: {shown:?}");
     let name = format!("× {} in the box", shown.len());
     panel.clicks(&[&name]);
-    assert_eq!(panel.state().memory.order.shown().len(), 200);
+    assert_eq!(panel.state().memory.order.shown.len(), 200);
 }
 
 /// Rows with pictures, sorted by a title.
@@ -114,13 +111,13 @@ fn with_pictures(count: u32) -> Harness<'static, Drawn> {
 #[test]
 fn ten_thousand_rows_are_put_in_order_once() {
     let mut panel = with_pictures(10_000);
-    let stamp = panel.state().memory.order.stamp();
+    let stamp = panel.state().memory.order.stamp;
     let began = Instant::now();
     for _ in 0..20 {
         panel.step();
     }
     let took = began.elapsed();
-    assert_eq!(panel.state().memory.order.stamp(), stamp, "nothing changed");
+    assert_eq!(panel.state().memory.order.stamp, stamp, "nothing changed");
     assert!(took < Duration::from_secs(10), "20 frames took {took:?}");
 }
 
@@ -133,7 +130,7 @@ fn only_rows_in_sight_are_drawn_and_their_pictures_held() {
     panel.get_by_label("Rows").focus();
     panel.step();
     panel.presses(&[Key::End]);
-    let last = *panel.state().memory.order.shown().last().unwrap();
+    let last = *panel.state().memory.order.shown.last().unwrap();
     assert_eq!(panel.state().state.failures.opened.as_ref().map(|opened| opened.index), Some(last));
     assert!(panel.state().memory.table.in_sight.contains(&last));
     panel.presses(&[Key::PageUp]);
@@ -182,7 +179,7 @@ fn a_rule_of_the_bad_rows_is_applied_by_a_click() {
     panel.clicks(&["Conditions that the bad rows share"]);
     let _said = panel.get_by_label_contains("24 of 160 rows are bad.");
     panel.clicks(&["nearest_pair_columns < 3"]);
-    assert_eq!(panel.state().memory.order.shown().len(), 48);
+    assert_eq!(panel.state().memory.order.shown.len(), 48);
 }
 
 #[test]
@@ -202,6 +199,6 @@ fn rows_are_sorted_and_filtered_and_drawn_by_doubt() {
     assert!(panel.reads("95.0"), "and is shown");
     panel.state_mut().memory.filter.text = "squared_error > doubt".to_owned();
     panel.run_steps(3);
-    let shown = panel.state().memory.order.shown();
+    let shown = &panel.state().memory.order.shown;
     assert!(!shown.is_empty() && shown.iter().all(|row| rows[*row].method == "live"));
 }

@@ -169,15 +169,6 @@ fn an_answer_stands_beside_the_right_one() {
 }
 
 #[test]
-fn previous_keeps_the_verdict() {
-    let mut run = answered_run("range-and-bandwidth", 3, Guess::Choice(1));
-    run.go_to(2);
-    assert!(run.guess.is_none() && run.judgement.is_none() && run.is_predicting());
-    run.go_to(3);
-    assert!(!run.is_predicting() && run.judgement.is_some_and(|j| j.is_ok_and(|j| !j.is_right)));
-}
-
-#[test]
 fn starting_over_asks_before_it_forgets() {
     let mut progress = Progress::default();
     progress.note_guess("range-and-bandwidth", 1, true);

@@ -11,19 +11,11 @@ use eframe::egui::{CursorIcon, PointerButton, Pos2, Response, Ui};
 /// Most reflectors among which the one under a resting pointer is looked for in every frame.
 const HOVERED: usize = 2000;
 
-/// A blob that is being dragged.
-#[derive(Debug, Clone, Copy)]
-struct Held {
-    blob: BlobHit,
-    /// Place on the map where the drag began.
-    from: Polar,
-}
-
 /// State of the pointer, kept between frames.
 #[derive(Default)]
 pub struct HandMemory {
-    /// The dragged blob, and the map in which it is dragged.
-    held: Option<(MapKind, Held)>,
+    /// The map in which a blob is dragged, the blob, and the place on the map where the drag began.
+    held: Option<(MapKind, BlobHit, Polar)>,
 }
 
 /// Handles clicks and drags on blobs. Returns whether a blob is being dragged, so that the map stays in place.
@@ -42,7 +34,7 @@ pub fn work(
         && let Some(origin) = origin
         && let Some(blob) = under(scene, frame, origin)
     {
-        memory.held = Some((kind, Held { blob, from: frame.polar(origin) }));
+        memory.held = Some((kind, blob, frame.polar(origin)));
         asked.push(EditCommand::Grab(blob).into());
     }
     if response.clicked_by(PointerButton::Primary)
@@ -51,9 +43,9 @@ pub fn work(
         let hit = under(scene, frame, pos);
         asked.push(EditCommand::Select(hit.map(|h| h.object).into_iter().collect(), mode).into());
     }
-    let held = memory.held.filter(|(of, _)| *of == kind).map(|(_, held)| held);
-    if let (Some(held), Some(now)) = (held, now) {
-        let to = blob::moved(frame.radar, frame.centre_x_metres, held.blob.place, held.from, frame.polar(now));
+    let held = memory.held.filter(|(of, ..)| *of == kind);
+    if let (Some((_, blob, from)), Some(now)) = (held, now) {
+        let to = blob::moved(frame.radar, frame.centre_x_metres, blob.place, from, frame.polar(now));
         asked.push(EditCommand::DragTo(to).into());
         ui.set_cursor_icon(CursorIcon::Grabbing);
     } else if let Some(pos) = response.hover_pos()

@@ -27,7 +27,7 @@ pub use input::Input;
 pub use kinds::Kinds;
 pub use theory::Theory;
 pub use told::{
-    MapMemory, MapPanel, caption_of, cells, echoes_found, is_updating, map_input, marks_of, old, scores, verdict,
+    MapMemory, PANEL, caption_of, cells, echoes_found, is_updating, map_input, marks_of, old, scores, verdict,
 };
 
 use crate::app::panels::captions;

@@ -3,7 +3,7 @@
 use super::caption::{Caption, caption};
 use super::frame::{Cells, Marked};
 use super::{EARLIER_SCENE, HandMemory, Input, Kinds, Problem, Theory, ToldApart, show};
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, Scores, TheoryResult, fates_of};
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
 use crate::app::widgets::Texture;
@@ -32,28 +32,22 @@ impl MapMemory {
 }
 
 /// Panel of one map.
-pub struct MapPanel;
+pub const PANEL: Content<MapMemory> = Content { marks_age: true, caption: caption_in, ..Content::drawn(draw) };
 
-impl Content for MapPanel {
-    type Asks = Nothing;
-    type Remembers = MapMemory;
-    const MARKS_AGE: bool = true;
+fn caption_in(state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
+    let Panel::Map(kind) = panel else { return None };
+    caption_of(state, jobs, kind)
+}
 
-    fn caption(state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
-        let Panel::Map(kind) = panel else { return None };
-        caption_of(state, jobs, kind)
-    }
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let Cx { panel: Panel::Map(kind), state, jobs, memory, .. } = cx else { return Vec::new() };
-        let texture = memory.texture(ui, jobs, kind);
-        let projection = state.settings.projection;
-        let mut view = *state.map_views.of(projection);
-        let marks = marks_of(ui, state);
-        let asked = show(ui, map_input(state, jobs, &marks, texture, kind), &mut view, &mut memory.hand);
-        *state.map_views.of(projection) = view;
-        asked
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_, MapMemory>) -> Vec<Command> {
+    let Cx { panel: Panel::Map(kind), state, jobs, memory, .. } = cx else { return Vec::new() };
+    let texture = memory.texture(ui, jobs, kind);
+    let projection = state.settings.projection;
+    let mut view = *state.map_views.of(projection);
+    let marks = marks_of(ui, state);
+    let asked = show(ui, map_input(state, jobs, &marks, texture, kind), &mut view, &mut memory.hand);
+    *state.map_views.of(projection) = view;
+    asked
 }
 
 /// The reflectors of a scene, kept between frames.
@@ -230,7 +224,7 @@ pub fn is_updating(jobs: &Jobs, kind: MapKind) -> bool {
 pub fn cells(jobs: &Jobs, kind: MapKind) -> Option<Cells<'_>> {
     let result = jobs.pipeline.maps.result()?;
     if let Some(rescaled) = result.on_one_scale.get(&kind) {
-        return Some(Cells { map: &rescaled.map, minus: None, scale: Some(rescaled.scale) });
+        return Some(cells_of(rescaled));
     }
     let frame = &result.frame;
     let pair = kind.slot().and_then(|slot| jobs.pipeline.method(slot).output()).map(|o| &o.pair);

@@ -7,7 +7,7 @@ mod disturbances;
 mod handles;
 
 use super::captions::{self, Hint};
-use crate::app::content::{Content, Cx, Nothing};
+use crate::app::content::{Content, Cx};
 use crate::app::state::{Command, Cursor, EditCommand, MapKind, NewObject, SceneView, State, ViewCommand};
 use crate::app::widgets::{Inks, empty_text, entry, nudge, pan_keys, zoom_keys};
 use crate::interact::{Editor, Grip, Place, SelectionMode, hit};
@@ -15,25 +15,19 @@ use crate::scene::{Reflector, Scene};
 use canvas::{Canvas, Look};
 use eframe::egui::{self, CursorIcon, Painter, PointerButton, Rect, Response, Sense, Ui, Vec2, vec2};
 
-pub struct ScenePanel;
+pub const PANEL: Content = Content { marks_age: true, ..Content::drawn(draw) };
 
-impl Content for ScenePanel {
-    type Asks = Nothing;
-    type Remembers = ();
-    const MARKS_AGE: bool = true;
-
-    fn show(ui: &mut Ui, cx: Cx<'_, Self>) -> Vec<Command> {
-        let (state, pipeline) = (cx.state, &cx.jobs.pipeline);
-        let input = Input {
-            found: pipeline.shown_found(state),
-            found_stale: pipeline.is_stale(MapKind::Output),
-            trails: cx.jobs.failures.search.trails(state.editor.document().id()),
-            error: pipeline.maps.scene_error(),
-            hint: captions::of_scene(state, pipeline),
-            tells_maps: !state.is_predicting(),
-        };
-        show(ui, input, state)
-    }
+fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
+    let (state, pipeline) = (cx.state, &cx.jobs.pipeline);
+    let input = Input {
+        found: pipeline.shown_found(state),
+        found_stale: pipeline.is_stale(MapKind::Output),
+        trails: cx.jobs.failures.search.trails(state.editor.document().id()),
+        error: pipeline.maps.scene_error(),
+        hint: captions::of_scene(state, pipeline),
+        tells_maps: !state.is_predicting(),
+    };
+    show(ui, input, state)
 }
 
 /// Results that the canvas shows beside the scene.
@@ -101,7 +95,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, state: &mut State) -> Vec<Command> {
         canvas::scale_bar(&painter, canvas);
     }
     if has_numbers && input.tells_maps {
-        let seconds = moved.is_some().then(|| state.timeline.seconds());
+        let seconds = moved.is_some().then(|| state.timeline.seconds);
         elsewhere(ui, &painter, canvas, &scene, seconds, input.hint.as_ref());
     }
     if let Some(hint) = &input.hint {

@@ -190,21 +190,6 @@ fn a_wall_that_reaches_beyond_the_maximum_range_says_so() {
 }
 
 #[test]
-fn a_double_click_asks_for_a_point_there() {
-    let mut scene = panel(Scene::default());
-    let at = scene.get_by_label("Scene").rect().center();
-    for _ in 0..2 {
-        scene.hover_at(at);
-        scene.drag_at(at);
-        scene.drop_at(at);
-        scene.step();
-    }
-    let held = scene.state();
-    let place = held.state.scene_view.to_scene(scene.get_by_label("Scene").rect(), at);
-    assert!(held.asked.contains(&Command::Edit(EditCommand::Add(NewObject::Point, Some(place)))), "{:?}", held.asked);
-}
-
-#[test]
 fn every_grip_is_dragged_by_arrow_keys_while_it_has_the_focus() {
     let cluster = GaussianCluster { seed: 1, ..GaussianCluster::new([-4.0, 18.0], [1.0, 1.0], 20) };
     for (object, key) in [

@@ -73,7 +73,7 @@ fn tabs_of(arrangement: &Arrangement, panel: Panel) -> Option<TileId> {
 fn compare_opens_in_the_large_place_with_the_maps_it_needs() {
     let mut arrangement = Arrangement::default();
     arrangement.set_open(Panel::Compare, true);
-    assert_eq!(arrangement.task(), Task::Compare);
+    assert_eq!(arrangement.task, Task::Compare);
     let beside = [Panel::Compare, Panel::Scene, Panel::Map(MapKind::Target), Panel::Controls];
     assert!(beside.iter().all(|panel| arrangement.is_open(*panel)));
     assert!(!arrangement.is_open(Panel::Map(MapKind::Input0)), "it has the room of the other maps");
@@ -90,7 +90,7 @@ fn closing_a_large_panel_gives_the_arrangement_back() {
     assert_eq!(arrangement.tree.tiles.parent_of(tabs), arrangement.tree.root(), "rows have the whole width");
     assert!([MapKind::Target, MapKind::Output].iter().all(|kind| arrangement.is_open(Panel::Map(*kind))));
     arrangement.set_open(Panel::Failures, false);
-    assert_eq!(arrangement.task(), Task::Explore);
+    assert_eq!(arrangement.task, Task::Explore);
     assert!(!arrangement.is_open(Panel::Map(MapKind::Input1)), "as the user left it");
     assert!(arrangement.is_open(Panel::Map(MapKind::Input0)) && !arrangement.is_open(Panel::Failures));
 }

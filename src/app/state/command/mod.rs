@@ -7,8 +7,10 @@ pub use file::{Purpose, PurposeFacts};
 
 use super::{
     BoundsSettings, CardPlan, ChirpSettings, Compare, Cursor, Directions, FailureChoice, HelpPage, LiveFrame, MapKind,
-    Panel, PhasorSettings, Projection, SaveAnswer, SearchChoice, Several, Task, ThresholdChoice, Units,
+    Panel, PhasorSettings, Projection, SaveAnswer, Several, Task, Units,
 };
+use crate::evaluate::threshold::ThresholdSearch;
+use crate::evaluate::worsen::WorseningSearch;
 use crate::interact::blob::BlobHit;
 use crate::interact::{Coordinates, Field, FieldChange, Place, SelectionMode, Snap};
 use crate::lesson::{Guess, Lesson};
@@ -22,9 +24,24 @@ use crate::signal::Floor;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A command to the app.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Command {
+/// Defines [`Command`] and the conversion of each group's commands to it.
+macro_rules! groups {
+    ($($(#[$meta:meta])* $group:ident($commands:ty),)*) => {
+        /// A command to the app.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum Command {
+            $($(#[$meta])* $group($commands),)*
+        }
+
+        $(impl From<$commands> for Command {
+            fn from(command: $commands) -> Command {
+                Command::$group(command)
+            }
+        })*
+    };
+}
+
+groups! {
     Document(DocumentCommand),
     Edit(EditCommand),
     Radar(RadarCommand),
@@ -236,7 +253,7 @@ pub enum RowsCommand {
     /// Open the scene of the row of this index, with its floor and method.
     Show(usize),
     /// Search for a worse scene near the one on screen, or for its repair.
-    Search(SearchChoice),
+    Search(Box<WorseningSearch>),
     /// Stop the search; its findings stay.
     CancelSearch,
     /// Put the search's last finding on screen.
@@ -277,7 +294,7 @@ pub enum WorkCommand {
     CancelMethod,
     CancelSecond,
     /// Search for the threshold at which the method in use has a given rate of false alarms, and set it.
-    FindThreshold(ThresholdChoice),
+    FindThreshold(Box<ThresholdSearch>),
     /// Cancel the search; the threshold stays.
     CancelThreshold,
     /// Measure run time against error; `thorough` takes every algorithm with more reflectors, for about a minute.
@@ -333,27 +350,3 @@ pub enum WindowCommand {
     Palette,
     Quit,
 }
-
-/// Conversion of each group's commands to [`Command`].
-macro_rules! groups {
-    ($($group:ident($commands:ident)),*) => {$(
-        impl From<$commands> for Command {
-            fn from(command: $commands) -> Command {
-                Command::$group(command)
-            }
-        }
-    )*};
-}
-
-groups!(
-    Document(DocumentCommand),
-    Edit(EditCommand),
-    Radar(RadarCommand),
-    View(ViewCommand),
-    Rows(RowsCommand),
-    Lesson(LessonCommand),
-    Work(WorkCommand),
-    Export(ExportCommand),
-    Window(WindowCommand),
-    AskFile(Purpose)
-);
