@@ -1,17 +1,17 @@
 //! `apertura layouts`: the two ends compared with as many elements at random places, and with other layouts.
 
 use super::arguments::whole;
-use super::figure::{DrawingResult, Plot, save};
+use super::figure::save;
 use super::{CommandError, print, print_json};
 use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
 use crate::maps::LogMaps;
+use crate::picture::{Drawing, Painted, PanelArea};
 use crate::radar::{Layout, LayoutError, LayoutKind, Polar, Radar, counted};
 use crate::reconstruct::{Request, layout_matched_filter};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::{Floor, simulate};
 use ndarray::Axis;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -138,12 +138,12 @@ struct CutFigure<'a> {
     rows: &'a [Row],
 }
 
-impl Plot for CutFigure<'_> {
+impl Drawing for CutFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 40 + 200 * self.rows.len().max(1) as u32)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
+    fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Painted {
         let area =
             area.margin(8, 0, 0, 0).titled("Which directions sound like a reflector 20 m ahead", ("sans-serif", 22))?;
         for (panel, row) in area.split_evenly((self.rows.len(), 1)).into_iter().zip(self.rows) {
