@@ -3,6 +3,7 @@
 use super::challenge::{Challenge, Measure, Requirement};
 use super::quantity::ObjectNumber;
 use super::stage::Stage;
+use crate::radar::capitalised;
 use crate::scene::Scene;
 
 /// A requirement, measured.
@@ -59,8 +60,7 @@ fn wanted(requirement: &Requirement, scene: &Scene) -> String {
             format!("{} of {bound} for {}", quantity.name(), object(number))
         }
     };
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
+    capitalised(&text)
 }
 
 fn found(measure: &Measure, value: f64) -> String {

@@ -22,17 +22,16 @@ mod wave;
 mod window;
 
 pub use across::FEW_COLUMNS;
-pub use antennas::{Antennas, AntennasError};
+pub use antennas::Antennas;
 pub use budget::{LinkBudget, LinkFigures, Pattern};
 pub use convention::Convention;
-pub use element_list::ElementListError;
-pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
-pub use layout::{Layout, LayoutError, Mimo, VirtualElement, check_layout};
-pub use layout_kind::{LayoutKind, UnknownLayout, ranges};
+pub use elements::{BuiltArray, ElementError, Tolerances};
+pub use layout::{Layout, LayoutError, check_layout};
+pub use layout_kind::{LayoutKind, ranges};
 pub use memory::MAX_MEMORY_BYTES;
 pub use pair::Pair;
 pub use polar::Polar;
-pub use units::{Bytes, DecibelMilliwatts, Decibels, counted};
+pub use units::{Bytes, DecibelMilliwatts, Decibels, capitalised, counted};
 pub use window::{WindowFunction, chirp_window, hann, hann_at};
 
 use serde::{Deserialize, Serialize};

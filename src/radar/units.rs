@@ -72,6 +72,12 @@ pub fn counted<N: fmt::Display + PartialEq + From<u8>>(number: N, one: &str, man
     format!("{number} {noun}")
 }
 
+/// A text that begins with a capital letter.
+pub fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

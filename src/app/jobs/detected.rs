@@ -5,6 +5,7 @@ use crate::app::shared::Shared;
 use crate::engine::EngineFrame;
 use crate::maps::cfar::Cfar;
 use crate::maps::{LambdaScale, RangeAngleMap};
+use crate::radar::capitalised;
 use std::sync::Arc;
 
 /// Maps whose detected cells are 1 and others 0.
@@ -58,7 +59,5 @@ impl Detector {
 
 /// The message with a capital letter and a full stop.
 fn sentence(message: &str) -> String {
-    let mut letters = message.chars();
-    let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().collect());
-    format!("{first}{}.", letters.as_str())
+    capitalised(message) + "."
 }

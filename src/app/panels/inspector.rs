@@ -6,7 +6,7 @@ use crate::app::content::{Content, Cx, Nothing};
 use crate::app::state::{Command, EditCommand, NewObject, State};
 use crate::app::widgets::{angle_of_place_degrees, button, choices, press, scrolled, signed};
 use crate::interact::Coordinates;
-use crate::radar::{Radar, counted};
+use crate::radar::{Radar, capitalised, counted};
 use crate::scene::{MAX_NAME_CHARACTERS, Object, Scene};
 use eframe::egui::{self, Grid, TextEdit, Ui};
 use number::number;
@@ -79,7 +79,7 @@ fn selected(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
 }
 
 fn title(ui: &mut Ui, object: &Object, index: usize, asked: &mut Vec<Command>) {
-    let (mut name, kind) = (object.name().to_owned(), format!("{} {}", capital(object.noun()), index + 1));
+    let (mut name, kind) = (object.name().to_owned(), format!("{} {}", capitalised(object.noun()), index + 1));
     let hint = egui::RichText::new(&kind).strong();
     let edit = TextEdit::singleline(&mut name).id_salt(index).char_limit(MAX_NAME_CHARACTERS).hint_text(hint);
     let response = ui.add(edit.desired_width(130.0).font(egui::FontSelection::Default));
@@ -119,11 +119,6 @@ fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) 
     } else if y < 0.0 {
         ui.colored_label(ui.visuals().warn_fg_color, "Behind the array: it appears mirrored in front of it.");
     }
-}
-
-fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map(|c| c.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::panel::MapKind;
 use super::several::Several;
 use crate::interact::{Coordinates, Snap};
 use crate::maps::Aperture;
-use crate::radar::{Decibels, End, Layout as ElementLayout, LayoutError, Mimo, Radar};
+use crate::radar::{Decibels, End, Layout as ElementLayout, LayoutError, Radar};
 use crate::view::View;
 use serde::{Deserialize, Serialize};
 use std::ops::{Deref, DerefMut};
@@ -101,7 +101,7 @@ impl Elements {
             Elements::TwoEnds => ElementLayout::two_ends(radar),
             Elements::OneEnd => ElementLayout::one_end(radar, End::First),
             Elements::Random(count) => return ElementLayout::random(radar, count, seed),
-            Elements::Mimo => Mimo::filled(radar, 3, 4).layout(),
+            Elements::Mimo => ElementLayout::mimo(radar, 3, 4),
             Elements::All => ElementLayout::uniform(radar),
         })
     }

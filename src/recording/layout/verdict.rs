@@ -2,6 +2,7 @@
 
 use super::evidence::OF_LEVEL;
 use super::{Candidate, Counts, Found, Kind, Parts, ReceiverOrder};
+use crate::radar::capitalised;
 use serde::Serialize;
 
 /// Certainty of the choice of a layout.
@@ -69,10 +70,10 @@ impl Found {
     /// The layout and the evidence for it, a sentence each.
     pub fn sentences(&self) -> Vec<String> {
         let best = self.best();
-        let mut all = vec![format!("{}.", capital(&best.described()))];
+        let mut all = vec![format!("{}.", capitalised(&best.described()))];
         let told =
             best.evidence.iter().filter(|e| !(e.sentence.is_empty() || e.kind == Kind::Config && e.log_odds < 0.0));
-        all.extend(told.map(|e| format!("{}.", capital(&e.sentence))));
+        all.extend(told.map(|e| format!("{}.", capitalised(&e.sentence))));
         all.push(self.decision());
         all.extend(self.notes.iter().cloned());
         all
@@ -121,9 +122,4 @@ impl Candidate {
         let chirps = if chirps == 1 { String::new() } else { format!(", {chirps} chirps a loop") };
         format!("{}, {parts}, {order}, {samples} {real}samples a chirp{chirps}", self.layout.words.described())
     }
-}
-
-fn capital(sentence: &str) -> String {
-    let mut characters = sentence.chars();
-    characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
 }

@@ -1,7 +1,7 @@
 //! Kinds of random scenes and their names.
 
 use super::beyond::Beyond;
-use crate::radar::Radar;
+use crate::radar::{Radar, capitalised};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -132,11 +132,7 @@ impl Kind {
     pub fn scene_name(self, seed: u64, number: u32) -> String {
         let kind = match self.test_set() {
             Some(set) => format!("Test set {set}"),
-            None => {
-                let mut letters = self.description().chars();
-                let first = letters.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-                format!("{first}{}", letters.as_str())
-            }
+            None => capitalised(self.description()),
         };
         format!("{kind}, seed {seed}, scene {number}")
     }

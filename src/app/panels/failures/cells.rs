@@ -2,6 +2,7 @@
 
 use crate::evaluate::eta_text;
 use crate::evaluate::rows::{Column, Row, Value};
+use crate::radar::capitalised;
 
 /// Text of a cell.
 pub fn text(row: &Row, column: Column) -> String {
@@ -47,8 +48,7 @@ pub fn title(column: Column) -> String {
         Column::CfarDetection => "P_D\nby CFAR",
         Column::CfarFalseAlarm => "P_FA\nby CFAR",
         _ => {
-            let (first, rest) = column.name().split_at(1);
-            let words = first.to_uppercase() + &rest.replace('_', " ");
+            let words = capitalised(&column.name().replace('_', " "));
             return words.rsplit_once(' ').map_or(words.clone(), |(above, below)| format!("{above}\n{below}"));
         }
     };
