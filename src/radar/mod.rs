@@ -60,6 +60,14 @@ pub enum Carrier {
 }
 
 impl Carrier {
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Carrier::OneWay => "one-way",
+            Carrier::TwoWay => "two-way",
+        }
+    }
+
     /// Carrier turns for each wavelength of distance, signed: the `s q` of equation 3.1 (-1 or +2).
     pub fn turns_per_wavelength(self) -> f64 {
         match self {
