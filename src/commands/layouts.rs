@@ -7,7 +7,7 @@ use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
 use crate::maps::LogMaps;
 use crate::picture::{Drawing, Painted, PanelArea};
-use crate::radar::{Layout, LayoutError, LayoutKind, Polar, Radar, counted};
+use crate::radar::{Layout, LayoutKind, Polar, Radar, counted};
 use crate::reconstruct::{Request, layout_matched_filter};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::{Floor, simulate};
@@ -61,7 +61,8 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
         let of = |kind: &LayoutKind| Ok((kind.layout(&radar)?, kind.numbers(&radar)?));
-        let layouts: Vec<(Layout, Vec<usize>)> = self.layout.iter().map(of).collect::<Result<_, LayoutError>>()?;
+        let layouts: Vec<(Layout, Vec<usize>)> =
+            self.layout.iter().map(of).collect::<Result<_, String>>().map_err(CommandError)?;
         let mut rows: Vec<Row> = self.layout.iter().zip(&layouts).map(|(k, (l, _))| Row::new(&radar, k, l)).collect();
         let bar = indicatif::ProgressBar::new(u64::from(self.count) * 3 * layouts.len() as u64);
         let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);

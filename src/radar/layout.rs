@@ -13,11 +13,6 @@ pub struct Layout {
     pairs: Option<Vec<Pair>>,
 }
 
-/// Elements that a radar has not.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct LayoutError(pub(super) String);
-
 /// Checks a layout that is a list of numbers of elements.
 /// # Errors
 /// The element that is not there or is given twice, and the values allowed.
@@ -69,13 +64,13 @@ impl Layout {
     ///
     /// Places on the grid keep the array's unambiguous field of view, as in multi-coset sampling (thesis figures 1-2 and 1-3).
     /// # Errors
-    /// [`LayoutError`] for no element or for more than `radar` has.
-    pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, LayoutError> {
+    /// The fault, for no element or for more than `radar` has.
+    pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, String> {
         let places = radar.elements;
         if count == 0 || count > places {
-            return Err(LayoutError(format!(
+            return Err(format!(
                 "a random layout of {count} elements was asked for; the aperture has room for 1 to {places}"
-            )));
+            ));
         }
         let last = places - 1;
         let inner = index::sample(&mut ChaCha8Rng::seed_from_u64(seed), last - 1, count.saturating_sub(2));

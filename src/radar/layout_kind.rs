@@ -1,6 +1,6 @@
 //! Layouts by name, as the command line offers them.
 
-use super::{End, Layout, LayoutError, Radar, check_layout};
+use super::{End, Layout, Radar, check_layout};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -45,8 +45,8 @@ impl LayoutKind {
 
     /// The layout's elements on `radar`.
     /// # Errors
-    /// [`LayoutError`] for elements that `radar` has not.
-    pub fn layout(&self, radar: &Radar) -> Result<Layout, LayoutError> {
+    /// The fault, for elements that `radar` has not.
+    pub fn layout(&self, radar: &Radar) -> Result<Layout, String> {
         // One element too many is enough for an error.
         let steps = |count: usize, step: usize| (0..count.min(radar.elements + 1)).map(move |k| k.saturating_mul(step));
         let numbers: Vec<usize> = match self {
@@ -67,17 +67,17 @@ impl LayoutKind {
             LayoutKind::Thinned { step } => (0..radar.elements).step_by((*step).max(1)).collect(),
             LayoutKind::Listed(numbers) => numbers.clone(),
         };
-        check_layout(&numbers, radar.elements).map_err(LayoutError)?;
+        check_layout(&numbers, radar.elements)?;
         Ok(Layout::of_elements(radar, numbers))
     }
 
     /// Numbers of the elements of `radar`.
     /// # Errors
-    /// [`LayoutError`] as of [`LayoutKind::layout`], and for elements that stand between those of `radar`.
-    pub fn numbers(&self, radar: &Radar) -> Result<Vec<usize>, LayoutError> {
+    /// The fault, as of [`LayoutKind::layout`], and for elements that stand between those of `radar`.
+    pub fn numbers(&self, radar: &Radar) -> Result<Vec<usize>, String> {
         self.layout(radar)?
             .numbers(radar)
-            .ok_or_else(|| LayoutError(format!("the elements of {self} don't stand on the radar's own grid")))
+            .ok_or_else(|| format!("the elements of {self} don't stand on the radar's own grid"))
     }
 }
 

@@ -26,7 +26,7 @@ pub use antennas::Antennas;
 pub use budget::{LinkBudget, LinkFigures, Pattern};
 pub use convention::Convention;
 pub use elements::{BuiltArray, ElementError, Tolerances};
-pub use layout::{Layout, LayoutError, check_layout};
+pub use layout::{Layout, check_layout};
 pub use layout_kind::{LayoutKind, ranges};
 pub use memory::MAX_MEMORY_BYTES;
 pub use pair::Pair;
