@@ -94,7 +94,7 @@ pub fn method_of(any: &Bound<'_, PyAny>, what: &str) -> PyResult<Arc<dyn Reconst
         return of_weights(any.extract()?, None).map(|method| method.inner);
     }
     if any.is_callable() {
-        return of_function(any, None, "", "", 0.9, "lambda", "").map(|method| method.inner);
+        return Method::of_function(any, None, "", "", 0.9, "lambda", "").map(|method| method.inner);
     }
     Err(argument(
         any.py(),
@@ -134,29 +134,6 @@ pub fn is_function_without_weights(name: &str) -> bool {
 
 /// The functions that are methods somewhere.
 static FUNCTIONS: Mutex<Vec<Weak<Function>>> = Mutex::new(Vec::new());
-
-fn of_function(
-    function: &Bound<'_, PyAny>,
-    name: Option<&str>,
-    description: &str,
-    told: &str,
-    eta: f32,
-    answers: &str,
-    weights: &str,
-) -> PyResult<Method> {
-    if !function.is_callable() {
-        return Err(argument(function.py(), format!("function is {}; expected a function", function.repr()?)));
-    }
-    let own = || function.getattr("__name__").or_else(|_| function.get_type().getattr("__name__"))?.extract::<String>();
-    let name = name.map_or_else(own, |name| Ok(name.to_owned()))?;
-    let said = Said { name: &name, description, told, eta, answers, weights };
-    let inner = Arc::new(Function::new(function, &said)?);
-    let mut functions = FUNCTIONS.lock().unwrap_or_else(PoisonError::into_inner);
-    functions.retain(|function| function.strong_count() > 0);
-    functions.push(Arc::downgrade(&inner));
-    let texts = [description, told, answers, weights].map(str::to_owned);
-    Ok(Method { inner, made_of: MadeOf::Function(function.clone().unbind(), texts) })
-}
 
 /// Names of all methods.
 #[pyfunction]
@@ -204,8 +181,8 @@ impl Method {
     /// Raises:
     ///     ValueError: A name or a number can't be used.
     #[staticmethod]
-    #[pyo3(name = "of_function", signature = (function, *, name=None, description="", told="", eta=0.9, answers="lambda", weights=""))]
-    fn of_function_named(
+    #[pyo3(signature = (function, *, name=None, description="", told="", eta=0.9, answers="lambda", weights=""))]
+    fn of_function(
         function: &Bound<'_, PyAny>,
         name: Option<&str>,
         description: &str,
@@ -214,7 +191,19 @@ impl Method {
         answers: &str,
         weights: &str,
     ) -> PyResult<Self> {
-        of_function(function, name, description, told, eta, answers, weights)
+        if !function.is_callable() {
+            return Err(argument(function.py(), format!("function is {}; expected a function", function.repr()?)));
+        }
+        let own =
+            || function.getattr("__name__").or_else(|_| function.get_type().getattr("__name__"))?.extract::<String>();
+        let name = name.map_or_else(own, |name| Ok(name.to_owned()))?;
+        let said = Said { name: &name, description, told, eta, answers, weights };
+        let inner = Arc::new(Function::new(function, &said)?);
+        let mut functions = FUNCTIONS.lock().unwrap_or_else(PoisonError::into_inner);
+        functions.retain(|function| function.strong_count() > 0);
+        functions.push(Arc::downgrade(&inner));
+        let texts = [description, told, answers, weights].map(str::to_owned);
+        Ok(Method { inner, made_of: MadeOf::Function(function.clone().unbind(), texts) })
     }
 
     /// Short name.

@@ -3,7 +3,7 @@
 use crate::arrays::owned;
 use crate::budget::{LinkBudget, budget_of, link_figures};
 use crate::errors::{at, scene_file, value, whole};
-use crate::radar_fields::{antennas_of, carrier_name, carrier_of, fields_of, replaced, text_of, usual_of, window_of};
+use crate::radar_fields::{antennas_of, carrier_of, fields_of, replaced, text_of, usual_of, window_of};
 use apertura::files::read_bounded;
 use apertura::radar::presets::{ALL, RadarPreset};
 use apertura::radar::{self, Antennas};
@@ -264,7 +264,7 @@ impl Radar {
     /// "one-way" or "two-way".
     #[getter]
     fn carrier(&self) -> &'static str {
-        carrier_name(self.0.carrier)
+        self.0.carrier.name()
     }
 
     /// "thesis" or "physical": which way the phases of echoes follow their ranges.

@@ -12,14 +12,6 @@ pub fn carrier_of(name: &str) -> PyResult<Carrier> {
     serde_json::from_value(name.into()).map_err(unknown)
 }
 
-/// Name of a carrier.
-pub fn carrier_name(carrier: Carrier) -> &'static str {
-    match carrier {
-        Carrier::OneWay => "one-way",
-        Carrier::TwoWay => "two-way",
-    }
-}
-
 /// A convention by its name.
 fn convention_of(name: &str) -> PyResult<Convention> {
     Convention::by_name(name).ok_or_else(|| value(format!("convention is \"{name}\"; expected thesis or physical")))
@@ -84,7 +76,7 @@ pub fn fields_of<'py>(radar: &radar::Radar, py: Python<'py>) -> PyResult<Bound<'
     if let Some(budget) = radar.budget {
         fields.set_item("budget", LinkBudget(budget).into_pyobject(fields.py())?)?;
     }
-    fields.set_item("carrier", carrier_name(radar.carrier))?;
+    fields.set_item("carrier", radar.carrier.name())?;
     fields.set_item("window", radar.window.name())?;
     Ok(fields)
 }
@@ -99,7 +91,7 @@ pub fn usual_of(
     let usual = radar::Radar::default();
     let Some(convention) = convention.map(convention_of).transpose()? else { return Ok(usual) };
     if carrier.map(carrier_of).transpose()?.is_some_and(|c| c != convention.carrier()) {
-        let expected = carrier_name(convention.carrier());
+        let expected = convention.carrier().name();
         let said = convention.name();
         return Err(value(format!("carrier is another than that of the {said} convention, {expected}")));
     }

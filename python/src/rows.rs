@@ -3,7 +3,7 @@
 use crate::errors::{at, runtime, value};
 use crate::work;
 use apertura::evaluate::rows::{self, Column, Row, read_rows as read, write_rows};
-use apertura::files::write_atomically;
+use apertura::files::{ends_in, write_atomically};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyList, PyString, PyType};
 use serde_json::Value as Json;
@@ -22,7 +22,7 @@ use std::path::PathBuf;
 #[pyo3(name = "write_rows")]
 pub fn write_rows_to(py: Python<'_>, path: PathBuf, rows: Vec<Bound<'_, PyDict>>) -> PyResult<()> {
     let rows = rows_of(py, &rows)?;
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet")) {
+    if ends_in(&path, &["parquet"]) {
         let told =
             format!("{}: rows are written as CSV; expected a name that does not end in .parquet", path.display());
         return Err(value(told));

@@ -3,7 +3,7 @@
 //! The scenes are the preset "Street of things" and growing crowds of walls, boxes, posts and triangles. A dragged body moves by a centimetre
 //! before every update, as under the mouse, so that its shadow changes too.
 
-use super::front::MapConvention;
+use super::front::{Front, MapConvention};
 use super::times::{bare_ms, quantile};
 use crate::engine::{Engine, EngineFrame, EngineStage, MapRequest, StageOutcome};
 use crate::platform::Instant;
@@ -63,14 +63,8 @@ impl BodyCase {
     }
 }
 
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BodyTimes {
-    /// Median time of the bare transform on one thread over the whole run, milliseconds.
-    pub bare_fft_ms: f64,
-    pub threads: usize,
-    pub simd: Simd,
-    pub rows: Vec<BodyRow>,
-}
+/// Times of the cases; the bare transform ran between them.
+pub type BodyTimes = Front<BodyRow>;
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodyRow {

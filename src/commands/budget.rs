@@ -57,12 +57,8 @@ struct Row {
     cross_section_dbsm: f64,
     range_metres: f64,
     angle_degrees: f64,
-    received_dbm: f64,
-    noise_dbm: f64,
-    sample_snr_db: f64,
-    range_snr_db: f64,
-    end_snr_db: f64,
-    array_snr_db: f64,
+    #[serde(flatten)]
+    link: LinkFigures,
 }
 
 #[derive(Debug, Serialize)]
@@ -76,20 +72,8 @@ struct Report {
 
 impl Row {
     fn new(radar: &Radar, name: String, dbsm: f64, range_metres: f64, angle_degrees: f64) -> Row {
-        let LinkFigures { received, noise, sample, range, end, array } =
-            radar.link(dbsm, range_metres, angle_degrees.to_radians().cos());
-        Row {
-            name,
-            cross_section_dbsm: dbsm,
-            range_metres,
-            angle_degrees,
-            received_dbm: received.0,
-            noise_dbm: noise.0,
-            sample_snr_db: sample.0,
-            range_snr_db: range.0,
-            end_snr_db: end.0,
-            array_snr_db: array.0,
-        }
+        let link = radar.link(dbsm, range_metres, angle_degrees.to_radians().cos());
+        Row { name, cross_section_dbsm: dbsm, range_metres, angle_degrees, link }
     }
 
     fn of(radar: &Radar, (index, object): (usize, &Object)) -> Option<Row> {
@@ -114,7 +98,7 @@ impl Args {
         let report = Report {
             budget: radar.budget_or_usual(),
             sample_rate_hz: radar.sample_rate_hz(),
-            detected_to_metres: range_of_snr_metres(DETECTION_SNR, Decibels(object.array_snr_db), self.range),
+            detected_to_metres: range_of_snr_metres(DETECTION_SNR, object.link.array, self.range),
             object,
             objects: file.scene.objects.iter().enumerate().filter_map(|o| Row::of(radar, o)).collect(),
         };
@@ -132,15 +116,16 @@ impl Report {
             "transmit power {transmit_power_dbm} dBm, antenna gain {antenna_gain_dbi} dBi, elements {elements}, noise figure {noise_figure_db} \
              dB{whose}\nbandwidth of the noise {:.3} MHz: {:.2} dBm in a sample\n\n",
             self.sample_rate_hz * 1e-6,
-            self.object.noise_dbm
+            self.object.link.noise.0
         );
         let head = ["dBsm", "range m", "angle", "dBm", "sample dB", "range dB", "end dB", "array dB"];
         _ = write!(text, "{:<14}", "");
         head.iter().for_each(|name| _ = write!(text, "{name:>10}"));
         for row in std::iter::once(&self.object).chain(&self.objects) {
             _ = write!(text, "\n{:<14}{:>10.1}{:>10.2}", row.name, row.cross_section_dbsm, row.range_metres);
-            _ = write!(text, "{:>10.1}{:>10.1}{:>10.1}", row.angle_degrees, row.received_dbm, row.sample_snr_db);
-            _ = write!(text, "{:>10.1}{:>10.1}{:>10.1}", row.range_snr_db, row.end_snr_db, row.array_snr_db);
+            let LinkFigures { received, sample, range, end, array, .. } = row.link;
+            _ = write!(text, "{:>10.1}{:>10.1}{:>10.1}", row.angle_degrees, received.0, sample.0);
+            _ = write!(text, "{:>10.1}{:>10.1}{:>10.1}", range.0, end.0, array.0);
         }
         let (least, to) = (DETECTION_SNR.0, self.detected_to_metres);
         _ = write!(text, "\n\nSNR by the whole array falls to {least:.0} dB at {to:.1} m");

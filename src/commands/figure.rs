@@ -1,41 +1,21 @@
 //! Charts as files: every figure is drawn once as SVG and once as PNG.
 
 use super::{CommandError, write_file};
-use crate::picture::{self, encode_png};
-use image::RgbImage;
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use crate::picture::{Drawing, PictureFormat};
 use serde::Serialize;
 use std::path::Path;
 
-/// The result of drawing a figure.
-pub type DrawingResult<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-
-/// A figure that can be drawn on any of plotters' areas.
-pub trait Plot {
-    /// Width and height in pixels.
-    fn size(&self) -> (u32, u32);
-
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B>;
-}
-
 /// Writes `STEM.svg` and `STEM.png` into `folder`, which is made where it is missing.
-pub fn save(figure: &impl Plot, folder: &Path, stem: &str) -> Result<(), CommandError> {
-    ready(folder)?;
-    let mut svg = String::new();
-    on_white(figure, SVGBackend::with_string(&mut svg, figure.size())).map_err(|e| undrawn(stem, &e))?;
-    write(folder, stem, "svg", svg.as_bytes())?;
+pub fn save(figure: &impl Drawing, folder: &Path, stem: &str) -> Result<(), CommandError> {
+    std::fs::create_dir_all(folder).map_err(CommandError::on(folder))?;
+    write(folder, stem, "svg", &PictureFormat::Svg.bytes_of(figure)?)?;
     save_bitmap(figure, folder, stem)
 }
 
 /// Writes `STEM.png` alone: for figures of so many cells that an SVG would be larger than its pixels.
-pub fn save_bitmap(figure: &impl Plot, folder: &Path, stem: &str) -> Result<(), CommandError> {
-    ready(folder)?;
-    let (width, height) = figure.size();
-    let mut pixels = vec![0; (3 * width * height) as usize];
-    on_white(figure, BitMapBackend::with_buffer(&mut pixels, (width, height))).map_err(|e| undrawn(stem, &e))?;
-    let bitmap = RgbImage::from_raw(width, height, pixels).ok_or_else(|| undrawn(stem, &"its size is out of range"))?;
-    write(folder, stem, "png", &encode_png(&bitmap)?)
+pub fn save_bitmap(figure: &impl Drawing, folder: &Path, stem: &str) -> Result<(), CommandError> {
+    std::fs::create_dir_all(folder).map_err(CommandError::on(folder))?;
+    write(folder, stem, "png", &PictureFormat::Png.bytes_of(figure)?)
 }
 
 pub fn save_numbers(numbers: &impl Serialize, folder: &Path, stem: &str) -> Result<(), CommandError> {
@@ -54,24 +34,8 @@ pub fn tick(value: &f64) -> String {
     if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
-fn ready(folder: &Path) -> Result<(), CommandError> {
-    std::fs::create_dir_all(folder).map_err(CommandError::on(folder))?;
-    Ok(picture::register_fonts()?)
-}
-
 fn write(folder: &Path, stem: &str, extension: &str, bytes: &[u8]) -> Result<(), CommandError> {
     write_file(&folder.join(format!("{stem}.{extension}")), bytes)
-}
-
-fn undrawn(stem: &str, error: &dyn std::fmt::Display) -> CommandError {
-    CommandError(format!("can't draw {stem}: {error}"))
-}
-
-fn on_white<B: DrawingBackend>(figure: &impl Plot, backend: B) -> DrawingResult<B> {
-    let area = backend.into_drawing_area();
-    area.fill(&WHITE)?;
-    figure.draw(&area)?;
-    area.present()
 }
 
 #[cfg(test)]

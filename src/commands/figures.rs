@@ -1,8 +1,9 @@
 //! `apertura figures`: every figure of the thesis from this program.
 
 use super::arguments::whole;
+use super::figure::save;
 use super::{CommandError, print, write_file};
-use crate::figures::{ALL, Figure, SceneSource, by_number, draw, pages};
+use crate::figures::{ALL, Figure, SceneSource, by_number, pages};
 use crate::methods;
 use crate::reconstruct::Reconstructor;
 use std::fmt::Write;
@@ -32,14 +33,11 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let chosen = self.chosen()?;
         let folder = self.output.join("figures");
-        std::fs::create_dir_all(&folder).map_err(CommandError::on(&folder))?;
         let source = SceneSource::default();
         for figure in &chosen {
-            let failed = |e: &dyn std::fmt::Display| CommandError(format!("figure {}: {e}", figure.number));
-            let sheet = (figure.sheet)(&source).map_err(|e| failed(&e))?;
-            let path = |ending: &str| folder.join(format!("{}.{ending}", figure.number));
-            write_file(&path("png"), &draw::png(&sheet).map_err(|e| failed(&e))?)?;
-            write_file(&path("svg"), draw::svg(&sheet).map_err(|e| failed(&e))?.as_bytes())?;
+            let failed = |e| CommandError(format!("figure {}: {e}", figure.number));
+            let sheet = (figure.sheet)(&source).map_err(failed)?;
+            save(&sheet, &folder, figure.number)?;
             print(&format!("figure {}", figure.number))?;
         }
         if self.only.is_empty() {

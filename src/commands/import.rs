@@ -2,7 +2,7 @@
 
 use super::input::load_board;
 use super::{CommandError, print};
-use crate::files::write_bytes;
+use crate::files::{ends_in, folder_of, write_bytes};
 use crate::recording::Origin;
 use crate::recording::layout::Candidate;
 use crate::recording::raw::{self, Imported};
@@ -74,10 +74,10 @@ impl Args {
 /// The TOML names the capture by its place beside it.
 fn check_output(output: &Path, data: &Path) -> Result<(), CommandError> {
     let folder = |path: &Path| {
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder_of(path);
         std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
     };
-    if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
+    if !ends_in(output, &["toml"]) {
         return Err(CommandError(format!("{}: expected a name ending in .toml", output.display())));
     }
     if folder(output) != folder(data) {

@@ -1,17 +1,17 @@
 //! `apertura layouts`: the two ends compared with as many elements at random places, and with other layouts.
 
 use super::arguments::whole;
-use super::figure::{DrawingResult, Plot, save};
+use super::figure::save;
 use super::{CommandError, print, print_json};
 use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
 use crate::maps::LogMaps;
-use crate::radar::{Layout, LayoutError, LayoutKind, Polar, Radar, counted};
+use crate::picture::{Drawing, Painted, PanelArea};
+use crate::radar::{Layout, LayoutKind, Polar, Radar, counted};
 use crate::reconstruct::{Request, layout_matched_filter};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::{Floor, simulate};
 use ndarray::Axis;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -61,7 +61,8 @@ impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let radar = Radar::default();
         let of = |kind: &LayoutKind| Ok((kind.layout(&radar)?, kind.numbers(&radar)?));
-        let layouts: Vec<(Layout, Vec<usize>)> = self.layout.iter().map(of).collect::<Result<_, LayoutError>>()?;
+        let layouts: Vec<(Layout, Vec<usize>)> =
+            self.layout.iter().map(of).collect::<Result<_, String>>().map_err(CommandError)?;
         let mut rows: Vec<Row> = self.layout.iter().zip(&layouts).map(|(k, (l, _))| Row::new(&radar, k, l)).collect();
         let bar = indicatif::ProgressBar::new(u64::from(self.count) * 3 * layouts.len() as u64);
         let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
@@ -138,12 +139,12 @@ struct CutFigure<'a> {
     rows: &'a [Row],
 }
 
-impl Plot for CutFigure<'_> {
+impl Drawing for CutFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 40 + 200 * self.rows.len().max(1) as u32)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
+    fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Painted {
         let area =
             area.margin(8, 0, 0, 0).titled("Which directions sound like a reflector 20 m ahead", ("sans-serif", 22))?;
         for (panel, row) in area.split_evenly((self.rows.len(), 1)).into_iter().zip(self.rows) {

@@ -1,7 +1,7 @@
 //! Lines and dots over one pair of axes, with a legend.
 
-use super::figure::{DrawingResult, Plot, tick};
-use plotters::coord::Shift;
+use super::figure::tick;
+use crate::picture::{Drawing, Painted, PanelArea};
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 use std::ops::Range;
@@ -52,11 +52,7 @@ impl ChartLine {
 const LEGEND_DOT: i32 = 5;
 
 impl LineChart {
-    fn draw_over<B: DrawingBackend, X: AsRangedCoord<Value = f64>>(
-        &self,
-        area: &DrawingArea<B, Shift>,
-        x: X,
-    ) -> DrawingResult<B>
+    fn draw_over<B: DrawingBackend, X: AsRangedCoord<Value = f64>>(&self, area: &PanelArea<B>, x: X) -> Painted
     where
         X::CoordDescType: ValueFormatter<f64>,
     {
@@ -95,16 +91,17 @@ impl LineChart {
             .position(self.legend.clone())
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.3))
-            .draw()
+            .draw()?;
+        Ok(())
     }
 }
 
-impl Plot for LineChart {
+impl Drawing for LineChart {
     fn size(&self) -> (u32, u32) {
         self.size
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
+    fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Painted {
         let x = self.x.range.clone();
         if self.is_x_log { self.draw_over(area, x.log_scale()) } else { self.draw_over(area, x) }
     }

@@ -4,7 +4,8 @@ use super::arguments::{self, FloorArgs};
 use super::input::{ConfigArg, InputArgs};
 use super::layout_arg::LayoutArg;
 use super::own_method::OwnMethodArgs;
-use super::{CommandError, ends_in, frames, picture_format, print, write_file};
+use super::{CommandError, frames, picture_format, print, write_file};
+use crate::files::ends_in;
 use crate::files::npz::NpzError;
 use crate::maps::archive::{write_frames, write_maps, write_recorded_maps};
 use crate::maps::cfar::Cfar;
@@ -97,7 +98,7 @@ pub struct Args {
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let format = picture_format(&self.output, &["npz", "gif"], ".npz, .png, .svg or .gif")?;
-        let of_frames = self.all_frames || ends_in(&self.output, "gif");
+        let of_frames = self.all_frames || ends_in(&self.output, &["gif"]);
         self.own.start()?;
         let mut input = InputArgs::load_with(&self.input, self.capture.config.as_deref())?;
         let radar = match &mut input {
@@ -151,7 +152,7 @@ impl Args {
             let message = "a picture shows one frame; expected .gif or .npz beside --all-frames";
             return Err(CommandError::on(&self.output)(message));
         }
-        if ends_in(&self.output, "gif") {
+        if ends_in(&self.output, &["gif"]) {
             let (method, style) = (self.method(radar)?, self.style());
             return frames::animate(recording, &self.output, |frame| {
                 compose_recording(frame, method.as_ref(), &style, PictureFormat::Png)

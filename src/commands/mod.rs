@@ -40,7 +40,7 @@ mod train;
 mod worsen;
 
 pub use error::CommandError;
-pub use output::{ends_in, picture_format, print, print_json, write_file};
+pub use output::{picture_format, print, print_json, write_file};
 
 use crate::platform::console;
 use crate::signal::simd::Simd;

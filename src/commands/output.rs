@@ -1,7 +1,7 @@
 //! Writing to standard output and to files.
 
 use super::CommandError;
-use crate::files::write_bytes;
+use crate::files::{ends_in, write_bytes};
 use crate::picture::PictureFormat;
 use serde::Serialize;
 use std::io::{self, Write};
@@ -22,14 +22,9 @@ pub fn print_json(report: &impl Serialize) -> Result<(), CommandError> {
     print(&serde_json::to_string_pretty(report)?)
 }
 
-/// Whether the name of `path` has this ending, in small or capital letters.
-pub fn ends_in(path: &Path, ending: &str) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
-}
-
 /// The kind of picture to write to `path`; `None` where its name ends in one of `others`, which are no pictures.
 pub fn picture_format(path: &Path, others: &[&str], expected: &str) -> Result<Option<PictureFormat>, CommandError> {
-    if others.iter().any(|ending| ends_in(path, ending)) {
+    if ends_in(path, others) {
         return Ok(None);
     }
     let told = format!("can't tell what to write from this name; expected one ending in {expected}");

@@ -5,7 +5,8 @@ use super::input::{ConfigArg, load_recording, shared_text};
 use super::layout_arg::LayoutArg;
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
-use super::{CommandError, ends_in, frames, print};
+use super::{CommandError, frames, print};
+use crate::files::ends_in;
 use crate::files::kind::kind_at;
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use crate::maps::archive::{add_columns, read_radar};
@@ -70,7 +71,7 @@ pub struct Args {
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
-        if !ends_in(&self.output, "npz") {
+        if !ends_in(&self.output, &["npz"]) {
             return Err(CommandError::on(&self.output)("an archive is written; expected a name ending in .npz"));
         }
         let own = self.network.start_own()?;

@@ -1,10 +1,11 @@
 //! The threshold at which a method keeps a rate of false alarms on further scenes like those that it was tried on.
 
+use super::campaign::CampaignError;
 use super::trial::Trial;
 use super::{Roc, RocPoint, Target, detection_rates};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Radar, check_layout, counted};
-use crate::reconstruct::{ReconstructError, Reconstructor, Request};
+use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
@@ -66,35 +67,17 @@ pub struct ThresholdMeans {
     pub detection: f64,
 }
 
-/// The reason why a search finds no threshold.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // The messages name every field.
-pub enum ThresholdError {
-    /// A setting, or a scene that can't be simulated.
-    #[error("{0}")]
-    Refused(String),
-    #[error("{method} on scene {index} of {kind}: {source}")]
-    Method { method: &'static str, kind: Kind, index: u32, source: ReconstructError },
-}
-
-impl ThresholdError {
-    /// Whether the search was cancelled.
-    pub fn is_cancelled(&self) -> bool {
-        matches!(self, ThresholdError::Method { source: ReconstructError::Cancelled, .. })
-    }
-}
-
 impl ThresholdSearch {
     /// Tries `method` on every scene, and gives the lowest threshold that keeps the rate ([`Roc::keeping_false_alarm`]): the mean of P_FA over
     /// further scenes that are exchangeable with these is at most the rate. `on_part` receives the part that is done, 0 to 1.
     /// # Errors
-    /// [`ThresholdError`]; it names the scene that failed, and [`ThresholdError::is_cancelled`] after `task` was cancelled.
+    /// [`CampaignError`]; it names the scene that failed, and [`CampaignError::is_cancelled`] after `task` was cancelled.
     pub fn run(
         &self,
         method: &dyn Reconstructor,
         task: &Task,
         on_part: impl FnMut(f32),
-    ) -> Result<KeptThreshold, ThresholdError> {
+    ) -> Result<KeptThreshold, CampaignError> {
         self.check()?;
         let mut roc = Roc::default();
         self.each(method, [0, self.count], task, on_part, |target, output| roc.add(target, output))?;
@@ -115,7 +98,7 @@ impl ThresholdSearch {
         count: u32,
         task: &Task,
         on_part: impl FnMut(f32),
-    ) -> Result<ThresholdMeans, ThresholdError> {
+    ) -> Result<ThresholdMeans, CampaignError> {
         let mut sums = ThresholdMeans::default();
         self.each(method, [self.count, count], task, on_part, |target, output| {
             let (detection, false_alarm) = detection_rates(target, output, eta);
@@ -157,8 +140,8 @@ impl ThresholdSearch {
     /// Checks the settings before any scene is tried.
     ///
     /// # Errors
-    /// [`ThresholdError`] of the first setting that can't be used.
-    pub fn check(&self) -> Result<(), ThresholdError> {
+    /// [`CampaignError`] of the first setting that can't be used.
+    pub fn check(&self) -> Result<(), CampaignError> {
         let percent = self.false_alarm_percent;
         if !(percent > 0.0 && percent < 100.0) {
             let expected = "expected more than 0 and less than 100";
@@ -191,7 +174,7 @@ impl ThresholdSearch {
         task: &Task,
         mut on_part: impl FnMut(f32),
         mut judge: impl FnMut(&RangeAngleMap, &RangeAngleMap),
-    ) -> Result<(), ThresholdError> {
+    ) -> Result<(), CampaignError> {
         let generator = Generator::new(&self.radar, Reading::Program, Purpose::Validation, self.seed);
         let (noise, normalisation) = (self.floor.into(), self.normalisation);
         // The progress of a single map is not that of the search.
@@ -205,7 +188,8 @@ impl ThresholdSearch {
                 let trial =
                     Trial::against(Target::Measured, layout, &self.radar, &scene, self.floor, self.normalisation)
                         .map_err(|source| refused(format!("scene {index} of {kind}: {source}")))?;
-                let failed = |source| ThresholdError::Method { method: method.name(), kind, index, source };
+                let failed =
+                    |source| CampaignError::Method { method: method.name(), set: kind.to_string(), index, source };
                 let answer = trial.ask(method, &request).map_err(failed)?;
                 judge(&trial.target, &answer.found.lambda);
                 done += 1.0;
@@ -216,8 +200,8 @@ impl ThresholdSearch {
     }
 }
 
-fn refused(why: impl fmt::Display) -> ThresholdError {
-    ThresholdError::Refused(why.to_string())
+fn refused(why: impl fmt::Display) -> CampaignError {
+    CampaignError::Refused(why.to_string())
 }
 
 #[cfg(test)]

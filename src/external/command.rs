@@ -10,15 +10,10 @@ pub struct CommandLine {
     pub(super) words: Vec<String>,
 }
 
-/// The reason why a text is no command.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the command {0}")]
-pub struct CommandLineError(String);
-
 impl FromStr for CommandLine {
-    type Err = CommandLineError;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, CommandLineError> {
+    fn from_str(text: &str) -> Result<Self, String> {
         let mut words: Vec<String> = Vec::new();
         let (mut word, mut quote) = (None::<String>, None::<char>);
         for c in text.chars() {
@@ -34,12 +29,12 @@ impl FromStr for CommandLine {
             }
         }
         if let Some(quote) = quote {
-            return Err(CommandLineError(format!("{text} has a {quote} without a second one")));
+            return Err(format!("the command {text} has a {quote} without a second one"));
         }
         words.extend(word);
         if words.first().is_none_or(String::is_empty) {
             let expected = "a program with its arguments, such as \"python my_network.py\"";
-            return Err(CommandLineError(format!("is empty; expected {expected}")));
+            return Err(format!("the command is empty; expected {expected}"));
         }
         Ok(CommandLine { text: text.trim().to_owned(), words })
     }

@@ -10,6 +10,6 @@ mod method;
 mod process;
 mod tail;
 
-pub use command::{CommandLine, CommandLineError};
+pub use command::CommandLine;
 pub use message::VERSION;
 pub use method::{ExternalMethod, StartError, start};

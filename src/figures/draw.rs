@@ -1,9 +1,8 @@
 //! Sheets as PNG and SVG.
 
 use super::sheet::{PanelContent, Series, Sheet, SheetAxis, SheetCells, SheetChart, SheetPanel, Stroke};
-use super::sketch::{self, SheetArea, SheetDrawn, words};
-use crate::picture::{ColourMap, PictureError, encode_png, register_fonts};
-use image::RgbImage;
+use super::sketch::{self, SheetDrawn, words};
+use crate::picture::{ColourMap, Drawing, Painted, PanelArea, painted};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
@@ -16,42 +15,23 @@ const HUES: [RGBColor; 5] =
 const TITLE_PIXELS: i32 = 34;
 const BAR_PIXELS: i32 = 58;
 
-/// The sheet as a PNG file's bytes.
-/// # Errors
-/// [`PictureError`] when it can't be drawn or encoded.
-pub fn png(sheet: &Sheet) -> Result<Vec<u8>, PictureError> {
-    register_fonts()?;
-    let (width, height) = sheet.pixels();
-    let mut pixels = vec![0; (3 * width * height) as usize];
-    on_paper(sheet, BitMapBackend::with_buffer(&mut pixels, (width, height)))?;
-    let bitmap =
-        RgbImage::from_raw(width, height, pixels).ok_or_else(|| PictureError::new("its size is out of range"))?;
-    encode_png(&bitmap)
-}
-
-/// The sheet as SVG text: lines and words stay sharp, cells are bitmaps in it.
-/// # Errors
-/// [`PictureError`] when it can't be drawn.
-pub fn svg(sheet: &Sheet) -> Result<String, PictureError> {
-    register_fonts()?;
-    let mut text = String::new();
-    on_paper(sheet, SVGBackend::with_string(&mut text, sheet.pixels()))?;
-    Ok(text)
-}
-
-fn on_paper<B: DrawingBackend>(sheet: &Sheet, backend: B) -> SheetDrawn<B> {
-    let area = backend.into_drawing_area();
-    area.fill(&PAPER)?;
-    let (width, height) = sheet.panel_pixels;
-    for (index, panel) in sheet.panels.iter().enumerate() {
-        let (column, row) = ((index % sheet.columns) as i32, (index / sheet.columns) as i32);
-        let corner = (column * width as i32, row * height as i32);
-        draw_panel(panel, &area.clone().shrink(corner, (width, height)))?;
+impl Drawing for Sheet {
+    fn size(&self) -> (u32, u32) {
+        self.pixels()
     }
-    area.present()
+
+    fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Painted {
+        let (width, height) = self.panel_pixels;
+        for (index, panel) in self.panels.iter().enumerate() {
+            let (column, row) = ((index % self.columns) as i32, (index / self.columns) as i32);
+            let corner = (column * width as i32, row * height as i32);
+            draw_panel(panel, &area.clone().shrink(corner, (width, height)))?;
+        }
+        Ok(())
+    }
 }
 
-fn draw_panel<B: DrawingBackend>(panel: &SheetPanel, area: &SheetArea<B>) -> SheetDrawn<B> {
+fn draw_panel<B: DrawingBackend>(panel: &SheetPanel, area: &PanelArea<B>) -> SheetDrawn<B> {
     let (width, height) = area.dim_in_pixel();
     area.draw(&Text::new(panel.title.clone(), (14, 10), words(19.0, &HUES[2])))?;
     let below = area.clone().shrink((0, TITLE_PIXELS), (width as i32, height as i32 - TITLE_PIXELS));
@@ -63,7 +43,7 @@ fn draw_panel<B: DrawingBackend>(panel: &SheetPanel, area: &SheetArea<B>) -> She
 }
 
 fn axes<'a, B: DrawingBackend>(
-    area: &'a SheetArea<B>,
+    area: &'a PanelArea<B>,
     x: &SheetAxis,
     y: &SheetAxis,
     right: i32,
@@ -100,7 +80,7 @@ fn label_axes<B: DrawingBackend>(chart: &mut Axes<'_, B>, x: &SheetAxis, y: &She
         .draw()
 }
 
-fn draw_chart<B: DrawingBackend>(chart: &SheetChart, area: &SheetArea<B>) -> SheetDrawn<B> {
+fn draw_chart<B: DrawingBackend>(chart: &SheetChart, area: &PanelArea<B>) -> SheetDrawn<B> {
     let mut on = axes(area, &chart.x, &chart.y, 18)?;
     label_axes(&mut on, &chart.x, &chart.y, true)?;
     for (series, hue) in chart.series.iter().zip(HUES.iter().cycle()) {
@@ -134,13 +114,14 @@ fn draw_series<B: DrawingBackend>(on: &mut Axes<'_, B>, series: &Series, hue: RG
     Ok(())
 }
 
-fn draw_cells<B: DrawingBackend>(cells: &SheetCells, area: &SheetArea<B>) -> SheetDrawn<B> {
+fn draw_cells<B: DrawingBackend>(cells: &SheetCells, area: &PanelArea<B>) -> SheetDrawn<B> {
     let bar = if cells.ends_of_bar.is_some() { BAR_PIXELS } else { 14 };
     let mut on = axes(area, &cells.x, &cells.y, bar)?;
     let (across, up) = on.plotting_area().get_pixel_range();
     let size = ((across.end - across.start) as u32, (up.end - up.start) as u32);
     let corner = (cells.x.span.start, cells.y.span.end);
-    if let Some(bitmap) = BitMapElement::with_owned_buffer(corner, size, paint(cells, size.0 as usize, size.1 as usize))
+    if let Some(bitmap) =
+        BitMapElement::with_owned_buffer(corner, size, paint(cells, [size.0 as usize, size.1 as usize]))
     {
         let bitmap: BitMapElement<'_, (f64, f64)> = bitmap;
         on.draw_series(std::iter::once(bitmap))?;
@@ -160,34 +141,19 @@ fn draw_cells<B: DrawingBackend>(cells: &SheetCells, area: &SheetArea<B>) -> She
     Ok(())
 }
 
-fn paint(cells: &SheetCells, width: usize, height: usize) -> Vec<u8> {
-    let (rows, columns) = cells.values.dim();
-    let under = |i: usize, n: usize, all: usize| {
-        let start = i * all / n.max(1);
-        start..((i + 1) * all / n.max(1)).max(start + 1).min(all)
-    };
+fn paint(cells: &SheetCells, size: [usize; 2]) -> Vec<u8> {
     let telling = |v: f32| if cells.colours == ColourMap::Diverging { (v - 0.5).abs() } else { v };
-    let mut pixels = Vec::with_capacity(3 * width * height);
-    for row in (0..height).rev() {
-        for column in 0..width {
-            let mut most = f32::NAN;
-            for r in under(row, height, rows) {
-                for c in under(column, width, columns) {
-                    let v = cells.values[[r, c]];
-                    if most.is_nan() || telling(v) > telling(most) {
-                        most = v;
-                    }
-                }
-            }
-            pixels.extend(if most.is_nan() { [PAPER.0, PAPER.1, PAPER.2] } else { cells.colours.colour(most) });
-        }
-    }
-    pixels
+    let more = |most: f32, v: f32| if most.is_nan() || telling(v) > telling(most) { v } else { most };
+    painted(size, cells.values.dim(), |under| match under.map(|cell| cells.values[cell]).fold(f32::NAN, more) {
+        most if most.is_nan() => [PAPER.0, PAPER.1, PAPER.2],
+        most => cells.colours.colour(most),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::{PictureFormat, render_svg};
     use ndarray::array;
 
     fn sheet() -> Sheet {
@@ -208,9 +174,9 @@ mod tests {
     #[test]
     fn sheets_become_both_kinds_of_file() {
         let sheet = sheet();
-        let image = image::load_from_memory(&png(&sheet).unwrap()).unwrap();
+        let image = image::load_from_memory(&PictureFormat::Png.bytes_of(&sheet).unwrap()).unwrap();
         assert_eq!((image.width(), image.height()), (600, 240));
-        let text = svg(&sheet).unwrap();
+        let text = render_svg(&sheet).unwrap();
         assert!(text.contains("Chart") && text.contains("<image") && text.trim_end().ends_with("</svg>"));
     }
 
@@ -218,6 +184,6 @@ mod tests {
     fn the_brightest_cell_under_a_pixel_shows() {
         let PanelContent::Cells(mut cells) = sheet().panels[1].content.clone() else { panic!("cells") };
         cells.values = array![[0.0, 1.0], [0.2, 0.4]];
-        assert_eq!(paint(&cells, 1, 2), [102, 102, 102, 255, 255, 255]);
+        assert_eq!(paint(&cells, [1, 2]), [102, 102, 102, 255, 255, 255]);
     }
 }

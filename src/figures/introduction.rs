@@ -3,7 +3,7 @@
 use super::sheet::{Ink, Series, Sheet, SheetAxis, SheetPanel, SketchShape, Stroke};
 use super::source::{FigureError, SceneSource};
 use crate::maps::range_transform;
-use crate::radar::{Layout, Mimo};
+use crate::radar::Layout;
 use crate::scene::{Object, Point, Scene};
 use crate::signal::Floor;
 
@@ -47,23 +47,20 @@ pub fn random_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
     Ok(Sheet::of(1, (760, 340), vec![SheetPanel::chart("Elements on the aperture", x, y, series)]))
 }
 
-pub fn virtual_elements(source: &SceneSource) -> Result<Sheet, FigureError> {
-    let mimo = Mimo::filled(&source.radar, 3, 4);
-    let unit = source.radar.element_spacing_metres;
-    let mut shapes = Vec::new();
+pub fn virtual_elements(_: &SceneSource) -> Result<Sheet, FigureError> {
+    // In element spacings.
+    let (transmitters, receivers) = ([-4.0, 0.0, 4.0], [-1.5, -0.5, 0.5, 1.5]);
     let names = [("transmitters", 3.0), ("receivers", 2.0), ("virtual elements", 0.6)];
-    shapes.extend(names.map(|(name, y)| SketchShape::Words((-8.6, y), name.to_owned(), Ink::Dark)));
-    for x in &mimo.transmitter_x_metres {
-        shapes.push(SketchShape::Dot((x / unit, 3.0), 9, Ink::Accent));
-    }
-    for x in &mimo.receiver_x_metres {
-        shapes.push(SketchShape::Dot((x / unit, 2.0), 9, Ink::Second));
-    }
-    for v in mimo.virtual_elements() {
-        let at = (v.x_metres / unit, 0.6);
-        shapes.push(SketchShape::Line(vec![(mimo.transmitter_x_metres[v.transmitter] / unit, 3.0), at], Ink::Pale));
-        shapes.push(SketchShape::Dot(at, 8, Ink::Dark));
-        shapes.push(SketchShape::Words((at.0, 0.2), format!("{}+{}", v.transmitter + 1, v.receiver + 1), Ink::Dark));
+    let mut shapes = names.map(|(name, y)| SketchShape::Words((-8.6, y), name.to_owned(), Ink::Dark)).to_vec();
+    shapes.extend(transmitters.map(|x| SketchShape::Dot((x, 3.0), 9, Ink::Accent)));
+    shapes.extend(receivers.map(|x| SketchShape::Dot((x, 2.0), 9, Ink::Second)));
+    for (t, transmitter) in transmitters.into_iter().enumerate() {
+        for (r, receiver) in receivers.into_iter().enumerate() {
+            let at = (transmitter + receiver, 0.6);
+            shapes.push(SketchShape::Line(vec![(transmitter, 3.0), at], Ink::Pale));
+            shapes.push(SketchShape::Dot(at, 8, Ink::Dark));
+            shapes.push(SketchShape::Words((at.0, 0.2), format!("{}+{}", t + 1, r + 1), Ink::Dark));
+        }
     }
     let title = "3 transmitters × 4 receivers = 12 virtual elements, half a wavelength apart";
     let panel = SheetPanel::sketch(title, -10.5..7.0, 0.0..3.5, shapes);

@@ -1,10 +1,10 @@
 //! Every figure of the thesis, drawn from this program's data.
 //!
-//! A figure is a function from a [`SceneSource`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; [`draw`] makes files of sheets, [`pages`]
+//! A figure is a function from a [`SceneSource`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; `draw` draws sheets, [`pages`]
 //! the page of all figures. [`ALL`] lists the figures with their subjects and their differences from the printed ones.
 
 mod diagrams;
-pub mod draw;
+mod draw;
 mod introduction;
 mod measures;
 mod outputs;
@@ -259,7 +259,9 @@ mod tests {
         for figure in ALL.iter().filter(|f| !SLOW.contains(&f.number)) {
             let sheet = (figure.sheet)(&source).unwrap_or_else(|e| panic!("figure {}: {e}", figure.number));
             assert!(!sheet.panels.is_empty());
-            let png = draw::png(&sheet).unwrap_or_else(|e| panic!("figure {}: {e}", figure.number));
+            let png = crate::picture::PictureFormat::Png
+                .bytes_of(&sheet)
+                .unwrap_or_else(|e| panic!("figure {}: {e}", figure.number));
             let picture = image::load_from_memory(&png).unwrap().to_rgb8();
             let ink = picture.pixels().filter(|p| p.0 != picture.get_pixel(1, 1).0).count();
             assert!(ink > 2000, "figure {}: {ink} pixels of ink", figure.number);

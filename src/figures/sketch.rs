@@ -1,13 +1,11 @@
 //! Sketches: lines, dots, boxes and words in a plane without axes.
 
 use super::sheet::{Ink, Sketch, SketchShape};
-use plotters::coord::Shift;
+use crate::picture::PanelArea;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 pub(super) type SheetDrawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-
-pub(super) type SheetArea<B> = DrawingArea<B, Shift>;
 
 pub(super) fn words(size: f64, colour: &RGBColor) -> TextStyle<'static> {
     FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal).color(colour)
@@ -49,12 +47,12 @@ impl Scale {
     }
 }
 
-pub(super) fn draw<B: DrawingBackend>(sketch: &Sketch, area: &SheetArea<B>) -> SheetDrawn<B> {
+pub(super) fn draw<B: DrawingBackend>(sketch: &Sketch, area: &PanelArea<B>) -> SheetDrawn<B> {
     let scale = Scale::new(sketch, area.dim_in_pixel());
     sketch.shapes.iter().try_for_each(|shape| draw_shape(shape, &scale, area))
 }
 
-fn draw_shape<B: DrawingBackend>(shape: &SketchShape, scale: &Scale, area: &SheetArea<B>) -> SheetDrawn<B> {
+fn draw_shape<B: DrawingBackend>(shape: &SketchShape, scale: &Scale, area: &PanelArea<B>) -> SheetDrawn<B> {
     let centred = |size, ink| words(size, &colour(ink)).pos(Pos::new(HPos::Center, VPos::Center));
     match shape {
         SketchShape::Line(places, ink) => {

@@ -15,6 +15,16 @@ use crate::platform::fs::{self, Draft, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
+/// Whether the name of `path` has one of these endings, in small or capital letters.
+pub fn ends_in(path: &Path, endings: &[&str]) -> bool {
+    path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)))
+}
+
+/// The folder that `path` stands in.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Writes a file in one step: `write` fills a temporary file beside `path`, which then takes its place. A reader sees the
 /// old file or the new one, never a part; on any error the old one stays as it was.
 /// # Errors
@@ -24,7 +34,7 @@ pub fn write_atomically<E: From<io::Error>>(
     write: impl FnOnce(&mut BufWriter<Draft>) -> Result<(), E>,
 ) -> Result<(), E> {
     let path = destination(path)?;
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(&path);
     if !fs::is_dir(folder) {
         let message = format!("there is no folder \"{}\" to write into", folder.display());
         return Err(io::Error::new(io::ErrorKind::NotFound, message).into());

@@ -7,8 +7,9 @@ use crate::platform::fs::{Draft, File};
 use ndarray::{Array, Array2, ArrayD, ArrayRef, Dimension, ShapeError};
 use ndarray_npy::npy::header::{Header, Layout};
 use ndarray_npy::{NpzWriter, WritableElement, WriteNpyError, WriteNpyExt, WriteNpzError};
-use num_complex::Complex64;
+use num_complex::{Complex64, ComplexFloat};
 use std::cell::RefCell;
+use std::fmt::Display;
 use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
 use std::path::Path;
 use zip::result::ZipError;
@@ -46,22 +47,6 @@ pub struct Npz<R = BufReader<File>> {
     archive: ZipArchive<R>,
     keys: Vec<String>,
     most_bytes: u64,
-}
-
-trait Finite: Copy + std::fmt::Display {
-    fn is_finite(self) -> bool;
-}
-
-impl Finite for f64 {
-    fn is_finite(self) -> bool {
-        f64::is_finite(self)
-    }
-}
-
-impl Finite for Complex64 {
-    fn is_finite(self) -> bool {
-        self.re.is_finite() && self.im.is_finite()
-    }
 }
 
 impl Npz {
@@ -170,7 +155,7 @@ impl<R: Read + Seek> Npz<R> {
     }
 }
 
-fn all_finite<T: Finite, D: Dimension>(key: &str, values: ArrayD<T>) -> Result<Array<T, D>, NpzError> {
+fn all_finite<T: ComplexFloat + Display, D: Dimension>(key: &str, values: ArrayD<T>) -> Result<Array<T, D>, NpzError> {
     if let Some((index, value)) = values.indexed_iter().find(|(_, v)| !v.is_finite()) {
         let (index, value) = (Dimension::slice(&index).to_vec(), value.to_string());
         return Err(NpzError::NotFinite { key: key.to_owned(), index, value });

@@ -1,5 +1,6 @@
 //! Numbers of arrays, and their types in files.
 
+use half::f16;
 use ndarray::ArrayD;
 use num_complex::Complex64;
 
@@ -33,7 +34,7 @@ impl NumberKind {
             true => bytes.iter().fold(0u64, |n, b| n << 8 | u64::from(*b)),
         };
         match (self.is_float, self.bytes) {
-            (true, 2) => half_value(word as u16),
+            (true, 2) => f16::from_bits(word as u16).to_f64(),
             (true, 4) => f64::from(f32::from_bits(word as u32)),
             (true, _) => f64::from_bits(word),
             (false, bytes) if self.is_signed => {
@@ -42,17 +43,5 @@ impl NumberKind {
             }
             (false, _) => word as f64,
         }
-    }
-}
-
-/// A floating-point number of 16 bits (IEEE 754).
-fn half_value(word: u16) -> f64 {
-    let sign = if word & 0x8000 == 0 { 1.0 } else { -1.0 };
-    let (exponent, fraction) = (i32::from(word >> 10 & 31), f64::from(word & 1023) / 1024.0);
-    match exponent {
-        0 => sign * fraction * 2f64.powi(-14),
-        31 if fraction == 0.0 => sign * f64::INFINITY,
-        31 => f64::NAN,
-        exponent => sign * (1.0 + fraction) * 2f64.powi(exponent - 15),
     }
 }

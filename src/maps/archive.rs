@@ -3,7 +3,7 @@
 use super::focus::map_of;
 use super::{Aperture, LogMap, RangeAngleMap, channels_map, network_input};
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
-use crate::radar::{Antennas, AntennasError, CHIRP_SECONDS, Carrier, End, LinkBudget, Radar, WindowFunction};
+use crate::radar::{Antennas, CHIRP_SECONDS, Carrier, End, LinkBudget, Radar, WindowFunction};
 use crate::scene::{Scene, npz};
 use crate::signal::{BeatSignal, LayoutSamples, TwoEnds};
 use ndarray::{Array1, Axis, Ix0, Ix1, arr0};
@@ -167,8 +167,7 @@ fn read_antennas(archive: &mut Npz) -> Result<Option<Antennas>, NpzError> {
     if !archive.has(ANTENNA_KEYS[0]) {
         return Ok(None);
     }
-    let damaged =
-        |key: &'static str| move |e: AntennasError| NpzError::Damaged { key: key.to_owned(), reason: e.to_string() };
+    let damaged = |key: &'static str| move |reason| NpzError::Damaged { key: key.to_owned(), reason };
     let [transmitters, receivers] = places(archive, ANTENNA_KEYS)?;
     let antennas = Antennas::new(&transmitters, &receivers).map_err(damaged(ANTENNA_KEYS[0]))?;
     if !archive.has(OFF_LINE_KEYS[0]) {

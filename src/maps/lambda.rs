@@ -17,20 +17,17 @@ pub enum Normalisation {
     DynamicRange(Decibels),
 }
 
-/// A normalisation's name that could not be read.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown normalisation \"{0}\"; expected min-max or db=RANGE with RANGE between 1 and 400")]
-pub struct NormalisationError(String);
-
 impl FromStr for Normalisation {
-    type Err = NormalisationError;
+    type Err = String;
 
-    fn from_str(s: &str) -> Result<Self, NormalisationError> {
+    fn from_str(s: &str) -> Result<Self, String> {
         if s == "min-max" {
             return Ok(Normalisation::MinMax);
         }
         let range = s.strip_prefix("db=").and_then(|db| db.parse::<f64>().ok()).filter(|db| (1.0..=400.0).contains(db));
-        range.map(|db| Normalisation::DynamicRange(Decibels(db))).ok_or_else(|| NormalisationError(s.to_owned()))
+        let unknown =
+            || format!("unknown normalisation \"{s}\"; expected min-max or db=RANGE with RANGE between 1 and 400");
+        range.map(|db| Normalisation::DynamicRange(Decibels(db))).ok_or_else(unknown)
     }
 }
 

@@ -18,7 +18,7 @@ mod spectra;
 pub mod tolerance;
 mod transform;
 
-pub use lambda::{LambdaScale, Mask, Normalisation, NormalisationError, RangeAngleMap};
+pub use lambda::{LambdaScale, Mask, Normalisation, RangeAngleMap};
 pub use log_map::{LOG_GUARD, LogMap, guard};
 pub use spectra::{Spectrum, centred_spectrum};
 pub use transform::{

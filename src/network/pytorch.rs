@@ -1,6 +1,6 @@
 //! PyTorch checkpoints (`.pt`, `.pth`), translated to safetensors so that one reader checks and loads both.
 
-use super::weights::WeightsError;
+use super::weights::{self, Provenance, TensorHeader, WeightsError};
 use crate::files::kind::kind_of;
 use crate::files::read_bounded;
 use burn::store::pytorch_reader::PytorchReader;
@@ -72,18 +72,15 @@ fn translate(path: &Path) -> Result<Vec<u8>, String> {
     if asked > MAX_BYTES {
         return Err(format!("its tensors ask for {asked} bytes; at most {MAX_BYTES} are read"));
     }
-    let mut header = serde_json::Map::new();
-    let mut data = Vec::new();
+    let (mut headers, mut data) = (BTreeMap::new(), Vec::new());
     for (name, tensor) in tensors {
         let start = data.len();
         data.extend(tensor.read().map_err(|e| format!("tensor \"{name}\": {e}"))?);
-        let entry = serde_json::json!({
-            "dtype": format!("{:?}", tensor.dtype()), "shape": tensor.shape(), "data_offsets": [start, data.len()],
-        });
-        header.insert(name[prefix.len()..].to_owned(), entry);
+        let (dtype, shape) = (format!("{:?}", tensor.dtype()), tensor.shape().to_vec());
+        headers
+            .insert(name[prefix.len()..].to_owned(), TensorHeader { dtype, shape, data_offsets: [start, data.len()] });
     }
-    let header = serde_json::Value::Object(header).to_string().into_bytes();
-    Ok([&(header.len() as u64).to_le_bytes(), header.as_slice(), data.as_slice()].concat())
+    weights::write("", &headers, &Provenance::default(), &data).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::live::{self, LiveMethod};
 use super::pytorch::read_weights;
 use super::students::Student;
 use super::thesis::Thesis;
-use super::thesis_method::{ThesisMethod, UnetMethod};
+use super::thesis_method::ThesisMethod;
 use super::unet::Unet;
 use super::usable;
 use super::weights::{WeightFile, WeightsError};
@@ -57,7 +57,7 @@ fn method_of(file: WeightFile, backend: Backend) -> Result<Arc<dyn Reconstructor
     };
     Ok(match network {
         live::method::NAME => Arc::new(LiveMethod::new(file)?),
-        Unet::NAME => Arc::new(UnetMethod::new(file, backend)?),
+        Unet::NAME => Arc::new(ThesisMethod::unet(file, backend)?),
         Thesis::NAME => {
             let (name, description) = match file.provenance.get("recipe") {
                 "experiment-1-small" => {

@@ -11,7 +11,7 @@ use crate::maps::RangeAngleMap;
 use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
 use crate::reconstruct::{
-    About, Family, ReconstructError, Reconstruction, Reconstructor, Request, TrainedNoise, Weights,
+    About, Family, NEEDS_SAMPLES, ReconstructError, Reconstruction, Reconstructor, Request, TrainedNoise, Weights,
 };
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
@@ -23,15 +23,16 @@ const THESIS_ETA: f32 = 0.7;
 const TRAINED_ON: &str =
     "scenes drawn like the tables', with the radar of table 3.1, over the thesis' floor and never over thermal noise";
 
-/// The thesis' encoder-decoder with weights. Its output is Lambda without a further normalisation, of which the thesis takes the squared error.
-/// Its threshold is one for the output stretched to [0, 1], as the thesis' is.
+/// A network of the thesis with weights: the encoder-decoder, or the failing U-Net, whose Cartesian answer is resampled to range and angle.
+///
+/// The encoder-decoder's output is Lambda without a further normalisation, of which the thesis takes the squared error. Its threshold is one
+/// for the output stretched to [0, 1], as the thesis' is.
 #[derive(Debug)]
 pub struct ThesisMethod {
     network: Network,
-    config: ThesisConfig,
-    eta: f32,
-    name: &'static str,
-    description: &'static str,
+    /// Of the encoder-decoder; `None` for the U-Net.
+    config: Option<ThesisConfig>,
+    about: About,
     weights: Weights,
     trained: Domain,
 }
@@ -45,6 +46,10 @@ enum Network {
     },
     Burn {
         network: Box<Thesis>,
+        device: Device,
+    },
+    Unet {
+        network: Box<Unet>,
         device: Device,
     },
 }
@@ -76,6 +81,7 @@ impl Network {
                 in_rows(method, size, map)
             }
             Network::Burn { network, device } => estimate(&**network, method, input, size, device),
+            Network::Unet { network, device } => estimate(&**network, method, input, size, device),
         }
     }
 }
@@ -93,12 +99,29 @@ impl ThesisMethod {
         backend: Backend,
     ) -> Result<Self, WeightsError> {
         let config = Thesis::config_of(&file)?;
+        let eta = file.provenance.eta().unwrap_or(THESIS_ETA);
         Ok(ThesisMethod {
             network: Network::new(&file, &config, backend)?,
-            config,
-            eta: file.provenance.eta().unwrap_or(THESIS_ETA),
-            name,
-            description,
+            config: Some(config),
+            about: About { name, description, told: TRAINED_ON, eta },
+            weights: file.weights(),
+            trained: file.provenance.domain(file.name())?,
+        })
+    }
+
+    /// The U-Net of the shipped architecture with the weights of `file`, computed by `backend`.
+    ///
+    /// # Errors
+    /// [`WeightsError`] when the file belongs to another network.
+    pub fn unet(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
+        let device = backend.device();
+        let mut network = Box::new(Unet::fresh(&UnetConfig::default(), &device));
+        file.load_into(&mut *network, |_| false)?;
+        let description = "the thesis' U-Net on thresholded Cartesian maps; bright cells are so rare that it learned to answer nothing";
+        Ok(ThesisMethod {
+            network: Network::Unet { network, device },
+            config: None,
+            about: About { name: Unet::NAME, description, told: TRAINED_ON, eta: 0.5 },
             weights: file.weights(),
             trained: file.provenance.domain(file.name())?,
         })
@@ -106,8 +129,8 @@ impl ThesisMethod {
 
     /// The network's answer, with the threshold of its cells that equals the method's own after stretching to [0, 1].
     fn answer(&self, input: Vec<f32>, radar: &Radar) -> Result<Reconstruction, ReconstructError> {
-        let map = self.network.estimate(self.name, input, [radar.samples, radar.elements])?;
-        let eta = Some(unstretched(&map, self.eta));
+        let map = self.network.estimate(self.name(), input, [radar.samples, radar.elements])?;
+        let eta = Some(unstretched(&map, self.eta()));
         Ok(Reconstruction { eta, ..Reconstruction::of_map(Thesis::finish(map)) })
     }
 }
@@ -118,11 +141,11 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn about(&self) -> About {
-        About { name: self.name, description: self.description, told: TRAINED_ON, eta: self.eta }
+        self.about
     }
 
     fn reads_eta(&self) -> bool {
-        true
+        self.config.is_some()
     }
 
     fn weights(&self, _radar: &Radar) -> Option<Weights> {
@@ -130,7 +153,7 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        self.trained.check(self.name, radar)
+        self.trained.check(self.name(), radar)
     }
 
     fn trained_noise(&self) -> Option<TrainedNoise> {
@@ -138,76 +161,25 @@ impl Reconstructor for ThesisMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
-        self.answer(Thesis::input(&self.config, radar, ends)?, radar)
+        let Some(config) = &self.config else {
+            let config = UnetConfig::default();
+            let (rows, input) = (config.rows, Unet::input(&config, radar, ends)?);
+            let cartesian = self.network.estimate(Unet::NAME, input, [rows, 2 * rows])?;
+            return Ok(Reconstruction::of_map(RangeAngleMap { lambda: to_polar(radar, &cartesian) }));
+        };
+        self.answer(Thesis::input(config, radar, ends)?, radar)
     }
 
     fn reconstruct_mag_phase(&self, radar: &Radar, input: &Array3<f64>) -> Result<Reconstruction, ReconstructError> {
-        self.trained.check(self.name, radar)?;
+        let Some(config) = &self.config else { return Err(self.unusable(NEEDS_SAMPLES.to_owned())) };
+        self.trained.check(self.name(), radar)?;
         let expected = vec![Thesis::CHANNELS, radar.samples, radar.elements];
         if input.shape() != expected {
             let what = "polar_partial_mag_phase";
             return Err(ReconstructError::Shape { what, found: input.shape().to_vec(), expected });
         }
-        self.config.check(radar)?;
+        config.check(radar)?;
         self.answer(input.iter().map(|v| *v as f32).collect(), radar)
-    }
-}
-
-/// The failing U-Net, with its Cartesian answer resampled to range and angle.
-#[derive(Debug)]
-pub struct UnetMethod {
-    network: Unet,
-    config: UnetConfig,
-    device: Device,
-    weights: Weights,
-    trained: Domain,
-}
-
-impl UnetMethod {
-    /// The shipped architecture with the weights of `file`, computed by `backend`.
-    ///
-    /// # Errors
-    /// [`WeightsError`] when the file belongs to another network.
-    pub fn new(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {
-        let device = backend.device();
-        let config = UnetConfig::default();
-        let mut network = Unet::fresh(&config, &device);
-        file.load_into(&mut network, |_| false)?;
-        let trained = file.provenance.domain(file.name())?;
-        Ok(UnetMethod { network, config, device, weights: file.weights(), trained })
-    }
-}
-
-impl Reconstructor for UnetMethod {
-    fn family(&self) -> Family {
-        Family::Network
-    }
-
-    fn about(&self) -> About {
-        About {
-            name: Unet::NAME,
-            description: "the thesis' U-Net on thresholded Cartesian maps; bright cells are so rare that it learned to answer nothing",
-            told: TRAINED_ON,
-            eta: 0.5,
-        }
-    }
-
-    fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        self.trained.check(Unet::NAME, radar)
-    }
-
-    fn weights(&self, _radar: &Radar) -> Option<Weights> {
-        Some(self.weights.clone())
-    }
-
-    fn trained_noise(&self) -> Option<TrainedNoise> {
-        Some(TrainedNoise::Rounding)
-    }
-
-    fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
-        let (rows, input) = (self.config.rows, Unet::input(&self.config, radar, ends)?);
-        let cartesian = estimate(&self.network, Unet::NAME, input, [rows, 2 * rows], &self.device)?;
-        Ok(Reconstruction::of_map(RangeAngleMap { lambda: to_polar(radar, &cartesian) }))
     }
 }
 
@@ -267,7 +239,7 @@ mod tests {
         let bytes = include_bytes!("../../assets/weights/thesis.safetensors");
         let file = || WeightFile::parse("thesis", bytes).unwrap();
         let method = ThesisMethod::new("thesis", "", file(), Backend::default()).unwrap();
-        let (config, device) = (method.config, Backend::default().device());
+        let (config, device) = (method.config.unwrap(), Backend::default().device());
         let burn = Thesis::load(&file(), &config, &device).unwrap().folded();
         let input = Thesis::input(&config, &radar, &ends).unwrap();
         let size = [radar.samples, radar.elements];

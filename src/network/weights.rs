@@ -70,10 +70,10 @@ impl Provenance {
 pub struct WeightsError(pub(super) String);
 
 #[derive(Debug, Serialize, Deserialize)]
-struct TensorHeader {
-    dtype: String,
-    shape: Vec<usize>,
-    data_offsets: [usize; 2],
+pub(super) struct TensorHeader {
+    pub dtype: String,
+    pub shape: Vec<usize>,
+    pub data_offsets: [usize; 2],
 }
 
 impl TensorHeader {
@@ -96,8 +96,6 @@ impl TensorHeader {
 #[derive(Debug)]
 pub struct WeightFile<'a> {
     name: String,
-    #[cfg(feature = "network")]
-    bytes: &'a [u8],
     data: &'a [u8],
     tensors: BTreeMap<String, TensorHeader>,
     /// The origin of the weights.
@@ -147,14 +145,7 @@ impl<'a> WeightFile<'a> {
         if end != data.len() {
             return Err(cut(end.saturating_add(length + 8)));
         }
-        let file = WeightFile {
-            name: name.to_owned(),
-            #[cfg(feature = "network")]
-            bytes,
-            data,
-            tensors,
-            provenance,
-        };
+        let file = WeightFile { name: name.to_owned(), data, tensors, provenance };
         match file.tensors.iter().find(|(_, t)| !t.is_sound(data.len())) {
             Some((name, _)) => {
                 Err(file.bad_tensor(name, "has a place in the file that does not fit its shape and type"))
@@ -229,7 +220,7 @@ fn not_safetensors(file: &str, reason: impl fmt::Display) -> WeightsError {
 }
 
 /// A safetensors file called `name`, for messages, with the header of `tensors` before their `data`.
-fn write<T: Serialize>(
+pub(super) fn write<T: Serialize>(
     name: &str,
     tensors: &BTreeMap<String, T>,
     record: &Provenance,

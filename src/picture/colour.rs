@@ -87,16 +87,12 @@ impl fmt::Display for ColourMap {
     }
 }
 
-/// A colour map's name that is not known.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown colour map \"{0}\"; expected inferno, viridis, grey or diverging")]
-pub struct UnknownColourMap(String);
-
 impl FromStr for ColourMap {
-    type Err = UnknownColourMap;
+    type Err = String;
 
-    fn from_str(s: &str) -> Result<Self, UnknownColourMap> {
-        Self::ALL.into_iter().find(|c| c.name() == s).ok_or_else(|| UnknownColourMap(s.to_owned()))
+    fn from_str(s: &str) -> Result<Self, String> {
+        let unknown = || format!("unknown colour map \"{s}\"; expected inferno, viridis, grey or diverging");
+        Self::ALL.into_iter().find(|c| c.name() == s).ok_or_else(unknown)
     }
 }
 

@@ -15,11 +15,6 @@ const MAX_ELEMENTS: usize = 65536;
 /// Largest distance of a pair's midpoint from an evenly spaced line, as a fraction of the spacing.
 const MAX_OFF_LINE_PART: f64 = 0.01;
 
-/// A reason for which transmitters and receivers form no uniform array.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct AntennasError(String);
-
 /// Midpoints nearer to each other than this fraction of their mean distance count as one place.
 const ONE_PLACE: f64 = 0.02;
 
@@ -77,12 +72,12 @@ impl Midpoints {
     }
 
     /// The largest spacing of a line on which all midpoints stand.
-    fn spacing_metres(&self) -> Result<f64, AntennasError> {
+    fn spacing_metres(&self) -> Result<f64, String> {
         let mean = self.length_metres() / (self.x_metres.len() - 1) as f64;
         let apart = self.x_metres.windows(2).map(|two| two[1] - two[0]).filter(|apart| *apart > ONE_PLACE * mean);
         let smallest = apart.fold(f64::INFINITY, f64::min);
         if !(smallest.is_finite() && mean > 0.0) {
-            return Err(AntennasError("all pairs have one midpoint; expected a line of them".to_owned()));
+            return Err("all pairs have one midpoint; expected a line of them".to_owned());
         }
         let even = |divisions: usize| self.even(smallest / divisions as f64);
         (2..=MAX_SPACING_DIVISIONS)
@@ -90,21 +85,21 @@ impl Midpoints {
     }
 
     /// `about_metres`, made to fit the whole line; the error names a pair off the line.
-    fn even(&self, about_metres: f64) -> Result<f64, AntennasError> {
+    fn even(&self, about_metres: f64) -> Result<f64, String> {
         let spacing_metres = self.length_metres() / (self.length_metres() / about_metres).round();
         for (i, place) in self.places(spacing_metres).enumerate() {
             let off_metres = (self.x_metres[i] - self.x_metres[0] - place * spacing_metres).abs();
             if off_metres > MAX_OFF_LINE_PART * spacing_metres {
                 let [transmitter, receiver] = self.pairs[i];
                 let millimetres = |metres: f64| format!("{:.3} mm", metres * 1e3);
-                return Err(AntennasError(format!(
+                return Err(format!(
                     "the midpoint of transmitter {} and receiver {} stands {} off the even line, whose places are {} apart; expected at most {}",
                     transmitter + 1,
                     receiver + 1,
                     millimetres(off_metres),
                     millimetres(spacing_metres),
                     millimetres(MAX_OFF_LINE_PART * spacing_metres)
-                )));
+                ));
             }
         }
         Ok(spacing_metres)
@@ -114,16 +109,16 @@ impl Midpoints {
 impl Antennas {
     /// Antennas at these places, metres along x. The middle of the line that their pairs make is moved to x = 0.
     /// # Errors
-    /// [`AntennasError`] where their pairs make no line of 2 to 65536 even places.
-    pub fn new(transmitter_x_metres: &[f64], receiver_x_metres: &[f64]) -> Result<Self, AntennasError> {
+    /// The fault, where their pairs make no line of 2 to 65536 even places.
+    pub fn new(transmitter_x_metres: &[f64], receiver_x_metres: &[f64]) -> Result<Self, String> {
         check_places("transmitter_x_metres", transmitter_x_metres)?;
         check_places("receiver_x_metres", receiver_x_metres)?;
         let (transmitters, receivers) = (transmitter_x_metres.len(), receiver_x_metres.len());
         let pairs = transmitters.saturating_mul(receivers);
         if !(MIN_ELEMENTS..=MAX_ELEMENTS).contains(&pairs) {
-            return Err(AntennasError(format!(
+            return Err(format!(
                 "{transmitters} transmitters and {receivers} receivers make {pairs} elements; expected {MIN_ELEMENTS} to {MAX_ELEMENTS}"
-            )));
+            ));
         }
         let midpoints = Midpoints::of(transmitter_x_metres, receiver_x_metres);
         let spacing_metres = midpoints.spacing_metres()?;
@@ -131,10 +126,10 @@ impl Antennas {
         // Distinct transmitters and receivers form at least this many distinct midpoints.
         let fewest = (apart(transmitter_x_metres) + apart(receiver_x_metres) - 1).max(MIN_ELEMENTS);
         if !(fewest as f64..=MAX_ELEMENTS as f64).contains(&elements) {
-            return Err(AntennasError(format!(
+            return Err(format!(
                 "the pairs stand on a line of {} places; expected as many as such antennas make, {MIN_ELEMENTS} to {MAX_ELEMENTS}",
                 elements as usize
-            )));
+            ));
         }
         let mut pairs = vec![None; elements as usize];
         for (pair, place) in midpoints.pairs.iter().zip(midpoints.places(spacing_metres)) {
@@ -156,8 +151,8 @@ impl Antennas {
     /// Receivers two spacings apart and transmitters a whole row of receivers apart, so that the pairs make one line of
     /// `transmitters * receivers` elements.
     /// # Errors
-    /// [`AntennasError`] where that is no array.
-    pub fn filled(transmitters: usize, receivers: usize, spacing_metres: f64) -> Result<Self, AntennasError> {
+    /// The fault, where that is no array.
+    pub fn filled(transmitters: usize, receivers: usize, spacing_metres: f64) -> Result<Self, String> {
         let line = |count: usize, apart: f64| -> Vec<f64> {
             (0..count.min(MAX_ELEMENTS)).map(|i| (i as f64 - (count as f64 - 1.0) / 2.0) * apart).collect()
         };
@@ -238,13 +233,13 @@ fn apart(places: &[f64]) -> usize {
     sorted.len()
 }
 
-fn check_places(list: &str, places: &[f64]) -> Result<(), AntennasError> {
+fn check_places(list: &str, places: &[f64]) -> Result<(), String> {
     let found = match places.iter().find(|x| !x.is_finite()) {
         Some(x) => x.to_string(),
         None if places.is_empty() => "no numbers".to_owned(),
         None => return Ok(()),
     };
-    Err(AntennasError(format!("{list} has {found}; expected finite numbers, at least one")))
+    Err(format!("{list} has {found}; expected finite numbers, at least one"))
 }
 
 impl Radar {
@@ -292,8 +287,8 @@ impl Radar {
 
     /// The physical radar of `transmitters` and `receivers` whose pairs make one filled line, its other constants those of `self`.
     /// # Errors
-    /// [`AntennasError`] where that is no array.
-    pub fn of_pairs(self, transmitters: usize, receivers: usize) -> Result<Self, AntennasError> {
+    /// The fault, where that is no array.
+    pub fn of_pairs(self, transmitters: usize, receivers: usize) -> Result<Self, String> {
         let radar = Radar { antennas: None, ..self }.in_convention(Convention::Physical);
         let antennas = Antennas::filled(transmitters, receivers, radar.element_spacing_metres)?;
         Ok(radar.with_antennas(antennas))

@@ -136,19 +136,25 @@ impl Pattern {
 }
 
 /// An echo by the radar equation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LinkFigures {
     /// Level of the echo at one element.
+    #[serde(rename = "received_dbm")]
     pub received: DecibelMilliwatts,
     /// Level of one receiver's noise in a sample.
+    #[serde(rename = "noise_dbm")]
     pub noise: DecibelMilliwatts,
     /// SNR of a sample.
+    #[serde(rename = "sample_snr_db")]
     pub sample: Decibels,
     /// SNR in its bin of a range profile.
+    #[serde(rename = "range_snr_db")]
     pub range: Decibels,
     /// SNR by one end, where its elements add in phase.
+    #[serde(rename = "end_snr_db")]
     pub end: Decibels,
     /// SNR by the whole array, where its elements add in phase: in the far field ([`Radar::far_field_metres`]), or focused.
+    #[serde(rename = "array_snr_db")]
     pub array: Decibels,
 }
 

@@ -4,11 +4,6 @@ use super::{BuiltArray, Decibels, ElementError};
 
 const COLUMNS: [&str; 4] = ["place in mm", "forward in mm", "gain in dB", "phase in degrees"];
 
-/// A reason for which a text is no list of elements.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct ElementListError(String);
-
 /// Characters of a cell in an error message.
 const SHOWN: usize = 20;
 
@@ -17,14 +12,14 @@ impl BuiltArray {
     /// tabs, semicolons, commas or spaces: offset along +x and towards the scene (millimetres), gain (decibels), phase (degrees). Missing
     /// numbers and empty cells are 0.
     /// # Errors
-    /// [`ElementListError`] names line and column.
-    pub fn from_list(text: &str, elements: usize) -> Result<BuiltArray, ElementListError> {
+    /// The message names line and column.
+    pub fn from_list(text: &str, elements: usize) -> Result<BuiltArray, String> {
         let lines = text.trim_end().lines();
         let found = lines.clone().count();
         if found != elements {
-            return Err(ElementListError(format!(
+            return Err(format!(
                 "{found} lines for {elements} elements; expected one line an element, the leftmost first"
-            )));
+            ));
         }
         let elements = lines.enumerate().map(|(i, line)| element(i + 1, line)).collect::<Result<_, _>>()?;
         Ok(BuiltArray { elements })
@@ -40,18 +35,18 @@ fn cells(line: &str) -> Vec<&str> {
     line.split([',', ' ']).map(str::trim).filter(|cell| !cell.is_empty()).collect()
 }
 
-fn element(line: usize, text: &str) -> Result<ElementError, ElementListError> {
+fn element(line: usize, text: &str) -> Result<ElementError, String> {
     let cells = cells(text);
     if cells.len() > COLUMNS.len() {
         let (found, expected) = (cells.len(), COLUMNS.join(", "));
-        return Err(ElementListError(format!("line {line} has {found} columns; expected at most 4: {expected}")));
+        return Err(format!("line {line} has {found} columns; expected at most 4: {expected}"));
     }
     let mut numbers = [0.0; COLUMNS.len()];
     for ((number, cell), column) in numbers.iter_mut().zip(cells).zip(COLUMNS) {
         if !cell.is_empty() {
             let parsed = cell.parse::<f64>().ok().filter(|v| v.is_finite());
             let shown: String = cell.chars().take(SHOWN).collect();
-            let problem = || ElementListError(format!("line {line}, {column}: \"{shown}\" is no number"));
+            let problem = || format!("line {line}, {column}: \"{shown}\" is no number");
             *number = parsed.ok_or_else(problem)?;
         }
     }

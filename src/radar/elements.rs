@@ -165,11 +165,6 @@ impl TryFrom<Lists> for BuiltArray {
 
 const MAX_ELEMENTS: usize = 65536;
 
-/// A reason for which a list of element errors is refused.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct BuiltArrayError(String);
-
 const MAX_GAIN_DB: f64 = 200.0;
 const MAX_PHASE_DEGREES: f64 = 3600.0;
 const MAX_POSITION_MILLIMETRES: f64 = 1000.0;
@@ -260,11 +255,11 @@ impl BuiltArray {
 
     /// Checks that the list fits `radar` and holds usable numbers.
     /// # Errors
-    /// [`BuiltArrayError`] names the element and the quantity.
-    pub fn validate(&self, radar: &Radar) -> Result<(), BuiltArrayError> {
+    /// The message names the element and the quantity.
+    pub fn validate(&self, radar: &Radar) -> Result<(), String> {
         let (found, expected) = (self.elements.len(), radar.elements);
         if found != 0 && found != expected {
-            return Err(BuiltArrayError(format!("{found} elements are described; the radar has {expected}")));
+            return Err(format!("{found} elements are described; the radar has {expected}"));
         }
         for (element, e) in self.elements.iter().enumerate() {
             for (field, value, most) in [
@@ -274,9 +269,9 @@ impl BuiltArray {
                 ("forward_millimetres", e.forward_millimetres, MAX_POSITION_MILLIMETRES),
             ] {
                 if value.is_nan() || value.abs() > most {
-                    return Err(BuiltArrayError(format!(
+                    return Err(format!(
                         "element {element}: {field} is {value}; expected a number from -{most} to {most}"
-                    )));
+                    ));
                 }
             }
         }

@@ -13,11 +13,6 @@ pub struct Layout {
     pairs: Option<Vec<Pair>>,
 }
 
-/// Elements that a radar has not.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct LayoutError(pub(super) String);
-
 /// Checks a layout that is a list of numbers of elements.
 /// # Errors
 /// The element that is not there or is given twice, and the values allowed.
@@ -69,13 +64,13 @@ impl Layout {
     ///
     /// Places on the grid keep the array's unambiguous field of view, as in multi-coset sampling (thesis figures 1-2 and 1-3).
     /// # Errors
-    /// [`LayoutError`] for no element or for more than `radar` has.
-    pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, LayoutError> {
+    /// The fault, for no element or for more than `radar` has.
+    pub fn random(radar: &Radar, count: usize, seed: u64) -> Result<Self, String> {
         let places = radar.elements;
         if count == 0 || count > places {
-            return Err(LayoutError(format!(
+            return Err(format!(
                 "a random layout of {count} elements was asked for; the aperture has room for 1 to {places}"
-            )));
+            ));
         }
         let last = places - 1;
         let inner = index::sample(&mut ChaCha8Rng::seed_from_u64(seed), last - 1, count.saturating_sub(2));
@@ -87,6 +82,22 @@ impl Layout {
 
     pub(super) fn of_elements(radar: &Radar, elements: impl IntoIterator<Item = usize>) -> Self {
         Layout::of_numbers(radar, &elements.into_iter().filter(|n| !radar.is_gap(*n)).collect::<Vec<_>>())
+    }
+
+    /// The virtual elements of a MIMO radar (thesis figure 1-4), in rising order: receivers at the radar's spacing and transmitters a
+    /// whole receiver array apart make one gapless line centred on x = 0; 3 transmitters and 4 receivers give the 12 elements of one end.
+    ///
+    /// A far reflector delays the way out by `x_t cos(theta)` and the way back by `x_r cos(theta)`: the pair measures what one
+    /// element at `x_t + x_r` would.
+    pub fn mimo(radar: &Radar, transmitters: usize, receivers: usize) -> Self {
+        let line =
+            |count: usize, spacing: f64| (0..count).map(move |i| (i as f64 - (count as f64 - 1.0) / 2.0) * spacing);
+        let spacing = radar.element_spacing_metres;
+        let sums =
+            line(transmitters, receivers as f64 * spacing).flat_map(|t| line(receivers, spacing).map(move |r| t + r));
+        let mut x_metres: Vec<f64> = sums.collect();
+        x_metres.sort_by(f64::total_cmp);
+        Layout::at(x_metres)
     }
 
     /// Monostatic elements at these places in rising order, metres.
@@ -117,63 +128,6 @@ impl Layout {
     /// Whether there is no element.
     pub fn is_empty(&self) -> bool {
         self.x_metres.is_empty()
-    }
-}
-
-/// Transmitters and receivers of a MIMO radar: every pair of them acts as one virtual element (thesis figure 1-4).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Mimo {
-    /// Position of each transmitter, metres.
-    pub transmitter_x_metres: Vec<f64>,
-    /// Position of each receiver, metres.
-    pub receiver_x_metres: Vec<f64>,
-}
-
-/// One virtual element and the pair it stands for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct VirtualElement {
-    /// Index of the transmitter.
-    pub transmitter: usize,
-    /// Index of the receiver.
-    pub receiver: usize,
-    /// Place of the virtual element, metres.
-    pub x_metres: f64,
-}
-
-impl Mimo {
-    /// Receivers at the radar's spacing and transmitters a whole receiver array apart, so that the virtual elements form one
-    /// gapless line centred on x = 0: 3 transmitters and 4 receivers give the 12 elements of one end.
-    pub fn filled(radar: &Radar, transmitters: usize, receivers: usize) -> Self {
-        let line = |count: usize, spacing: f64| -> Vec<f64> {
-            (0..count).map(|i| (i as f64 - (count as f64 - 1.0) / 2.0) * spacing).collect()
-        };
-        let spacing = radar.element_spacing_metres;
-        Mimo {
-            transmitter_x_metres: line(transmitters, receivers as f64 * spacing),
-            receiver_x_metres: line(receivers, spacing),
-        }
-    }
-
-    /// The virtual element of every pair, in rising order of position.
-    ///
-    /// A far reflector delays the way out by `x_t cos(theta)` and the way back by `x_r cos(theta)`: the pair measures what one
-    /// element at `x_t + x_r` would.
-    pub fn virtual_elements(&self) -> Vec<VirtualElement> {
-        let Mimo { transmitter_x_metres, receiver_x_metres } = self;
-        let pair = |(transmitter, receiver): (usize, usize)| {
-            let x_metres = transmitter_x_metres[transmitter] + receiver_x_metres[receiver];
-            VirtualElement { transmitter, receiver, x_metres }
-        };
-        let receivers = receiver_x_metres.len();
-        let numbers = (0..transmitter_x_metres.len()).flat_map(|t| (0..receivers).map(move |r| (t, r)));
-        let mut pairs: Vec<VirtualElement> = numbers.map(pair).collect();
-        pairs.sort_by(|a, b| a.x_metres.total_cmp(&b.x_metres));
-        pairs
-    }
-
-    /// The virtual elements as a layout.
-    pub fn layout(&self) -> Layout {
-        Layout::at(self.virtual_elements().into_iter().map(|v| v.x_metres).collect())
     }
 }
 
@@ -219,15 +173,12 @@ mod tests {
     #[test]
     fn three_by_four_gives_the_twelve_elements_of_an_end() {
         let radar = Radar::default();
-        let mimo = Mimo::filled(&radar, 3, 4);
-        let layout = mimo.layout();
+        let layout = Layout::mimo(&radar, 3, 4);
         let end = Layout::one_end(&radar, End::First);
         let centre = radar.end_centre_metres(End::First);
         assert_eq!(layout.len(), 12);
         for (v, e) in layout.x_metres.iter().zip(&end.x_metres) {
             assert!((v - (e - centre)).abs() < 1e-12);
         }
-        let pairs = mimo.virtual_elements();
-        assert_eq!((pairs[5].transmitter, pairs[5].receiver), (1, 1));
     }
 }

@@ -1,6 +1,6 @@
 //! Layouts by name, as the command line offers them.
 
-use super::{End, Layout, LayoutError, Mimo, Radar, check_layout};
+use super::{End, Layout, Radar, check_layout};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -45,8 +45,8 @@ impl LayoutKind {
 
     /// The layout's elements on `radar`.
     /// # Errors
-    /// [`LayoutError`] for elements that `radar` has not.
-    pub fn layout(&self, radar: &Radar) -> Result<Layout, LayoutError> {
+    /// The fault, for elements that `radar` has not.
+    pub fn layout(&self, radar: &Radar) -> Result<Layout, String> {
         // One element too many is enough for an error.
         let steps = |count: usize, step: usize| (0..count.min(radar.elements + 1)).map(move |k| k.saturating_mul(step));
         let numbers: Vec<usize> = match self {
@@ -55,7 +55,7 @@ impl LayoutKind {
             LayoutKind::OneEnd => return Ok(Layout::one_end(radar, End::First)),
             LayoutKind::Random { elements, seed } => return Layout::random(radar, *elements, *seed),
             LayoutKind::Mimo { transmitters, receivers } => {
-                return Ok(Mimo::filled(radar, *transmitters, *receivers).layout());
+                return Ok(Layout::mimo(radar, *transmitters, *receivers));
             }
             LayoutKind::Nested { neighbours: a, apart: b } => {
                 steps(*a, 1).chain(steps(*b, a.saturating_add(1)).map(|n| n.saturating_add(*a))).collect()
@@ -67,17 +67,17 @@ impl LayoutKind {
             LayoutKind::Thinned { step } => (0..radar.elements).step_by((*step).max(1)).collect(),
             LayoutKind::Listed(numbers) => numbers.clone(),
         };
-        check_layout(&numbers, radar.elements).map_err(LayoutError)?;
+        check_layout(&numbers, radar.elements)?;
         Ok(Layout::of_elements(radar, numbers))
     }
 
     /// Numbers of the elements of `radar`.
     /// # Errors
-    /// [`LayoutError`] as of [`LayoutKind::layout`], and for elements that stand between those of `radar`.
-    pub fn numbers(&self, radar: &Radar) -> Result<Vec<usize>, LayoutError> {
+    /// The fault, as of [`LayoutKind::layout`], and for elements that stand between those of `radar`.
+    pub fn numbers(&self, radar: &Radar) -> Result<Vec<usize>, String> {
         self.layout(radar)?
             .numbers(radar)
-            .ok_or_else(|| LayoutError(format!("the elements of {self} don't stand on the radar's own grid")))
+            .ok_or_else(|| format!("the elements of {self} don't stand on the radar's own grid"))
     }
 }
 
@@ -129,25 +129,20 @@ impl From<LayoutKind> for String {
 }
 
 impl TryFrom<String> for LayoutKind {
-    type Error = UnknownLayout;
+    type Error = String;
 
-    fn try_from(name: String) -> Result<Self, UnknownLayout> {
+    fn try_from(name: String) -> Result<Self, String> {
         name.parse()
     }
 }
 
-/// A name that stands for no layout.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no layout \"{0}\"; expected {names}", names = LayoutKind::NAMES)]
-pub struct UnknownLayout(String);
-
 impl FromStr for LayoutKind {
-    type Err = UnknownLayout;
+    type Err = String;
 
-    fn from_str(name: &str) -> Result<Self, UnknownLayout> {
-        let unknown = || UnknownLayout(name.to_owned());
+    fn from_str(name: &str) -> Result<Self, String> {
+        let unknown = || format!("there is no layout \"{name}\"; expected {}", LayoutKind::NAMES);
         let count = |text: &str| text.parse::<usize>().ok().filter(|count| *count > 0).ok_or_else(unknown);
-        let two = |text: &str| -> Result<(usize, usize), UnknownLayout> {
+        let two = |text: &str| -> Result<(usize, usize), String> {
             let (a, b) = text.split_once('x').ok_or_else(unknown)?;
             Ok((count(a)?, count(b)?))
         };

@@ -22,13 +22,12 @@ mod wave;
 mod window;
 
 pub use across::FEW_COLUMNS;
-pub use antennas::{Antennas, AntennasError};
+pub use antennas::Antennas;
 pub use budget::{LinkBudget, LinkFigures, Pattern};
 pub use convention::Convention;
-pub use element_list::ElementListError;
-pub use elements::{BuiltArray, BuiltArrayError, ElementError, Tolerances};
-pub use layout::{Layout, LayoutError, Mimo, VirtualElement, check_layout};
-pub use layout_kind::{LayoutKind, UnknownLayout, ranges};
+pub use elements::{BuiltArray, ElementError, Tolerances};
+pub use layout::{Layout, check_layout};
+pub use layout_kind::{LayoutKind, ranges};
 pub use memory::MAX_MEMORY_BYTES;
 pub use pair::Pair;
 pub use polar::Polar;
@@ -61,6 +60,14 @@ pub enum Carrier {
 }
 
 impl Carrier {
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Carrier::OneWay => "one-way",
+            Carrier::TwoWay => "two-way",
+        }
+    }
+
     /// Carrier turns for each wavelength of distance, signed: the `s q` of equation 3.1 (-1 or +2).
     pub fn turns_per_wavelength(self) -> f64 {
         match self {

@@ -83,10 +83,10 @@ impl TryFrom<Said> for Radar {
         let bandwidth_hz = said.bandwidth_hz.unwrap_or(usual.bandwidth_hz);
         let carrier = match (said.convention, said.carrier) {
             (Some(convention), Some(carrier)) if convention.carrier() != carrier => {
-                let (name, expected) = (convention.name(), carrier_name(convention.carrier()));
+                let (name, expected) = (convention.name(), convention.carrier().name());
                 return Err(format!(
                     "radar.carrier is \"{}\" beside convention = \"{name}\"; expected \"{expected}\", or one of the two alone",
-                    carrier_name(carrier)
+                    carrier.name()
                 ));
             }
             (Some(convention), _) => convention.carrier(),
@@ -153,13 +153,6 @@ impl Said {
             ));
         }
         Ok(Some(antennas))
-    }
-}
-
-fn carrier_name(carrier: Carrier) -> &'static str {
-    match carrier {
-        Carrier::OneWay => "one-way",
-        Carrier::TwoWay => "two-way",
     }
 }
 

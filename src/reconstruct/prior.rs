@@ -29,25 +29,22 @@ impl From<Floor> for NoisePrior {
     }
 }
 
-/// A noise prior's name that could not be read.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "unknown noise \"{0}\"; expected white, white=SIGMA with SIGMA above 0, or a floor: thesis, exact, thermal, snr=DB or dbm=LEVEL"
-)]
-pub struct NoisePriorError(String);
-
 impl FromStr for NoisePrior {
-    type Err = NoisePriorError;
+    type Err = String;
 
     /// Reads the text of [`Display`](fmt::Display), and the name of a floor.
-    fn from_str(s: &str) -> Result<Self, NoisePriorError> {
+    fn from_str(s: &str) -> Result<Self, String> {
         let sigma = |text: &str| text.parse::<f64>().ok().filter(|sigma| sigma.is_finite() && *sigma > 0.0);
         let prior = match s.split_once('=') {
             _ if s == "white" => Some(NoisePrior::UNKNOWN),
             Some(("white", text)) => sigma(text).map(|sigma| NoisePrior::White { sigma: Some(sigma) }),
             _ => s.parse::<Floor>().ok().map(NoisePrior::from),
         };
-        prior.ok_or_else(|| NoisePriorError(s.to_owned()))
+        prior.ok_or_else(|| {
+            format!(
+                "unknown noise \"{s}\"; expected white, white=SIGMA with SIGMA above 0, or a floor: thesis, exact, thermal, snr=DB or dbm=LEVEL"
+            )
+        })
     }
 }
 

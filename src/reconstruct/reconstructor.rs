@@ -45,6 +45,10 @@ pub enum Hears {
     Layouts,
 }
 
+/// The reason why a method of samples can't answer to the input of the thesis' networks.
+pub const NEEDS_SAMPLES: &str =
+    "it needs sub0 and sub1; polar_partial_mag_phase is the input of the thesis' networks alone";
+
 /// A method that computes a map of the whole array from the samples of the two ends.
 ///
 /// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
@@ -193,9 +197,7 @@ pub trait Reconstructor: Send + Sync {
     /// # Errors
     /// [`ReconstructError::Unusable`] from every method that needs the samples themselves; [`ReconstructError::Shape`].
     fn reconstruct_mag_phase(&self, _: &Radar, _: &Array3<f64>) -> Result<Reconstruction> {
-        let reason =
-            "it needs sub0 and sub1; polar_partial_mag_phase is the input of the thesis' networks alone".into();
-        Err(self.unusable(reason))
+        Err(self.unusable(NEEDS_SAMPLES.to_owned()))
     }
 
     /// The noise beneath the scenes of the method's training; `None` for methods that aren't trained.

@@ -16,6 +16,15 @@ pub(super) fn all_analytic<D: Dimension>(samples: ArrayView<'_, Complex64, D>, l
     all
 }
 
+/// Takes out the mean along the last axis.
+pub(super) fn centre<D: Dimension>(samples: &mut Array<Complex64, D>) {
+    let last = Axis(samples.ndim().saturating_sub(1));
+    for mut row in samples.lanes_mut(last) {
+        let mean = row.sum() / row.len().max(1) as f64;
+        row.mapv_inplace(|v| v - mean);
+    }
+}
+
 /// The analytic signal of real samples, of `len` samples, half as many at least: the positive half of their spectrum, transformed back.
 pub(super) fn analytic(samples: &[Complex64], len: usize) -> Vec<Complex64> {
     let half = samples.len().div_ceil(2);

@@ -3,6 +3,7 @@
 use super::described::{Described, beside, open_file, read_text};
 use super::raw;
 use super::{Fault, Offer, Origin, Recording, RecordingError};
+use crate::files::ends_in;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -18,8 +19,7 @@ pub fn is_recording_at(path: &Path) -> bool {
 
 /// Whether the file `path` is the TOML of a recording; not where it can't be read or ends otherwise.
 fn is_toml_at(path: &Path) -> bool {
-    let is_toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-    is_toml && open_file(path).is_ok_and(|file| read_text(file).is_ok_and(|text| is_recording(&text)))
+    ends_in(path, &["toml"]) && open_file(path).is_ok_and(|file| read_text(file).is_ok_and(|text| is_recording(&text)))
 }
 
 /// The file that holds the samples of the recording whose TOML is `path`; `None` where that is no such TOML.

@@ -145,7 +145,7 @@ impl Disturbances {
     /// # Errors
     /// [`SceneError`] names the fault.
     pub fn validate(&self, radar: &Radar) -> Result<(), SceneError> {
-        self.elements.validate(radar)?;
+        self.elements.validate(radar).map_err(SceneError::Elements)?;
         let check = |what, field, value: f64, low: f64, high: f64| {
             let usable = (low..=high).contains(&value);
             usable.then_some(()).ok_or(SceneError::Disturbance { what, field, value, low, high })

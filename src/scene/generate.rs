@@ -14,7 +14,7 @@ mod world;
 
 pub use beyond::Beyond;
 pub use kind::{Kind, NoRoom};
-pub use mixture::{Mixture, MixtureError};
+pub use mixture::Mixture;
 
 use super::{Line, Object, Point, Scene};
 use crate::radar::Radar;

@@ -22,7 +22,7 @@ pub use motion::MAX_SPEED_METRES_PER_SECOND;
 pub use object::{GaussianCluster, Line, MAX_NAME_CHARACTERS, Object, Point};
 pub use shape::Shape;
 
-use crate::radar::{BuiltArrayError, Radar, RadarError};
+use crate::radar::{Radar, RadarError};
 use serde::{Deserialize, Serialize};
 
 /// One ideal point reflector.
@@ -105,7 +105,7 @@ pub enum SceneError {
     #[error("the scene has {count} {what}; at most {MAX_REFLECTORS} can be simulated")]
     TooMany { count: usize, what: &'static str },
     #[error("disturbances.elements: {0}")]
-    Elements(#[from] BuiltArrayError),
+    Elements(String),
     #[error("{what}: {field} is {value}; expected a number from {low} to {high}")]
     Disturbance { what: &'static str, field: &'static str, value: f64, low: f64, high: f64 },
     #[error(transparent)]

@@ -48,16 +48,12 @@ impl fmt::Display for Algorithm {
     }
 }
 
-/// An algorithm's name that is not known.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown algorithm \"{0}\"; expected direct, exact, split, gridded or closed-form")]
-pub struct UnknownAlgorithm(String);
-
 impl FromStr for Algorithm {
-    type Err = UnknownAlgorithm;
+    type Err = String;
 
-    fn from_str(s: &str) -> Result<Self, UnknownAlgorithm> {
-        Algorithm::ALL.into_iter().find(|a| a.name() == s).ok_or_else(|| UnknownAlgorithm(s.to_owned()))
+    fn from_str(s: &str) -> Result<Self, String> {
+        let unknown = || format!("unknown algorithm \"{s}\"; expected direct, exact, split, gridded or closed-form");
+        Algorithm::ALL.into_iter().find(|a| a.name() == s).ok_or_else(unknown)
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn simulate_built_for(
     seed: u64,
 ) -> Made<BeatSignal> {
     scene.validate(radar)?;
-    array.validate(radar).map_err(SceneError::from)?;
+    array.validate(radar).map_err(SceneError::Elements)?;
     let echoing = Echoing::of(radar, scene);
     let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
     let mut signal =

@@ -64,7 +64,7 @@ pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
 pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<ChirpSamples> {
     scene.validate(radar)?;
     let array = &*scene.disturbances.elements_of(radar);
-    array.validate(radar).map_err(SceneError::from)?;
+    array.validate(radar).map_err(SceneError::Elements)?;
     let moving = Moving::of(scene);
     if moving != Moving::Nothing {
         scene.at(radar.chirps as f64 * radar.chirp_interval_seconds).validate(radar)?;

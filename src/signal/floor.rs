@@ -73,17 +73,10 @@ impl Floor {
     }
 }
 
-/// A floor's name that could not be read.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "unknown floor \"{0}\"; expected thesis, exact, thermal, snr=DB with DB between -100 and 300, or dbm=LEVEL with LEVEL between -300 and 200"
-)]
-pub struct FloorError(String);
-
 impl FromStr for Floor {
-    type Err = FloorError;
+    type Err = String;
 
-    fn from_str(s: &str) -> Result<Self, FloorError> {
+    fn from_str(s: &str) -> Result<Self, String> {
         let number = |text: &str, allowed: std::ops::RangeInclusive<f64>| {
             text.parse::<f64>().ok().filter(|number| allowed.contains(number))
         };
@@ -97,7 +90,11 @@ impl FromStr for Floor {
             }
             _ => None,
         };
-        floor.ok_or_else(|| FloorError(s.to_owned()))
+        floor.ok_or_else(|| {
+            format!(
+                "unknown floor \"{s}\"; expected thesis, exact, thermal, snr=DB with DB between -100 and 300, or dbm=LEVEL with LEVEL between -300 and 200"
+            )
+        })
     }
 }
 

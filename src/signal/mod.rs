@@ -43,7 +43,7 @@ pub mod split;
 pub mod synthesis;
 mod unfinished;
 
-pub use algorithm::{Algorithm, Precision, UnknownAlgorithm};
+pub use algorithm::{Algorithm, Precision};
 pub use built::{add_interference, apply_responses, simulate_built};
 pub use calibration::{Calibration, calibrate};
 pub use chirps::{ChirpSamples, simulate_chirps_for};

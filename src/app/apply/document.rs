@@ -43,7 +43,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) -> Re
 /// Opens a scene file or a recording; on any error the scene on screen stays.
 fn open(state: &mut State, path: PathBuf) -> Result<(), String> {
     #[cfg(feature = "live")]
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("safetensors")) {
+    if crate::files::ends_in(&path, &["safetensors"]) {
         return open_weights(state, &path);
     }
     if let Some(document) = read(state, &path) {

@@ -2,6 +2,7 @@
 
 use crate::app::jobs::Question;
 use crate::app::state::Purpose;
+use crate::files::ends_in;
 use crate::platform::fs;
 use eframe::egui::{self, Button, Context, Id, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
@@ -68,12 +69,10 @@ impl Browser {
             }
         };
         let endings = self.purpose.facts().endings;
-        let of_kind =
-            |path: &Path| path.extension().is_some_and(|e| endings.iter().any(|ending| e.eq_ignore_ascii_case(ending)));
         let listed = |entry: fs::DirEntry| {
             let path = entry.path();
             let (name, is_folder) = (entry.file_name().to_string_lossy().into_owned(), fs::is_dir(&path));
-            let fits = self.all || (!name.starts_with('.') && (is_folder || of_kind(&path)));
+            let fits = self.all || (!name.starts_with('.') && (is_folder || ends_in(&path, endings)));
             fits.then_some(Entry { name, is_folder })
         };
         let mut entries: Vec<Entry> = read.filter_map(Result::ok).filter_map(listed).take(MAX_LISTED).collect();

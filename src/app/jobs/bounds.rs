@@ -64,7 +64,7 @@ impl Query for BoundsRequest {
     fn compute(&self, (): &mut (), _: &Task) -> Result<BoundsResult, Failure> {
         let BoundsRequest { radar, settings, reflector, .. } = self;
         let BoundsSettings { elements, seed, snr, columns, bins } = *settings;
-        let layout = elements.layout(radar, seed).map_err(|e| e.to_string())?;
+        let layout = elements.layout(radar, seed)?;
         let centre = radar.polar_of(reflector.x_metres, reflector.y_metres.abs());
         let variance = noise_variance(radar, &layout, reflector, snr);
         let bound = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).map(|bounds| bounds[0]);

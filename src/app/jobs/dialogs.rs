@@ -172,7 +172,7 @@ impl Dialogs {
 
 /// The command for a dropped file.
 fn command_of_dropped(path: PathBuf) -> Command {
-    match path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+    match crate::files::ends_in(&path, &["csv"]) {
         true => Command::Rows(RowsCommand::OpenTable(path)),
         false => Command::Document(DocumentCommand::OpenPath(path)),
     }

@@ -172,7 +172,7 @@ fn list(ui: &mut Ui, radar: &Radar, memory: &mut ElementsMemory, asked: &mut Vec
                 let command = RadarCommand::SetElements(Arc::new(elements));
                 press(ui, "Use the list", "Replace all elements; undo brings them back", command, asked);
             }
-            Err(error) => _ = ui.colored_label(ui.visuals().error_fg_color, error.to_string()),
+            Err(error) => _ = ui.colored_label(ui.visuals().error_fg_color, error),
         }
     });
 }

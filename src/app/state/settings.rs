@@ -4,7 +4,7 @@ use super::panel::MapKind;
 use super::several::Several;
 use crate::interact::{Coordinates, Snap};
 use crate::maps::Aperture;
-use crate::radar::{Decibels, End, Layout as ElementLayout, LayoutError, Mimo, Radar};
+use crate::radar::{Decibels, End, Layout as ElementLayout, Radar};
 use crate::view::View;
 use eframe::egui::ThemePreference;
 use serde::{Deserialize, Serialize};
@@ -87,13 +87,13 @@ impl Elements {
     /// Positions of the elements.
     ///
     /// # Errors
-    /// [`LayoutError`] for more random elements than the array has.
-    pub fn layout(self, radar: &Radar, seed: u64) -> Result<ElementLayout, LayoutError> {
+    /// The fault, for more random elements than the array has.
+    pub fn layout(self, radar: &Radar, seed: u64) -> Result<ElementLayout, String> {
         Ok(match self {
             Elements::TwoEnds => ElementLayout::two_ends(radar),
             Elements::OneEnd => ElementLayout::one_end(radar, End::First),
             Elements::Random(count) => return ElementLayout::random(radar, count, seed),
-            Elements::Mimo => Mimo::filled(radar, 3, 4).layout(),
+            Elements::Mimo => ElementLayout::mimo(radar, 3, 4),
             Elements::All => ElementLayout::uniform(radar),
         })
     }

@@ -1,7 +1,8 @@
 //! `apertura bench --methods`: run time against squared error of every reconstruction method, and times of the searches on crowds.
 
 use crate::commands::CommandError;
-use crate::commands::figure::{DrawingResult, Plot, save, save_numbers, tick};
+use crate::commands::figure::{save, save_numbers, tick};
+use crate::commands::line_chart::{span, widened};
 use crate::commands::{print, print_json};
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::sets::SceneSet;
@@ -9,12 +10,12 @@ use crate::evaluate::tables::Tally;
 use crate::evaluate::trial::Trial;
 use crate::evaluate::{Estimate, upper_median};
 use crate::methods;
+use crate::picture::{Drawing, Painted, PanelArea};
 use crate::radar::{Radar, counted};
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use serde::Serialize;
 use std::path::Path;
@@ -176,19 +177,15 @@ impl Spot {
     }
 }
 
-impl Plot for Report {
+impl Drawing for Report {
     fn size(&self) -> (u32, u32) {
         (1000, 640)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
+    fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Painted {
         let dots: Vec<(f64, f64)> = self.methods.iter().map(MethodRow::mean).collect();
-        let span = |values: &mut dyn Iterator<Item = f64>| {
-            let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
-            (low / 1.7, high * 1.7)
-        };
-        let (fast, slow) = span(&mut dots.iter().map(|d| d.0));
-        let (good, bad) = span(&mut dots.iter().map(|d| d.1));
+        let times = widened(span(dots.iter().map(|d| d.0)), 1.7);
+        let errors = widened(span(dots.iter().map(|d| d.1)), 1.7);
         let mut chart = ChartBuilder::on(area)
             .caption("Reconstruction from the two ends: run time against error", ("sans-serif", 22))
             .margin(14)
@@ -196,7 +193,7 @@ impl Plot for Report {
             .x_label_area_size(46)
             .y_label_area_size(70)
             // Room on the right for the names of the slowest.
-            .build_cartesian_2d((fast..slow * 3.0).log_scale(), (good..bad).log_scale())?;
+            .build_cartesian_2d((times.start..times.end * 3.0).log_scale(), errors.log_scale())?;
         chart
             .configure_mesh()
             .x_desc(format!("median time of a map on {}, ms", counted(self.threads, "thread", "threads")))

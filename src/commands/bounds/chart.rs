@@ -2,12 +2,10 @@
 
 use super::report::{Bound, BoundRow, BoundsReport, columns_to_cos};
 use crate::bounds::Ambiguity;
-use crate::commands::figure::{DrawingResult, Plot};
 use crate::commands::line_chart::{ChartAxis, ChartLine, LineChart, span, widened};
 use crate::evaluate::Placement;
-use crate::picture::ColourMap;
+use crate::picture::{ColourMap, Drawing, Painted, PanelArea};
 use crate::radar::{Polar, Radar, counted};
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::ops::Range;
 
@@ -84,12 +82,12 @@ pub struct AmbiguityFigure<'a> {
 /// Decibels below the reflector's own that are black.
 const RANGE_DB: f64 = 30.0;
 
-impl Plot for AmbiguityFigure<'_> {
+impl Drawing for AmbiguityFigure<'_> {
     fn size(&self) -> (u32, u32) {
         (1000, 60 + 230 * self.patches.len().max(1) as u32)
     }
 
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> DrawingResult<B> {
+    fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Painted {
         let caption = format!("Which places sound like the reflector in the middle: 0 to -{RANGE_DB} dB");
         let area = area.margin(8, 0, 0, 0).titled(&caption, ("sans-serif", 22))?;
         let bin = self.radar.range_resolution_metres();

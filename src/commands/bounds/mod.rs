@@ -8,7 +8,7 @@ use super::figure::{save, save_bitmap, save_numbers};
 use super::{CommandError, print_json};
 use crate::bounds::{Ambiguity, Gains, PositionBound, ambiguity, cramer_rao_of, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
-use crate::radar::{Decibels, Layout, LayoutError, LayoutKind, Polar, Radar};
+use crate::radar::{Decibels, Layout, LayoutKind, Polar, Radar};
 use crate::reconstruct::ReconstructError;
 use crate::scene::Reflector;
 use crate::task::Task;
@@ -81,8 +81,8 @@ impl Args {
         let radar = Radar::default();
         let reflector = self.at;
         let centre = radar.polar_of(reflector.x_metres, reflector.y_metres);
-        let of = |kind: &LayoutKind| Ok((kind.clone(), kind.layout(&radar)?));
-        let layouts: Vec<(LayoutKind, Layout)> = self.layout.iter().map(of).collect::<Result<_, LayoutError>>()?;
+        let of = |kind: &LayoutKind| Ok((kind.clone(), kind.layout(&radar).map_err(CommandError)?));
+        let layouts: Vec<(LayoutKind, Layout)> = self.layout.iter().map(of).collect::<Result<_, CommandError>>()?;
         let other = self.neighbour(&radar, centre)?;
         let report = BoundsReport {
             x_metres: reflector.x_metres,

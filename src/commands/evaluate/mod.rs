@@ -258,7 +258,7 @@ impl Args {
             }
             tables.push((path.display().to_string(), table.rows));
         }
-        let rows = merge(tables)?;
+        let rows = merge(tables).map_err(CommandError)?;
         let missing = lacks(&rows);
         problems.extend(missing.iter().map(|lack| format!("missing: {lack}")));
         if rows.is_empty() || !(problems.is_empty() || self.partial) {

@@ -33,11 +33,6 @@ pub fn write_rows<'a>(out: impl Write, rows: impl IntoIterator<Item = &'a Row>) 
     writer.flush()
 }
 
-/// The reason why a file's rows can't be used; the message names the line, and the column where there is one.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct RowError(String);
-
 /// The rows of a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RowTable {
@@ -53,8 +48,8 @@ pub struct RowTable {
 /// [optional](Column::is_optional) may be missing.
 ///
 /// # Errors
-/// [`RowError`] names the line and the column.
-pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
+/// The message names the line and the column.
+pub fn read_rows(input: impl Read) -> Result<Vec<Row>, String> {
     read(ShortLines::new(input, false)).map(|table| table.rows)
 }
 
@@ -62,26 +57,26 @@ pub fn read_rows(input: impl Read) -> Result<Vec<Row>, RowError> {
 ///
 /// # Errors
 /// As [`read_rows`].
-pub fn read_table(input: impl Read) -> Result<RowTable, RowError> {
+pub fn read_table(input: impl Read) -> Result<RowTable, String> {
     read(ShortLines::new(input, true))
 }
 
-fn read(mut lines: ShortLines<impl Read>) -> Result<RowTable, RowError> {
+fn read(mut lines: ShortLines<impl Read>) -> Result<RowTable, String> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&mut lines);
     let header = reader.headers().map_err(of_csv)?.clone();
     if let Some(missing) = Column::all().find(|column| !column.is_optional() && place(&header, *column).is_none()) {
         let (missing, expected) = (missing.name(), self::header());
-        return Err(RowError(format!("line 1: there is no column \"{missing}\"; expected {}", expected.trim_end())));
+        return Err(format!("line 1: there is no column \"{missing}\"; expected {}", expected.trim_end()));
     }
     let (mut rows, mut record, mut texts) = (Vec::new(), StringRecord::new(), HashSet::new());
     while reader.read_record(&mut record).map_err(of_csv)? {
         if rows.len() == MAX_ROWS {
-            return Err(RowError(format!("there are more than {MAX_ROWS} rows; split the file")));
+            return Err(format!("there are more than {MAX_ROWS} rows; split the file"));
         }
         let mut row: Row = record.deserialize(Some(&header)).map_err(|error| of_cells(&header, &record, error))?;
         if let Some(found) = row.version.filter(|version| *version > FORMAT) {
             let told = format!("the row is of format {found}; this program reads up to format {FORMAT}");
-            return Err(RowError(format!("line {}: {told}", line(&record))));
+            return Err(format!("line {}: {told}", line(&record)));
         }
         row.check().map_err(|(column, expected)| of_cell(&header, &record, column, expected))?;
         row.share(&mut texts);
@@ -99,13 +94,13 @@ fn line(record: &StringRecord) -> u64 {
     record.position().map_or(0, csv::Position::line)
 }
 
-fn of_cell(header: &StringRecord, record: &StringRecord, column: Column, expected: &str) -> RowError {
+fn of_cell(header: &StringRecord, record: &StringRecord, column: Column, expected: &str) -> String {
     let found = place(header, column).and_then(|place| record.get(place)).unwrap_or_default();
     let found: String = found.chars().take(40).collect();
-    RowError(format!("line {}, column {}: \"{found}\"; expected {expected}", line(record), column.name()))
+    format!("line {}, column {}: \"{found}\"; expected {expected}", line(record), column.name())
 }
 
-fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> RowError {
+fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> String {
     for column in Column::all() {
         let Some(cell) = place(header, column).and_then(|place| record.get(place)) else { continue };
         let [name, alone] = [column.name(), cell].map(|text| StringRecord::from(vec![text]));
@@ -121,12 +116,12 @@ fn of_cells(header: &StringRecord, record: &StringRecord, error: csv::Error) -> 
         };
         return of_cell(header, record, column, expected);
     }
-    RowError(format!("line {}: {error}", line(record)))
+    format!("line {}: {error}", line(record))
 }
 
-fn of_csv(error: csv::Error) -> RowError {
+fn of_csv(error: csv::Error) -> String {
     let line = error.position().map_or(1, csv::Position::line);
-    RowError(match error.into_kind() {
+    match error.into_kind() {
         csv::ErrorKind::Io(error) => match error.downcast::<LongLine>() {
             Ok(LongLine { line }) => format!("line {line}: is longer than {MAX_LINE_BYTES} bytes; expected a row"),
             Err(error) => error.to_string(),
@@ -136,7 +131,7 @@ fn of_csv(error: csv::Error) -> RowError {
         }
         csv::ErrorKind::Utf8 { .. } => format!("line {line}: is not text; expected CSV in UTF-8"),
         other => format!("line {line}: {other:?}"),
-    })
+    }
 }
 
 #[cfg(test)]

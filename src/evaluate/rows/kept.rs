@@ -1,9 +1,7 @@
 //! The file of rows that a run appends to and resumes from.
 
-use super::{
-    Column, MergeError, Row, RowTable, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows,
-};
-use crate::files::write_atomically;
+use super::{Column, Row, RowTable, Text, WHY_NO_OTHER_FORMAT, header, merge, read_table, row_writer, write_rows};
+use crate::files::{ends_in, write_atomically};
 use std::collections::{HashMap, HashSet};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom};
@@ -20,8 +18,8 @@ pub enum KeptError {
     Other { path: PathBuf, why: String },
     #[error("{}: another run writes it; wait for that run, or name another file", _0.display())]
     Busy(PathBuf),
-    #[error(transparent)]
-    Merge(#[from] MergeError),
+    #[error("{0}")]
+    Merge(String),
 }
 
 fn on_file(path: &Path) -> impl FnOnce(io::Error) -> KeptError {
@@ -91,7 +89,7 @@ impl RowFile {
             let source = io::Error::new(io::ErrorKind::InvalidInput, "is no file; expected the name of a file");
             return Err(on_file(path)(source));
         }
-        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet")) {
+        if ends_in(path, &["parquet"]) {
             let why = "rows are appended to a CSV file; expected a name that ends in .csv";
             return Err(on_file(path)(io::Error::new(io::ErrorKind::InvalidInput, why)));
         }
@@ -129,7 +127,7 @@ impl RowFile {
         let RowFile { path, out, present, appended, .. } = self;
         drop(out);
         let all: Vec<Row> = present.into_iter().chain(appended).collect();
-        let sorted = merge(vec![(path.display().to_string(), all.clone())])?;
+        let sorted = merge(vec![(path.display().to_string(), all.clone())]).map_err(KeptError::Merge)?;
         if sorted != all {
             write_atomically(&path, |out| write_rows(out, &sorted)).map_err(on_file(&path))?;
         }

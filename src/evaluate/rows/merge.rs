@@ -3,11 +3,6 @@
 use super::{Column, Row, Text, WHY_NO_OTHER_FORMAT};
 use std::collections::BTreeMap;
 
-/// The reason why rows are no table of one run: a row stands there twice, or two rows have different origins.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct MergeError(String);
-
 fn named(row: &Row) -> String {
     format!("scene {} of set {}, seed {}, by {}", row.index, row.set, row.seed, row.method)
 }
@@ -15,8 +10,8 @@ fn named(row: &Row) -> String {
 /// Joins tables, each with its name, into that of one run. Rows are sorted by set, seed and scene; methods stand in the order of their runs, or
 /// else in the order in which they come.
 /// # Errors
-/// [`MergeError`] when a row stands in two tables or twice in one, and when two rows have different origins.
-pub fn merge(tables: Vec<(String, Vec<Row>)>) -> Result<Vec<Row>, MergeError> {
+/// The fault, when a row stands in two tables or twice in one, and when two rows have different origins.
+pub fn merge(tables: Vec<(String, Vec<Row>)>) -> Result<Vec<Row>, String> {
     let names: Vec<String> = tables.iter().map(|(name, _)| name.clone()).collect();
     let mut all: Vec<(usize, Row)> = Vec::new();
     for (table, (_, rows)) in tables.into_iter().enumerate() {
@@ -29,7 +24,7 @@ pub fn merge(tables: Vec<(String, Vec<Row>)>) -> Result<Vec<Row>, MergeError> {
     let key = |row: &Row| (row.set.clone(), row.seed, row.index, row.method.clone());
     if let Some([(first, row), (second, _)]) = all.array_windows().find(|[(_, a), (_, b)]| key(a) == key(b)) {
         let (row, first, second) = (named(row), &names[*first], &names[*second]);
-        return Err(MergeError(format!("{row} stands in {first} and in {second}; expected each row once")));
+        return Err(format!("{row} stands in {first} and in {second}; expected each row once"));
     }
     Ok(all.into_iter().map(|(_, row)| row).collect())
 }
@@ -57,7 +52,7 @@ fn orders(rows: &[(usize, Row)]) -> [BTreeMap<Text, usize>; 2] {
 }
 
 /// Checks that rows have one origin: each is compared with the first row, the first generated one, the first of its method, and the first of its set.
-fn check_alike(names: &[String], rows: &[(usize, Row)]) -> Result<(), MergeError> {
+fn check_alike(names: &[String], rows: &[(usize, Row)]) -> Result<(), String> {
     let mut generated = None;
     let (mut methods, mut sets) = (BTreeMap::new(), BTreeMap::new());
     let Some(first) = rows.first() else { return Ok(()) };
@@ -73,7 +68,7 @@ fn check_alike(names: &[String], rows: &[(usize, Row)]) -> Result<(), MergeError
                 });
                 let why =
                     if column == Column::Version { WHY_NO_OTHER_FORMAT } else { "expected rows that were made alike" };
-                return Err(MergeError(format!("{} is {first} and {second}; {why}", column.name())));
+                return Err(format!("{} is {first} and {second}; {why}", column.name()));
             }
         }
     }

@@ -13,11 +13,11 @@ mod order;
 mod whole;
 
 pub use cell::{CellKind, Text, Value};
-pub use file::{RowError, RowTable, header, read_rows, read_table, row_writer, write_rows};
+pub use file::{RowTable, header, read_rows, read_table, row_writer, write_rows};
 pub use kept::{KeptError, Key, RowFile, RunRows, key, write_merged};
 pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
-pub use merge::{MergeError, merge};
+pub use merge::merge;
 pub use order::{Histogram, estimate, sorted_by};
 pub use whole::Whole;
 

@@ -8,7 +8,7 @@
 mod candidate;
 mod wanted;
 
-pub use wanted::{Aim, Finding, WorsenError, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
+pub use wanted::{Aim, Finding, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
 
 use super::Target;
 use super::failure::Failures;
@@ -26,20 +26,20 @@ impl WorseningSearch {
     /// Searches near `scene` for `method`. `on_try` is called after every batch with the number of tries and the path so far; the search ends
     /// when it returns false.
     /// # Errors
-    /// [`WorsenError`] when the start itself can't be tried. Candidates that can't be simulated are skipped.
+    /// The reason when the start itself can't be tried. Candidates that can't be simulated are skipped.
     pub fn run(
         &self,
         scene: &Scene,
         method: &dyn Reconstructor,
         task: &Task,
         mut on_try: impl FnMut(u32, &[Finding]) -> bool,
-    ) -> Result<WorseningOutcome, WorsenError> {
+    ) -> Result<WorseningOutcome, String> {
         if scene.objects.is_empty() {
-            return Err(WorsenError("the scene is empty; expected an object to move".to_owned()));
+            return Err("the scene is empty; expected an object to move".to_owned());
         }
         if !(self.within_metres > 0.0 && self.within_metres <= 1000.0) {
             let reach = self.within_metres;
-            return Err(WorsenError(format!("a reach of {reach} m; expected more than 0 and at most 1000 m")));
+            return Err(format!("a reach of {reach} m; expected more than 0 and at most 1000 m"));
         }
         let request = Request {
             noise: self.floor.into(),
@@ -47,7 +47,7 @@ impl WorseningSearch {
             task: task.clone(),
             ..Request::default()
         };
-        let trial = self.trial(scene).map_err(|error| WorsenError(error.to_string()))?;
+        let trial = self.trial(scene).map_err(|error| error.to_string())?;
         let start = self.finding(scene, scene, &trial, method, &request, 0)?;
         let mut state = WorseningState { step: FIRST_STEP_PART, path: vec![start], tries: 0 };
         while state.tries < self.tries && !self.is_reached(&state) && on_try(state.tries, &state.path) {
@@ -104,8 +104,8 @@ impl WorseningSearch {
         method: &dyn Reconstructor,
         request: &Request,
         tries: u32,
-    ) -> Result<Finding, WorsenError> {
-        let failed = |error| WorsenError(format!("{}: {error}", method.name()));
+    ) -> Result<Finding, String> {
+        let failed = |error| format!("{}: {error}", method.name());
         let answer = trial.ask(method, request).map_err(failed)?;
         let failures = match self.measure {
             WorseningMeasure::SquaredError => Failures::default(),

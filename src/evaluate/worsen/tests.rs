@@ -66,7 +66,7 @@ fn a_repair_is_the_smallest_move_that_helps() {
 #[test]
 fn a_stopped_search_keeps_what_it_has() {
     let refuse = |search: &WorseningSearch, scene: &Scene| {
-        search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err().to_string()
+        search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err()
     };
     let worsen = search(Aim::Worsen, WorseningMeasure::SquaredError);
     assert!(refuse(&worsen, &Scene::default()).contains("the scene is empty"));

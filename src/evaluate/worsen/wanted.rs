@@ -129,11 +129,6 @@ impl WorseningOutcome {
     }
 }
 
-/// The reason why a search has no result.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct WorsenError(pub(super) String);
-
 impl WorseningMeasure {
     /// The count and SE of a finding, compared in this order: a search maximises them, a repair minimises them.
     pub(super) fn of(self, finding: &Finding) -> (usize, f64) {

@@ -124,11 +124,6 @@ impl Example {
     }
 }
 
-/// The reason why a request gives no examples: it names the kind, radar or element that can't be used.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct ExamplesError(String);
-
 /// The reason why an example can't be made: its scene can't be simulated, the network can't use the samples, or the task was cancelled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("example {index}: {why}")]
@@ -140,8 +135,8 @@ pub struct ExampleError {
 impl Examples {
     /// The examples of a request.
     /// # Errors
-    /// [`ExamplesError`] names the kind, radar or element that can't be used.
-    pub fn new(mut request: ExamplesRequest) -> Result<Self, ExamplesError> {
+    /// The message names the kind, radar or element that can't be used.
+    pub fn new(mut request: ExamplesRequest) -> Result<Self, String> {
         let kinds = || request.mixture.shares().iter().map(|(kind, _)| *kind);
         if request.purpose == Purpose::Test && kinds().any(|kind| kind == Kind::World) {
             let expected = "expected a purpose of training or validation";
@@ -269,8 +264,8 @@ impl Examples {
     }
 }
 
-fn refused(why: impl fmt::Display) -> ExamplesError {
-    ExamplesError(why.to_string())
+fn refused(why: impl fmt::Display) -> String {
+    why.to_string()
 }
 
 impl EndSamples {

@@ -49,9 +49,6 @@ impl WeightFile<'_> {
     /// [`WeightsError`] for a tensor that lies outside the file, [`WeightsError`] if the header can't be written.
     #[cfg(feature = "network")]
     pub(super) fn in_single_precision(&self) -> Result<Vec<u8>, WeightsError> {
-        if self.tensors.values().all(|tensor| tensor.dtype != HALF) {
-            return Ok(self.bytes.to_vec());
-        }
         let mut data = Vec::new();
         let mut tensors = std::collections::BTreeMap::new();
         for (name, tensor) in &self.tensors {

@@ -31,7 +31,10 @@ impl PictureFormat {
         }
     }
 
-    pub(super) fn bytes_of(self, drawing: &impl Drawing) -> Result<Vec<u8>, PictureError> {
+    /// The bytes of a file with `drawing`.
+    /// # Errors
+    /// [`PictureError`] when plotters can't draw.
+    pub fn bytes_of(self, drawing: &impl Drawing) -> Result<Vec<u8>, PictureError> {
         Ok(match self {
             PictureFormat::Png => encode_png(&render(drawing)?)?,
             PictureFormat::Svg => render_svg(drawing)?.into_bytes(),

@@ -1,6 +1,6 @@
 //! A snapshot as curves over direction: of all elements, of one end, and of a method.
 
-use super::canvas::{Drawing, FAINT_INK, HAIRLINE, INK, PAPER, Painted, PanelArea};
+use super::canvas::{Drawing, FAINT_INK, HAIRLINE, INK, Painted, PanelArea};
 use super::text::{self, Weight};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -41,7 +41,6 @@ impl Drawing for DirectionAxis<'_> {
     }
 
     fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Painted {
-        root.fill(&PAPER)?;
         let name = text::fitted(root, self.name, 32, Weight::Bold, WIDTH - 60)?;
         text::line(root, (30, 18), &name, 32, Weight::Bold, &INK)?;
         let about = text::fitted(root, self.about, 18, Weight::Normal, WIDTH - 60)?;
@@ -67,8 +66,7 @@ impl Drawing for DirectionAxis<'_> {
             .axis_style(HAIRLINE)
             .draw()?;
         self.draw_marks(&mut chart)?;
-        self.draw_curves(root, &mut chart)?;
-        Ok(root.present()?)
+        self.draw_curves(root, &mut chart)
     }
 }
 

@@ -1,7 +1,7 @@
 //! A range-Doppler map as a picture.
 
 use super::PictureFormat;
-use super::canvas::{Drawing, PAPER, Painted, PanelArea, PictureError};
+use super::canvas::{Drawing, Painted, PanelArea, PictureError};
 use super::map_panel::{MapAxes, MapCells, MapPanel};
 use crate::maps::doppler::RangeDopplerMap;
 use crate::maps::{Normalisation, RangeAngleMap};
@@ -37,7 +37,6 @@ impl Drawing for Picture<'_> {
     }
 
     fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Painted {
-        root.fill(&PAPER)?;
         let radar = self.radar;
         let velocity = |column: f64| radar.velocity_of_column_metres_per_second(column);
         let range = |bin: f64| radar.range_of_bin_metres(bin);

@@ -2,7 +2,6 @@
 
 use super::PictureError;
 use crate::maps::cfar::CfarError;
-use crate::radar::LayoutError;
 use crate::reconstruct::ReconstructError;
 
 pub(super) type Composed = Result<Vec<u8>, ComposeError>;
@@ -17,7 +16,7 @@ pub enum ComposeError {
     #[error(transparent)]
     Detector(#[from] CfarError),
     #[error("{0}")]
-    Layout(#[from] LayoutError),
+    Layout(String),
     #[error("the recording has the samples of the two ends alone; {0} needs those of every element")]
     EndsAlone(String),
     #[error("the detector needs the power of every cell, which an output has only beside a target")]

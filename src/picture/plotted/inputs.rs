@@ -53,7 +53,7 @@ pub(super) fn layout_samples(
     signal: Option<&BeatSignal>,
     layout: &LayoutKind,
 ) -> Result<Arc<LayoutSamples>, ComposeError> {
-    let numbers = layout.numbers(radar)?;
+    let numbers = layout.numbers(radar).map_err(ComposeError::Layout)?;
     let signal = signal.ok_or_else(|| ComposeError::EndsAlone(layout.to_string()))?;
     Ok(Arc::new(signal.of_layout(&numbers)))
 }

@@ -1,6 +1,6 @@
 //! One range-angle map with title, axes and colour bar.
 
-use super::canvas::{FAINT_INK, HAIRLINE, INK, Painted, PanelArea, PictureError};
+use super::canvas::{FAINT_INK, HAIRLINE, INK, Painted, PanelArea, PictureError, painted};
 use super::text::{self, Weight};
 use crate::picture::colour::{ColourMap, Rgb};
 use crate::picture::detections::CellVerdict;
@@ -64,7 +64,7 @@ impl MapPanel<'_> {
             .build_cartesian_2d(left..right, bottom..top)?;
         let (x, y) = chart.plotting_area().get_pixel_range();
         let size = ((x.end - x.start) as u32, (y.end - y.start) as u32);
-        let pixels = self.cells.paint(size.0 as usize, size.1 as usize);
+        let pixels = painted([size.0 as usize, size.1 as usize], self.cells.dim(), |cells| self.cells.colour(cells));
         let bitmap: BitMapElement<_> = BitMapElement::with_owned_buffer((left, top), size, pixels)
             .ok_or_else(|| PictureError::new("a map has no room"))?;
         chart.draw_series(std::iter::once(bitmap))?;
@@ -101,31 +101,16 @@ impl MapCells<'_> {
         }
     }
 
-    /// RGB pixels, top row first. Of several cells on a pixel the brightest, a hit or a false alarm wins.
-    fn paint(&self, width: usize, height: usize) -> Vec<u8> {
-        let (bins, columns) = self.dim();
-        // The cells under pixel i of n, at least one.
-        let under = |i: usize, n: usize, cells: usize| {
-            let start = i * cells / n;
-            start..((i + 1) * cells / n).max(start + 1)
-        };
-        let mut pixels = Vec::with_capacity(width * height * 3);
-        for row in (0..height).rev() {
-            for column in 0..width {
-                let cells = under(row, height, bins)
-                    .flat_map(|bin| under(column, width, columns).map(move |column| [bin, column]));
-                pixels.extend(self.colour(cells));
-            }
-        }
-        pixels
-    }
-
-    fn colour(&self, cells: impl Iterator<Item = [usize; 2]>) -> Rgb {
+    /// Of several cells on a pixel the brightest, a hit or a false alarm wins.
+    fn colour(&self, cells: &mut dyn Iterator<Item = [usize; 2]>) -> Rgb {
         match self {
             MapCells::Lambda(map, colours) => colours.colour(cells.map(|c| map[c]).fold(0.0, f32::max)),
             MapCells::Above(map, eta) => {
-                let mut cells = cells;
-                if cells.any(|c| map[c] > *eta) { HIT } else { NOTHING }
+                if cells.map(|c| map[c]).any(|v| v > *eta) {
+                    HIT
+                } else {
+                    NOTHING
+                }
             }
             MapCells::Detections(kinds) => cells.map(|c| kinds[c]).max().unwrap_or(CellVerdict::Nothing).fill(true),
         }

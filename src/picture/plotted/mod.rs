@@ -14,7 +14,7 @@ mod recording;
 mod scene_panel;
 mod text;
 
-pub use canvas::{Drawing, PictureError};
+pub use canvas::{Drawing, Painted, PanelArea, PictureError, painted};
 pub use compose::{PictureFormat, Style, compose};
 pub use directions::{Curve, DirectionAxis, Mark};
 pub use doppler::compose_range_doppler;
@@ -23,4 +23,3 @@ pub use inputs::InputMap;
 pub use panels::{DetectedCells, Panels, render, render_svg};
 pub use png::{encode_png, is_our_png};
 pub use recording::{compose_recording, maps_of};
-pub use text::register_fonts;

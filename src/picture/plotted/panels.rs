@@ -74,8 +74,7 @@ const MARGIN: i32 = 24;
 pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
     let (width, height) = drawing.size();
     let mut buffer = vec![0; (width * height * 3) as usize];
-    let bitmap = Lettered::new(BitMapBackend::with_buffer(&mut buffer, (width, height)))?;
-    drawing.draw(&bitmap.into_drawing_area())?;
+    on_paper(drawing, BitMapBackend::with_buffer(&mut buffer, (width, height)))?;
     RgbImage::from_raw(width, height, buffer).ok_or_else(|| PictureError::new("its buffer is too small"))
 }
 
@@ -84,9 +83,17 @@ pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
 /// [`PictureError`] when plotters can't draw.
 pub fn render_svg(drawing: &impl Drawing) -> Result<String, PictureError> {
     let mut svg = String::new();
-    let lettered = Lettered::new(SVGBackend::with_string(&mut svg, drawing.size()))?;
-    drawing.draw(&lettered.into_drawing_area())?;
+    on_paper(drawing, SVGBackend::with_string(&mut svg, drawing.size()))?;
     Ok(svg)
+}
+
+fn on_paper<B: DrawingBackend>(drawing: &impl Drawing, backend: B) -> Painted {
+    // Legends of plotters measure their text by these fonts, whatever the backend is.
+    text::register_fonts()?;
+    let area = Lettered::new(backend)?.into_drawing_area();
+    area.fill(&PAPER)?;
+    drawing.draw(&area)?;
+    Ok(area.present()?)
 }
 
 impl Drawing for Panels<'_> {
@@ -95,7 +102,6 @@ impl Drawing for Panels<'_> {
     }
 
     fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Painted {
-        root.fill(&PAPER)?;
         self.header(root)?;
         let (field_width, field_height) = (LEFT - MARGIN - 8, 396);
         let field = |row: i32| {
@@ -120,7 +126,7 @@ impl Drawing for Panels<'_> {
             let area = root.clone().shrink((LEFT + column * width, HEADER + row * height), (width, height));
             panel.draw(&area, self.radar)?;
         }
-        Ok(root.present()?)
+        Ok(())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Antennas off the array's line, as on a bent bumper. An element's place along the line follows from x alone; y changes path lengths.
 
-use super::{Antennas, AntennasError};
+use super::Antennas;
 use crate::radar::Radar;
 
 const MAX_Y_METRES: f64 = 1.0;
@@ -8,8 +8,8 @@ const MAX_Y_METRES: f64 = 1.0;
 impl Antennas {
     /// The same antennas with these y, metres, positive towards the scene.
     /// # Errors
-    /// [`AntennasError`] where a list has another length, or a value that is not finite or beyond 1 m.
-    pub fn off_line(self, transmitter_y_metres: &[f64], receiver_y_metres: &[f64]) -> Result<Self, AntennasError> {
+    /// The fault, where a list has another length, or a value that is not finite or beyond 1 m.
+    pub fn off_line(self, transmitter_y_metres: &[f64], receiver_y_metres: &[f64]) -> Result<Self, String> {
         check_off_line("transmitter_y_metres", transmitter_y_metres, self.transmitter_x_metres.len())?;
         check_off_line("receiver_y_metres", receiver_y_metres, self.receiver_x_metres.len())?;
         let (transmitter_y_metres, receiver_y_metres) = (transmitter_y_metres.into(), receiver_y_metres.into());
@@ -38,17 +38,17 @@ impl Antennas {
     }
 }
 
-fn check_off_line(list: &str, places: &[f64], expected: usize) -> Result<(), AntennasError> {
+fn check_off_line(list: &str, places: &[f64], expected: usize) -> Result<(), String> {
     if places.len() != expected {
         let found = places.len();
-        return Err(AntennasError(format!("{list} has {found} numbers; expected {expected}, one for each antenna")));
+        return Err(format!("{list} has {found} numbers; expected {expected}, one for each antenna"));
     }
     match places.iter().position(|y| y.is_nan() || y.abs() > MAX_Y_METRES) {
-        Some(index) => Err(AntennasError(format!(
+        Some(index) => Err(format!(
             "number {} of {list} is {}; expected at most {MAX_Y_METRES} m off the line, either way",
             index + 1,
             places[index]
-        ))),
+        )),
         None => Ok(()),
     }
 }
@@ -73,7 +73,7 @@ mod tests {
         Radar::default().of_pairs(3, 4).unwrap()
     }
 
-    fn bent() -> Result<Antennas, AntennasError> {
+    fn bent() -> Result<Antennas, String> {
         radar().antennas.unwrap().off_line(&[-0.01, 0.0, -0.02], &[0.0, 0.003, 0.0, 0.0])
     }
 

@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::quality::Quality;
 use super::table::{Capture, Part};
 use crate::recording::Fault;
-use crate::recording::analytic::all_analytic;
+use crate::recording::analytic::{all_analytic, centre};
 use crate::recording::layout::Parts;
 use crate::recording::layout::stream::Stream;
 use ndarray::{Array3, Array4, Axis, s};
@@ -34,7 +34,7 @@ impl Frame {
         }
         quality.look_at_samples(&all);
         if capture.constant == Part::Out {
-            take_out_constant(&mut all);
+            centre(&mut all);
         }
         if capture.static_clutter == Part::Out && loops > 1 {
             let mean = all.sum_axis(Axis(0)).mapv_into(|v| v / loops as f64);
@@ -79,12 +79,5 @@ impl Frame {
         }
         let sum: f64 = weights.iter().sum();
         weights.into_iter().map(|w| w / sum).collect()
-    }
-}
-
-fn take_out_constant(all: &mut Array4<Complex64>) {
-    for mut row in all.lanes_mut(Axis(3)) {
-        let mean = row.sum() / row.len().max(1) as f64;
-        row.iter_mut().for_each(|v| *v -= mean);
     }
 }

@@ -5,7 +5,7 @@ use crate::recording::layout::{Parts, ReceiverOrder, Words};
 use serde::{Deserialize, Serialize};
 
 /// The layout of a capture, and the frame, loops, chirps and receivers that are taken of it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Capture {
     /// Name of the `.cfg`, beside the TOML; without one the counts stand in this table.

@@ -1,6 +1,6 @@
 //! The number of rows of samples after which rows are the same again: the rows of a loop.
 
-use crate::recording::analytic::all_analytic;
+use crate::recording::analytic::{all_analytic, centre};
 use ndarray::{Array2, s};
 use num_complex::Complex64;
 
@@ -35,10 +35,7 @@ pub(super) fn period(rows: &Array2<Complex64>, mixed: usize, is_real: bool) -> O
         // Real samples have no phase that turns.
         centred = all_analytic(centred.view(), centred.ncols().div_ceil(2));
     }
-    for mut row in centred.outer_iter_mut() {
-        let mean = row.sum() / row.len().max(1) as f64;
-        row.mapv_inplace(|v| v - mean);
-    }
+    centre(&mut centred);
     let power: Vec<f64> = centred.outer_iter().map(|row| row.iter().map(Complex64::norm_sqr).sum()).collect();
     // Likeness of all rows `lag` apart.
     let alike = |lag: usize| {

@@ -6,16 +6,14 @@ use serde::{Deserialize, Serialize};
 
 /// The encoding of a number in 16 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Words {
     /// Two's complement, the low byte first.
     #[default]
-    #[serde(rename = "int16")]
     Int16,
     /// Two's complement with bit 15 flipped, the low byte first.
-    #[serde(rename = "offset-binary")]
     OffsetBinary,
     /// Two's complement, the high byte first.
-    #[serde(rename = "big-endian")]
     BigEndian,
     /// Two's complement of 12 bits, the upper four zero.
     #[serde(rename = "12-bit")]

@@ -2,6 +2,7 @@
 
 use crate::maps::windowed_range_transform;
 use crate::radar::{Radar, WindowFunction};
+use crate::recording::analytic::centre;
 use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
 use num_complex::Complex64;
 
@@ -43,10 +44,7 @@ impl Spectrum {
     pub fn of(rows: &Array2<Complex64>, receivers: usize) -> Spectrum {
         let (count, samples) = rows.dim();
         let mut centred = rows.clone();
-        for mut row in centred.outer_iter_mut() {
-            let mean = row.sum() / samples.max(1) as f64;
-            row.mapv_inplace(|v| v - mean);
-        }
+        centre(&mut centred);
         let radar = Radar { samples, ..Radar::default() };
         let window = WindowFunction::Hann.weights(samples);
         let gain = window.iter().map(|w| w * w).sum::<f64>() / samples.max(1) as f64;

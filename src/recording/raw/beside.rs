@@ -1,5 +1,6 @@
 //! Files beside a capture: its `.cfg`, and the files that go on from it.
 
+use crate::files::{ends_in, folder_of};
 use crate::platform::fs;
 use crate::recording::{Fault, RecordingError};
 use std::path::{Path, PathBuf};
@@ -9,7 +10,7 @@ const MOST_PARTS: usize = 64;
 
 /// The capture: `path`, or where that is a `.cfg`, the data file beside it.
 pub(super) fn data_of(path: &Path) -> Result<PathBuf, RecordingError> {
-    if !ends(path, "cfg") {
+    if !ends_in(path, &["cfg"]) {
         return Ok(path.to_owned());
     }
     let all = ["bin", "dat", "raw", "npy", "npz", "mat", "h5", "hdf5"];
@@ -30,16 +31,11 @@ pub(super) fn config_of(data: &Path) -> Option<PathBuf> {
 
 /// The only file of these endings beside `path`.
 fn only(path: &Path, endings: &[&str]) -> Option<PathBuf> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let entries = fs::read_dir(folder).ok()?;
+    let entries = fs::read_dir(folder_of(path)).ok()?;
     let names = entries.take(MOST_FILES).filter_map(Result::ok).map(|entry| PathBuf::from(entry.file_name()));
-    let mut found = names.filter(|name| endings.iter().any(|end| ends(name, end)));
+    let mut found = names.filter(|name| ends_in(name, endings));
     let first = found.next()?;
     found.next().is_none().then(|| path.with_file_name(first))
-}
-
-fn ends(path: &Path, end: &str) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end))
 }
 
 /// Words in the file names of a cascade's chips, in the order of TI's capture program.

@@ -34,6 +34,7 @@ use super::layout::stream::Stream;
 use super::layout::{Candidate, Certainty, Found, Kind, find, said as said_of};
 use super::profile::RadarProfile;
 use super::{Fault, Offer, Origin, Recording, RecordingError};
+use crate::files::ends_in;
 use boards::Board;
 use first_frame::FirstFrame;
 use std::io::{self, BufReader, Cursor, Read};
@@ -44,14 +45,12 @@ const OFFERED: usize = 4;
 /// Whether `path` names a raw capture, an array without a text, or the `.cfg` of one, by its ending. An `.npz` is one only by its arrays:
 /// [`is_raw_at`].
 pub fn is_raw(path: &Path) -> bool {
-    let ends = |end: &&str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
-    ["bin", "dat", "raw", "cfg"].iter().any(ends) || array::ENDINGS.iter().filter(|end| **end != "npz").any(ends)
+    ends_in(path, &["bin", "dat", "raw", "cfg"]) || ends_in(path, &array::ENDINGS) && !ends_in(path, &["npz"])
 }
 
 /// [`is_raw`], and whether an `.npz` holds samples: an array of two axes or more, and no reflectors of a scene.
 pub fn is_raw_at(path: &Path) -> bool {
-    let is_npz = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npz"));
-    is_raw(path) || is_npz && array::has_samples(path)
+    is_raw(path) || ends_in(path, &["npz"]) && array::has_samples(path)
 }
 
 /// Opens a raw capture or an array as it is: the best layout, the antennas that its `.cfg` makes likely. `config` is its `.cfg`; where none
@@ -72,8 +71,7 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
     let own = (data != path).then(|| path.to_owned());
     let config = config.map(Path::to_owned).or(own).or_else(|| beside::config_of(&data));
     let profile = config.as_deref().map(read_config).transpose()?;
-    let is_array = data.extension().is_some_and(|e| array::ENDINGS.iter().any(|end| e.eq_ignore_ascii_case(end)));
-    if is_array {
+    if ends_in(&data, &array::ENDINGS) {
         return array::import(&data, config, profile.as_ref(), board);
     }
     let (chips, _) = beside::chips(&data);
@@ -252,12 +250,10 @@ fn capture(best: &Candidate, files: &Files, profile: Option<&RadarProfile>) -> C
     let named = |path: &PathBuf| text::beside(path, &files.data);
     Capture {
         config: files.config.as_ref().map(named),
-        sub_frame: None,
         more_files: files.more.iter().map(named).collect(),
         chips: files.chips.iter().map(named).collect(),
         words: layout.words,
         parts: Some(layout.parts),
-        lanes: None,
         q_first: layout.q_first,
         receivers: layout.receivers,
         header_bytes: layout.header_bytes,
@@ -265,11 +261,7 @@ fn capture(best: &Candidate, files: &Files, profile: Option<&RadarProfile>) -> C
         receiver_count: said(counts.receivers),
         loop_chirps: said(counts.chirps),
         loops: said(counts.loops),
-        chirps: None,
-        receivers_taken: None,
-        frame: 0,
         turn: Chirp::Joined(Join::Strongest),
-        constant: Part::Keep,
-        static_clutter: Part::Keep,
+        ..Capture::default()
     }
 }

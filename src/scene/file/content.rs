@@ -1,5 +1,6 @@
 //! The content of a scene file, its two formats, and its errors.
 
+use crate::files::ends_in;
 use crate::files::npz::NpzError;
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError};
@@ -51,12 +52,9 @@ impl SceneFormat {
     /// # Errors
     /// [`SceneFileError::Extension`] for any ending but `.toml` and `.npz`.
     pub fn of_path(path: &Path) -> Result<SceneFormat, SceneFileError> {
-        let extension = path.extension().map(|e| e.to_ascii_lowercase());
-        match extension.as_deref().and_then(|e| e.to_str()) {
-            Some("toml") => Ok(SceneFormat::Toml),
-            Some("npz") => Ok(SceneFormat::Npz),
-            _ => Err(SceneFileError::Extension { path: path.to_owned() }),
-        }
+        let known = [("toml", SceneFormat::Toml), ("npz", SceneFormat::Npz)];
+        let found = known.into_iter().find(|(ending, _)| ends_in(path, &[ending]));
+        found.map(|(_, format)| format).ok_or_else(|| SceneFileError::Extension { path: path.to_owned() })
     }
 }
 

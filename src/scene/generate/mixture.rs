@@ -12,16 +12,6 @@ pub struct Mixture {
     shares: Vec<(Kind, f64)>,
 }
 
-/// A mixture that can't be read.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "mixture \"{mixture}\": {fault}; expected kinds separated by commas, each with a share where they differ, as in 3 or 1=4,2=12,walls=8"
-)]
-pub struct MixtureError {
-    mixture: String,
-    fault: String,
-}
-
 impl Mixture {
     /// Scenes of one kind.
     pub fn of(kind: Kind) -> Mixture {
@@ -54,10 +44,14 @@ impl Mixture {
 }
 
 impl FromStr for Mixture {
-    type Err = MixtureError;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, MixtureError> {
-        let wrong = |fault: String| MixtureError { mixture: text.to_owned(), fault };
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = |fault: String| {
+            let expected =
+                "kinds separated by commas, each with a share where they differ, as in 3 or 1=4,2=12,walls=8";
+            format!("mixture \"{text}\": {fault}; expected {expected}")
+        };
         let mut shares: Vec<(Kind, f64)> = Vec::new();
         for part in text.split(',') {
             let (kind, share) = part.split_once('=').unwrap_or((part, "1"));

@@ -31,8 +31,7 @@ impl Plan for SearchPlan {
             teller.part(tries as f32 / self.search.tries.max(1) as f32);
             !teller.task.is_cancelled()
         };
-        let outcome = self.search.run(&self.scene, self.method.as_ref(), teller.task, on_try);
-        let outcome = outcome.map_err(|error| error.to_string())?;
+        let outcome = self.search.run(&self.scene, self.method.as_ref(), teller.task, on_try)?;
         // Findings of the last batch before it was stopped.
         outcome.path[told..].iter().for_each(|finding| teller.row(finding.clone()));
         Ok(())

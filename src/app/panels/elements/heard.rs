@@ -59,8 +59,8 @@ fn suggested(radar: &Radar) -> impl Iterator<Item = LayoutKind> {
 
 /// The layout that a text names; `None` for the two ends.
 fn layout_of(text: &str, radar: &Radar) -> Result<Option<LayoutKind>, String> {
-    let layout: LayoutKind = text.parse().map_err(|error: crate::radar::UnknownLayout| error.to_string())?;
-    layout.numbers(radar).map_err(|error| error.to_string())?;
+    let layout: LayoutKind = text.parse()?;
+    layout.numbers(radar)?;
     Ok(Some(layout).filter(|layout| *layout != LayoutKind::TwoEnds))
 }
 

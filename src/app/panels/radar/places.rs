@@ -1,7 +1,7 @@
 //! Places of transmitters and receivers as lists of numbers, to be typed or pasted from a spreadsheet.
 
 use crate::app::widgets::{entry_problem, text_entry};
-use crate::radar::{Antennas, AntennasError, Radar};
+use crate::radar::{Antennas, Radar};
 use eframe::egui::Ui;
 
 /// Names of the lists, places along the line and off it.
@@ -40,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
 }
 
 /// The antennas with `places` as list number `list` of `own`. New antennas stand on the line.
-fn taken(own: [&[f64]; 4], list: usize, mut places: Vec<f64>) -> Result<Antennas, AntennasError> {
+fn taken(own: [&[f64]; 4], list: usize, mut places: Vec<f64>) -> Result<Antennas, String> {
     let is_off_line = list >= 2;
     if is_off_line && places.is_empty() {
         places = vec![0.0; own[list].len()];

@@ -1,6 +1,7 @@
 //! Purposes of file dialogs, with their titles, kinds of files and endings.
 
 use super::{CardPlan, Command, DocumentCommand, ExportCommand, LessonCommand, RowsCommand, WorkCommand};
+use crate::files::ends_in;
 use std::path::{Path, PathBuf};
 
 /// Texts of a purpose, as its line of the list has them.
@@ -84,9 +85,8 @@ impl Purpose {
     pub fn destination(self, path: PathBuf) -> Result<PathBuf, String> {
         let endings = self.facts().endings;
         match path.extension() {
-            _ if self.reads() => Ok(path),
+            _ if self.reads() || ends_in(&path, endings) => Ok(path),
             None => Ok(path.with_extension(endings[0])),
-            Some(ending) if endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) => Ok(path),
             Some(_) => Err(self.unknown_ending(&path)),
         }
     }

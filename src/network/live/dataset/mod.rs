@@ -16,7 +16,7 @@ mod shard;
 pub use manifest::{FILE_NAME, Manifest, VERSION};
 
 use super::arrays::Arrays;
-use super::examples::{Example, ExampleError, Examples, ExamplesError, ExamplesRequest, Features};
+use super::examples::{Example, ExampleError, Examples, ExamplesRequest, Features};
 use super::radars::{DRAWN_LIMITS, Radars};
 use crate::evaluate::Target;
 use crate::files::{sha256, write_bytes};
@@ -281,8 +281,7 @@ fn makers(request: &DatasetRequest, purpose: Purpose) -> Result<Vec<Examples>, D
         ..ExamplesRequest::default()
     };
     let of = |kind: &Kind| Examples::new(ExamplesRequest { mixture: Mixture::of(*kind), ..of_all.clone() });
-    let made: Result<_, ExamplesError> = request.kinds.iter().map(of).collect();
-    made.map_err(|error| DatasetError::Request(error.to_string()))
+    request.kinds.iter().map(of).collect::<Result<_, _>>().map_err(DatasetError::Request)
 }
 
 fn write_shard(
