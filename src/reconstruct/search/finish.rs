@@ -32,12 +32,7 @@ const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
 const MAX_OVER_ALONE: f64 = 1.5;
 
 /// Prices of a gain where neighbours cancel each other, as parts of its echo's energy; the first that ends it is taken.
-const RIDGES: [f64; 6] = [0.002, 0.006, 0.02, 0.06, 0.2, 0.6];
-
-/// Decades by which an object must explain more than is left around it to be there without doubt, and the largest reflectivity of any other over
-/// the largest of those, as a ratio.
-const CERTAIN_DECADES: f64 = 2.0;
-const MAX_OVER_CERTAIN: f64 = 3.0;
+const RIDGES: [f64; 7] = [0.0002, 0.0006, 0.002, 0.006, 0.02, 0.06, 0.2];
 
 /// Range bins and columns below which two points over white noise are one.
 const SAME_PLACE: [f64; 2] = [0.25, 1.0];
@@ -119,7 +114,7 @@ pub(super) fn finish(
     let best = if complete { tied(bench, samples, apart, request.noise.is_white()) } else { apart };
     let best = if request.noise.is_white() { merged(radar, bench, samples, best) } else { best };
     let is_certain = complete && !request.noise.is_white();
-    let best = if is_certain { best } else { quieted(bench, samples, without_giants(radar, bench, samples, best)) };
+    let best = if is_certain { best } else { bounded(bench, samples, best) };
     request.task.check()?;
     let residual = best.residual.flat(&bench.sensor);
     let noise_variance = hearing.noise_variance(radar, &residual);
@@ -179,7 +174,7 @@ fn size(gains: &Gains) -> f64 {
 }
 
 /// `fit` with a ridge on its gains that grows until no two neighbours cancel each other.
-fn quieted(bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
+fn bounded(bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
     let alone = fit.atoms.par_iter().map(|atom| size(&bench.solve_alone(samples, *atom).gains[0]));
     let most = MAX_OVER_ALONE * alone.reduce(|| 0.0, f64::max);
     let tie = tie_of(&fit);
@@ -190,24 +185,6 @@ fn quieted(bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
         fit = bench.solve(samples, fit.atoms, tie, ridge);
     }
     fit
-}
-
-/// `fit` without objects that may not be there and whose reflectivity is far above that of all that are: ghosts at great ranges, where little is heard.
-fn without_giants(radar: &Radar, bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
-    let tie = tie_of(&fit);
-    loop {
-        let noise = bench.hearing.noise_variance(radar, &fit.residual.flat(&bench.sensor));
-        let needed = needed_decades(radar, bench, &fit, noise);
-        let certain = fit.gains.iter().zip(&needed).filter(|(_, needed)| **needed >= CERTAIN_DECADES);
-        let largest = certain.map(|(gains, _)| size(gains)).fold(0.0, f64::max);
-        let is_kept =
-            |i: &usize| needed[*i] >= CERTAIN_DECADES || size(&fit.gains[*i]) <= MAX_OVER_CERTAIN * largest;
-        let kept: Vec<usize> = (0..needed.len()).filter(is_kept).collect();
-        if largest == 0.0 || kept.len() == needed.len() {
-            return fit;
-        }
-        fit = bench.solve(samples, kept.into_iter().map(|i| fit.atoms[i]).collect(), tie, 0.0);
-    }
 }
 
 /// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.

@@ -94,6 +94,11 @@ pub(super) const ETA: f32 = 0.896;
 const EVEN_ODDS_DECADES: f64 = 0.8;
 const CONFIDENCE_SLOPE: f64 = 0.8;
 
+/// Decades from which on an object is there without doubt, and the largest reflectivity that another is listed with, over the largest of those, as
+/// a ratio: a ghost far away is large where little is heard.
+const CERTAIN_DECADES: f64 = 2.0;
+const MAX_OVER_CERTAIN: f64 = 3.0;
+
 /// The search's knowledge beside the samples, [`About::told`](crate::reconstruct::About::told).
 const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
     along or across the array's axis; the kind of floor beneath the samples, and how the thesis' program rounds; \
@@ -157,11 +162,17 @@ impl Found {
 
     /// The objects with a map of them, in which noise alone does not exceed `least_eta`, where that is known.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
-        let reflectors = self.reflectors(self.scale).collect();
+        let certain = self.reflectivities.iter().zip(&self.needed_decades).filter(|(_, d)| **d >= CERTAIN_DECADES);
+        let largest = certain.map(|(reflectivity, _)| reflectivity.abs()).reduce(f64::max).unwrap_or(f64::INFINITY);
+        let is_listed = |(r, confidence): &(Reflector, f64)| {
+            *confidence >= confidence_at(CERTAIN_DECADES) || (r.reflectivity * self.scale).abs() <= MAX_OVER_CERTAIN * largest
+        };
+        let listed = self.reflectors(self.scale).zip(self.confidences()).filter(is_listed);
+        let (reflectors, confidences) = listed.unzip();
         Reconstruction {
             lambda,
             reflectors,
-            confidences: self.confidences(),
+            confidences,
             eta: None,
             least_eta,
             doubt: None,
@@ -187,10 +198,8 @@ impl Found {
 
     /// Probability that each reflector is real, by the energy that only its atom explains.
     fn confidences(&self) -> Vec<f64> {
-        let of_atom = |(atom, needed): (&Atom, &f64)| {
-            let odds = 10f64.powf(CONFIDENCE_SLOPE * (needed - EVEN_ODDS_DECADES));
-            std::iter::repeat_n(odds / (1.0 + odds), atom.reflector_count())
-        };
+        let of_atom =
+            |(atom, needed): (&Atom, &f64)| std::iter::repeat_n(confidence_at(*needed), atom.reflector_count());
         self.atoms.iter().zip(&self.needed_decades).flat_map(of_atom).collect()
     }
 
@@ -199,4 +208,10 @@ impl Found {
         let atoms = self.atoms.iter().zip(&self.reflectivities);
         atoms.flat_map(move |(atom, reflectivity)| atom.reflectors(reflectivity / scale))
     }
+}
+
+/// Probability that an object is real that explains this many decades more than is left around it.
+fn confidence_at(needed_decades: f64) -> f64 {
+    let odds = 10f64.powf(CONFIDENCE_SLOPE * (needed_decades - EVEN_ODDS_DECADES));
+    odds / (1.0 + odds)
 }
