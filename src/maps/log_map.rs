@@ -50,13 +50,6 @@ impl LogMap {
         self.max
     }
 
-    /// Median cell: the level of the floor when reflectors are few.
-    pub fn median(&self) -> f64 {
-        let mut cells: Vec<f64> = self.decades.iter().copied().collect();
-        let middle = cells.len() / 2;
-        *cells.select_nth_unstable_by(middle, f64::total_cmp).1
-    }
-
     /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         LambdaScale::new(self.min, self.max, normalisation)

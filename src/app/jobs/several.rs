@@ -153,7 +153,7 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
         signal::simulate(radar, &request.scene, *floor, request.scene.noise_seed).map_err(|e| e.to_string())?;
     let normalisation = request.normalisation;
     let elements = &request.scene.disturbances.elements;
-    let numbers = request.layout.as_ref().map(|layout| layout.numbers(radar).map_err(|e| e.to_string())).transpose()?;
+    let numbers = request.layout.as_ref().map(|layout| layout.numbers(radar)).transpose()?;
     let heard = numbers.map(|numbers| Arc::new(signal.of_layout(&numbers)));
     let aperture = match request.map {
         MapKind::Input0 if let Some(heard) = &heard => {

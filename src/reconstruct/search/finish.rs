@@ -72,11 +72,6 @@ pub struct Found {
 }
 
 impl Found {
-    /// Part of the samples' energy that is neither explained nor noise.
-    pub fn energy_left(&self) -> f64 {
-        (self.residual_variance - self.noise_variance).max(0.0) / self.sample_power.max(f64::MIN_POSITIVE)
-    }
-
     /// Part of the samples' energy that the objects leave as they are drawn, less noise.
     pub(super) fn drawn_left(&self) -> f64 {
         let count = self.left_when_drawn.len().max(1) as f64;
