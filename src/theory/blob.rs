@@ -345,17 +345,6 @@ pub(super) mod tests {
         }
     }
 
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(200))]
-        #[test]
-        #[ignore = "200 radars and places take a minute"]
-        fn two_hundred_blobs_stand_where_the_map_has_them((radar, reflector) in any_place_of_any_radar()) {
-            for aperture in APERTURES {
-                hold(&radar, &reflector, aperture)?;
-            }
-        }
-    }
-
     #[test]
     fn the_formula_alone_is_within_a_column_for_table_3_1() {
         let radar = Radar::default();

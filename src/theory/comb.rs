@@ -88,16 +88,6 @@ mod tests {
         }
     }
 
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(200))]
-
-        #[test]
-        #[ignore = "200 radars and places take a while"]
-        fn teeth_of_two_hundred_radars_stand_within_half_a_column((radar, place) in any_place_of_a_sparse_radar()) {
-            hold(&radar, place)?;
-        }
-    }
-
     #[test]
     fn table_3_1_has_one_tooth_about_every_column() {
         let radar = Radar::default();

@@ -1,5 +1,5 @@
 use super::*;
-use crate::reconstruct::{About, BARTLETT, Baseline, ReconstructError, Reconstruction};
+use crate::reconstruct::{About, Baseline, ReconstructError, Reconstruction};
 use crate::scene::generate::Kind;
 use crate::signal::TwoEnds;
 
@@ -28,19 +28,6 @@ fn rows_tell_what_the_detector_makes_of_every_output() {
     assert!(few[0].cfar_false_alarm < false_alarm, "{few:?}");
     let wide = run(Some(Cfar { guard: [3, 600], ..Cfar::default() })).unwrap_err().to_string();
     assert!(wide.starts_with("the detector on scene 0 of set 1: guard and training cells span"), "{wide}");
-}
-
-#[test]
-fn scenes_of_noise_alone_have_no_detection_rate() {
-    let campaign = Campaign { count: 2, ..Campaign::default() };
-    let sets = [SceneSet::Generated(Kind::Noise)];
-    let rows = campaign.run(&sets, &[&Baseline, &BARTLETT], &Task::default(), |_| ()).unwrap();
-    assert_eq!(rows.len(), 4);
-    for row in rows {
-        assert_eq!((&*row.set, row.objects, row.detection, row.detection_at_printed), ("noise", 0, None, None));
-        assert_eq!((row.false_alarm, row.ghosts), (0.0, 0), "{}", row.method);
-        assert!(row.squared_error > 1.0, "the target is noise");
-    }
 }
 
 struct Refuses;
