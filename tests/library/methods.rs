@@ -53,15 +53,6 @@ fn largest_difference(a: &Reconstruction, b: &Reconstruction) -> f32 {
 }
 
 #[test]
-fn every_method_has_a_name_of_its_own() {
-    let all = methods::all();
-    for (i, method) in all.iter().enumerate() {
-        assert!(all[..i].iter().all(|m| m.name() != method.name()), "{} is there twice", method.name());
-        assert!(!method.description().is_empty() && (0.0..1.0).contains(&method.eta()), "{}", method.name());
-    }
-}
-
-#[test]
 fn the_scale_of_the_samples_does_not_change_the_answer() {
     let ends = ends_of(&two_points(), Floor::Thesis);
     for method in methods::all() {

@@ -30,13 +30,6 @@ fn gaps_are_alike_in_every_computation() {
     let wanted = MapRequest { floor: Floor::Exact, ..MapRequest::default() };
     let [followed, settled] = [engine.update(&scene, &wanted).unwrap(), engine.settle(&scene, &wanted).unwrap()];
     assert_eq!(followed.full.unwrap().lambda.lambda, settled.full.unwrap().lambda.lambda);
-    let chirps = Radar { chirps: 4, ..radar.clone() };
-    let rows = simulate_chirps_for(&Task::default(), &chirps, &scene, Floor::Exact, 0).unwrap().samples;
-    let silent = |row: usize| rows.slice(ndarray::s![.., row, ..]).iter().all(|v| v.norm_sqr() == 0.0);
-    let elements: Vec<usize> = chirp_elements(&chirps).into_iter().flatten().collect();
-    for (row, n) in elements.into_iter().enumerate() {
-        assert_eq!(silent(row), radar.is_gap(n), "element {n}");
-    }
     assert_eq!(Layout::uniform(&radar).len(), 22);
 }
 
@@ -175,7 +168,6 @@ fn random_captures_are_placed_within_the_bound() {
         }
         // Two errors of one bound each add up to 2 on average.
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
-        println!("{name}: {mean}");
         assert!((0.5..4.0).contains(&mean), "{name}: mean square {mean} of two errors in bounds; expected about 2");
     }
 }

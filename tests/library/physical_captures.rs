@@ -235,13 +235,11 @@ fn points_of_physical_captures_are_placed_within_the_bound() {
         cosines += cos_off * cos_off;
         placed += 1;
     }
-    println!("{placed} of {captures} were taken for one point");
     // One in five points is taken for two: the search adds points to noise.
     assert!(f64::from(placed) >= 0.75 * f64::from(captures), "{placed} of {captures} were taken for one point");
     // Of 32 draws a root mean square is known to 13 %.
     for (what, squares) in [("range", ranges), ("cos(theta)", cosines)] {
         let ratio = f64::sqrt(squares / f64::from(placed));
-        println!("{what}: error / bound = {ratio:.3}");
         assert!((0.65..1.35).contains(&ratio), "{what}: error / bound is {ratio}");
     }
 }

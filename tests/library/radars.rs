@@ -49,7 +49,6 @@ fn a_reflector_is_where_the_whole_array_sees_it_or_is_refused() {
             let found = match method.reconstruct(&radar, &signal.two_ends(&radar), &request) {
                 Ok(found) => found.lambda.lambda,
                 Err(ReconstructError::Unusable { reason, .. }) => {
-                    println!("{name} on {what}: {reason}");
                     let searches = ["nomp", "hybrid"].contains(&name) && radar.samples == 1;
                     assert!(NETWORKS.contains(&name) || searches, "{name} on {what}: {reason}");
                     continue;

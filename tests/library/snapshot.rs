@@ -21,7 +21,6 @@ fn twelve_elements_at_either_end_see_what_all_86_see() {
     let recording = Preset::by_id("cascade-86").unwrap().load().unwrap();
     for method in ["iaa", "sbl"] {
         let (all, ends) = (seen(&recording, method, 43), seen(&recording, method, 12));
-        println!("{method}: 43 + 43 elements {all:.3?}, 12 + 12 elements {ends:.3?} degrees");
         assert_eq!((all.len(), ends.len()), (2, 2), "{method}: {all:?} {ends:?}");
         for (direction, expected) in all.iter().zip([0.0, 6.96]) {
             assert!((direction - expected).abs() < 0.1, "{method}: all 86 see {all:?}");
