@@ -91,11 +91,8 @@ fn lists(path: &Path) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
 fn samples_of_another_radar_are_told() {
     let folder = folder();
     let end = Array2::<Complex64>::ones((64, 12));
-    write_npz(&folder.path().join("in.npz"), |out| {
-        out.add("sub0", &end)?;
-        out.add("sub1", &end)
-    })
-    .unwrap();
+    let path = folder.path().join("in.npz");
+    write_npz(&path, |out| ["sub0", "sub1"].into_iter().try_for_each(|key| out.add(key, &end))).unwrap();
     let run = |radar: &str| {
         std::fs::write(folder.path().join("radar.toml"), radar).unwrap();
         call(&folder, "reconstruct in.npz --radar radar.toml -o o.npz --method bartlett").assert()
@@ -137,6 +134,6 @@ fn shipped_recordings_are_reconstructed_without_a_radar() {
     run("maps.npz", &["--radar", "r.toml"]).failure().stderr(contains("--radar names another"));
     run("maps.npz", &["--method", "sbl"]).success();
     let mut npz = NpzReader::new(File::open(folder.path().join("o.npz")).unwrap()).unwrap();
-    let range: ndarray::Array1<f64> = npz.by_name("found_range_metres").unwrap();
+    let range: Array1<f64> = npz.by_name("found_range_metres").unwrap();
     assert!(!range.is_empty() && range.iter().all(|r| r.is_nan()), "{range}");
 }

@@ -199,17 +199,6 @@ fn what_is_wrong_with_rows_is_named() {
 }
 
 #[test]
-fn the_scenes_of_a_folder_must_stay_the_same() {
-    let folder = folder();
-    call(&folder, "scenes --set 1 --count 2 -o own").assert().success();
-    call(&folder, "evaluate --scenes own --rows rows.csv").assert().success();
-    std::fs::write(folder.path().join("own/z.toml"), "[[object]]\nkind = \"point\"\nx_metres = 1\ny_metres = 9\n")
-        .unwrap();
-    let changed = call(&folder, "evaluate --scenes own --rows rows.csv").assert().failure();
-    changed.stderr(contains("scenes is"));
-}
-
-#[test]
 fn without_a_terminal_lines_tell_the_progress() {
     let folder = folder();
     let told = call(&folder, "evaluate --set 1 --count 3 --progress 0").assert().success();
