@@ -14,18 +14,6 @@ fn last(s: &Session) -> Object {
 }
 
 #[test]
-fn every_kind_of_body_is_added_by_a_button() {
-    let mut s = empty();
-    for (label, noun) in [("+ Wall", "wall"), ("+ Box", "box"), ("+ Post", "post"), ("+ Polygon", "polygon")] {
-        let (_, painted) = s.state().work_done();
-        s.click(label);
-        assert_eq!(last(&s).noun(), noun);
-        assert!(s.state().work_done().1 > painted, "the maps show the {noun}");
-    }
-    assert_eq!(s.objects().len(), 4);
-}
-
-#[test]
 fn the_maps_follow_the_sliders_of_radius_and_roughness() {
     let mut s = empty();
     s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(0.0, 12.0))));
@@ -53,16 +41,6 @@ fn the_maps_follow_the_sliders_of_radius_and_roughness() {
         assert!(value(&last(&s)) > before, "{name}");
     }
     assert_eq!(s.editor().history().depth(), depth + 2, "each slide is one step");
-}
-
-#[test]
-fn the_status_bar_counts_bodies_by_their_echoes() {
-    let mut s = empty();
-    s.ask(EditCommand::Add(NewObject::Wall, Some(Place::new(0.0, 12.0))));
-    s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(4.0, 9.0))));
-    let _told = s.app.get_by_label("2 bodies · up to 4 echoes");
-    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(-4.0, 9.0))));
-    let _told = s.app.get_by_label("3 objects · 1 reflector · 2 bodies · up to 4 echoes");
 }
 
 #[test]

@@ -129,21 +129,3 @@ fn the_table_of_values_has_what_the_maps_have_under_the_pointer() {
     assert!(s.app.query_all_by_label(&difference).next().is_some(), "{difference}");
     assert!(s.app.query_by_label("Second output (capon)").is_none(), "its panel is out of sight");
 }
-
-#[test]
-fn marks_of_failure_are_those_of_the_evaluation() {
-    let mut s = Session::start();
-    assert!(s.state().failures().is_none());
-    s.press(Modifiers::NONE, Key::H);
-    for round in 0..2 {
-        let trial = trial(&s);
-        let answer = trial.ask(&Baseline, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
-        assert_eq!(s.state().failures(), Some(&trial.failures(&answer)), "round {round}");
-        assert!(s.shows("Legend: hit, rim, false alarm, miss, "));
-        let at = s.handle("point 2: move");
-        s.drag(at, vec2(-20.0, 15.0), 5);
-    }
-    s.press(Modifiers::NONE, Key::H);
-    assert!(s.state().failures().is_none());
-    assert!(s.app.query_all_by_label("Legend: hit, rim, false alarm, miss").next().is_some(), "hatches go on");
-}

@@ -75,14 +75,14 @@ fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
     }
 }
 
-fn take_all(right: impl Fn(usize, usize) -> bool) {
+fn take_all(right: bool) {
     let mut s = Session::start();
     s.ask(LessonCommand::Present);
     for (index, file) in shipped::ALL.iter().enumerate() {
         let lesson = file.load().unwrap();
         s.ask(LessonCommand::Begin(index));
         for number in 0..lesson.steps.len() {
-            take(&mut s, &lesson, number, right(index, number));
+            take(&mut s, &lesson, number, right);
         }
     }
     let before = s.state().arrangement().is_open(Panel::Controls);
@@ -93,16 +93,10 @@ fn take_all(right: impl Fn(usize, usize) -> bool) {
 }
 
 #[test]
-#[ignore = "long: minutes in an unoptimised build"]
-fn every_lesson_can_be_taken_to_its_end() {
-    take_all(|lesson, step| (lesson + step) % 2 == 0);
-}
-
-#[test]
 #[ignore = "long: every step of every lesson twice"]
 fn every_step_judges_its_answers() {
-    take_all(|_, _| true);
-    take_all(|_, _| false);
+    take_all(true);
+    take_all(false);
 }
 
 /// Begins the lesson called `id` at a step, counted from 1.
@@ -146,17 +140,6 @@ fn the_number_of_blobs_is_not_told_while_maps_are_hidden() {
     assert!(!s.shows(" in the target, "));
     predict(&mut s, Guess::Choice(1), "Correct: ");
     step_until(&mut s, "figures come with the maps", |s| s.shows(" in the target, "));
-}
-
-#[test]
-fn going_back_keeps_the_verdict() {
-    let mut s = Session::start();
-    begin(&mut s, "range-and-bandwidth", 4);
-    predict(&mut s, Guess::Choice(1), "Not quite: the answer is “It stays”.");
-    s.click("Previous");
-    assert!(!s.shows("Not quite"));
-    s.click("Next");
-    assert!(s.shows("Not quite") && s.shows("the right answer"));
 }
 
 #[test]
@@ -246,21 +229,6 @@ fn the_end_of_a_lesson_gives_the_zoom_back() {
 }
 
 #[test]
-fn a_lesson_file_whose_solution_fails_is_refused() {
-    let mut s = Session::start();
-    let good = shipped::ALL.iter().find(|file| file.id == "range-and-bandwidth").unwrap().toml;
-    let path = s.path("lesson.toml");
-    std::fs::write(&path, good.replace("bandwidth_hz = 0.95e9", "bandwidth_hz = 0.21e9")).unwrap();
-    s.ask(LessonCommand::OpenFile(path.clone()));
-    assert!(s.shows("the solution does not meet the challenge") && s.shows("lesson.toml: line "));
-    assert!(!s.shows("Step 1 of 5"));
-    s.ask(WindowCommand::CloseMessages);
-    std::fs::write(&path, good).unwrap();
-    s.ask(LessonCommand::OpenFile(path));
-    assert!(s.shows("Step 1 of 5") && s.state().messages() == 0);
-}
-
-#[test]
 fn a_lesson_is_shared_at_its_step() {
     let mut s = Session::start();
     s.ask(LessonCommand::Begin(3));
@@ -305,18 +273,6 @@ fn a_shared_scene_comes_with_its_view_and_time() {
 }
 
 #[test]
-fn hidden_tools_compute_nothing() {
-    let mut s = Session::start();
-    s.ask(ViewCommand::ToggleTheory);
-    s.ask(WindowCommand::OpenPanel(Panel::Several));
-    step_until(&mut s, "all four windows are there", |s| s.state().several_maps_made() == 4);
-    s.click("window: rectangular");
-    assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
-    s.press(Modifiers::COMMAND, Key::Z);
-    assert_eq!(s.state().radar().window, WindowFunction::Hann);
-}
-
-#[test]
 fn the_map_that_a_question_asks_about_is_the_large_one() {
     let mut s = Session::start();
     for (id, step, asked) in [
@@ -334,42 +290,4 @@ fn the_map_that_a_question_asks_about_is_the_large_one() {
     }
     s.ask(LessonCommand::Leave);
     assert!(s.state().arrangement().is_open(Panel::Controls), "the panels are as before");
-}
-
-#[test]
-fn a_challenge_shows_its_control_and_where_it_happens() {
-    let mut s = Session::start();
-    begin(&mut s, "range-and-bandwidth", 5);
-    s.settle();
-    assert!(s.state().arrangement().shown().contains(&Panel::Radar), "{:?}", s.state().arrangement().shown());
-    let part = s.state().views().1.range_angle;
-    assert!(part.high.y - part.low.y < 0.1, "the two points alone: {part:?}");
-    step_until(&mut s, "it is measured", |s| s.shows("A dip of at least 0.06 between the two in the target"));
-    let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
-    s.ask(RadarCommand::Set(Box::new(radar)));
-    let followed = s.state().views().1.range_angle;
-    assert!(followed.low.y > part.high.y, "they stand elsewhere in the map now: {followed:?}");
-    begin(&mut s, "smooth-and-rough", 4);
-    s.settle();
-    let shown = s.state().arrangement().shown().clone();
-    assert!(shown.contains(&Panel::Inspector) || shown.contains(&Panel::Scene), "{shown:?}");
-}
-
-#[test]
-fn the_question_is_in_view_on_a_projector() {
-    for size in [[1440.0, 900.0], [1024.0, 640.0]] {
-        let mut s = Session::opened(tempdir().unwrap(), None, baseline(), size);
-        s.ask(LessonCommand::Present);
-        for (id, step) in [("range-and-bandwidth", 1), ("which-points-a-car-is", 4), ("folding-and-wrapping", 4)] {
-            begin(&mut s, id, step);
-            (0..4).for_each(|_| s.app.step());
-            let lesson = shipped::ALL.iter().find(|file| file.id == id).unwrap().load().unwrap();
-            let question = lesson.steps[step - 1].predict.clone().unwrap();
-            let window = s.app.ctx.content_rect();
-            let ask = s.app.get_by_label(&question.ask).rect();
-            assert!(window.contains_rect(ask), "{id} at {size:?}: {ask:?} in {window:?}");
-            let title = s.app.get_by_label_contains(&format!("Step {step} of ")).rect();
-            assert!(window.contains_rect(title), "{id} at {size:?} begins at its top: {title:?}");
-        }
-    }
 }

@@ -104,23 +104,11 @@ fn nothing_is_cut_off_at_twice_the_size() {
 
 /// Texts that reach beyond the left or the right end of the drawable area: no scrolling brings them into sight.
 fn wider_than_their_place(s: &Session) -> Vec<String> {
-    use eframe::egui::{Rect, Shape};
-    fn gather(clip: Rect, shape: &Shape, found: &mut Vec<String>) {
-        match shape {
-            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(clip, shape, found)),
-            Shape::Text(text) => {
-                let rect = text.visual_bounding_rect();
-                let out = rect.right() > clip.right() + 1.5 || rect.left() < clip.left() - 1.5;
-                if out && rect.intersects(clip) && !text.galley.text().trim().is_empty() {
-                    found.push(text.galley.text().to_owned());
-                }
-            }
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    s.app.output().shapes.iter().for_each(|clipped| gather(clipped.clip_rect, &clipped.shape, &mut found));
-    found
+    let is_cut = |clip: egui::Rect, rect: egui::Rect| {
+        (rect.right() > clip.right() + 1.5 || rect.left() < clip.left() - 1.5) && rect.intersects(clip)
+    };
+    let cut = s.texts().into_iter().filter(|(clip, text)| is_cut(*clip, text.visual_bounding_rect()));
+    cut.map(|(_, text)| text.galley.text().to_owned()).filter(|text| !text.trim().is_empty()).collect()
 }
 
 #[test]

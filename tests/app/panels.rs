@@ -214,16 +214,6 @@ fn press_in_the_guide(s: &mut Session, name: &str) {
 }
 
 #[test]
-fn every_button_of_the_guide_leaves_a_working_app() {
-    let mut s = Session::start();
-    s.ask(WindowCommand::Maximise(Panel::Guide));
-    press_in_the_guide(&mut s, "Two-way");
-    assert_eq!(s.state().radar().carrier, Carrier::TwoWay);
-    assert_eq!(s.editor().scene().name, "Four reflectors");
-    assert_eq!(s.state().messages(), 0);
-}
-
-#[test]
 fn undo_takes_back_everything_that_a_button_of_the_guide_did() {
     let mut s = Session::start();
     s.ask(ViewCommand::SetFloor(Floor::Snr(Decibels(30.0))));
@@ -252,13 +242,6 @@ fn random_scenes_are_those_of_the_tables() {
         let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
         assert_eq!(s.objects(), generator.scene(Kind::Set3, number).objects);
     }
-}
-
-#[test]
-fn only_the_user_moves_a_threshold() {
-    let s = Session::with_methods(vec![Arc::new(CAPON)]);
-    assert_eq!(CAPON.eta(), 0.851, "more decimals than the slider shows");
-    assert!(s.state().settings().method_eta.is_empty());
 }
 
 #[test]

@@ -22,28 +22,13 @@ fn one_key_toggles_a_presentation() {
     assert!(!s.state().arrangement().is_open(Panel::Inspector) && !before.contains(&Panel::Inspector));
 }
 
-/// Every text of the last frame, and its height in pixels of the screen.
-fn texts(s: &Session) -> Vec<(String, f32)> {
-    fn gather(shape: &Shape, found: &mut Vec<(String, f32)>) {
-        match shape {
-            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, found)),
-            Shape::Text(text) => found.push((text.galley.text().to_owned(), text.galley.size().y)),
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    s.app.output().shapes.iter().for_each(|clipped| gather(&clipped.shape, &mut found));
-    let zoom = s.app.ctx.zoom_factor();
-    found.into_iter().map(|(text, height)| (text, height * zoom)).collect()
-}
-
 #[test]
 fn both_presentations_enlarge_the_axes() {
     for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
         let mut s = Session::start();
         let tallest = |s: &Session, text: &str| {
-            let of = texts(s).into_iter().filter(|(t, _)| t.contains(text)).map(|(_, height)| height);
-            of.fold(0.0, f32::max)
+            let of = s.texts().into_iter().filter(|(_, t)| t.galley.text().contains(text));
+            of.map(|(_, t)| t.galley.size().y * s.app.ctx.zoom_factor()).fold(0.0, f32::max)
         };
         let labels = ["range, m", "cos θ", "Λ"];
         let before = labels.map(|label| tallest(&s, label));

@@ -2,7 +2,7 @@
 
 use crate::session::*;
 use apertura::app::Way;
-use apertura::radar::{BuiltArray, ElementError, Tolerances};
+use apertura::radar::{BuiltArray, ElementError};
 use apertura::scene::{Interferer, Mirror};
 
 const CASCADE: usize = 0;
@@ -184,23 +184,6 @@ fn disturbances_are_edits_of_the_scene() {
     }
     assert!(s.editor().scene().disturbances.is_none());
     assert_eq!(s.state().metrics(), before);
-}
-
-#[test]
-fn a_selected_point_calibrates_the_elements() {
-    let mut s = Session::start();
-    s.ask(ViewCommand::SetFloor(Floor::Exact));
-    s.ask(EditCommand::Delete);
-    let drawn = Tolerances { gain: Decibels(1.0), phase_degrees: 15.0, position_millimetres: 0.0 };
-    let built = drawn.build(s.state().radar(), 1);
-    s.ask(RadarCommand::SetElements(Arc::new(built)));
-    s.ask(EditCommand::SelectAll);
-    s.ask(EditCommand::Delete);
-    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(1.0, 12.0))));
-    s.ask(WindowCommand::OpenPanel(Panel::Elements));
-    s.find_and_click("Calibrate on this reflector");
-    let left = s.editor().scene().disturbances.elements.spread();
-    assert!(left.gain.0 < 0.01 && left.phase_degrees < 0.5, "{left:?}");
 }
 
 /// A capture of two frames of I Q pairs with its `.cfg`, in the session's folder: one transmitter, four receivers, four loops; an echo in range

@@ -150,20 +150,6 @@ fn nothing_found_in_one_recording_is_listed_over_the_next() {
 }
 
 #[test]
-fn nothing_found_in_one_scene_is_marked_over_the_next() {
-    let mut s = Session::with_methods(vec![Arc::new(Stub::slow(1200))]);
-    s.ask(ViewCommand::ToggleFound);
-    s.ask(WindowCommand::OpenPanel(Panel::Found));
-    assert!(!s.state().marked_found().is_empty());
-    let before = s.editor().document().id();
-    s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
-    step_until(&mut s, "another scene is on screen", |s| s.editor().document().id() != before);
-    assert!(s.state().marked_found().is_empty() && s.state().found().is_none());
-    s.settle();
-    assert!(!s.state().marked_found().is_empty());
-}
-
-#[test]
 fn a_drag_lets_a_slow_method_finish_sometimes() {
     let method = Stub::slow(1200);
     let finished = || method.answers.load(SeqCst);
