@@ -129,11 +129,4 @@ mod tests {
             assert!(p.miscounted == 0 && (0.89..1.11).contains(&p.ratio()), "{p:?}");
         }
     }
-
-    #[test]
-    fn a_reflector_without_a_bound_is_an_error() {
-        let silent = Reflector { x_metres: 5.0, y_metres: 18.0, reflectivity: 0.0 };
-        let error = placement(&Radar::default(), silent, Decibels(10.0), 1, &Task::default()).unwrap_err();
-        assert!(matches!(error, ReconstructError::Unusable { .. }), "{error}");
-    }
 }

@@ -272,7 +272,6 @@ pub(super) mod tests {
             Ok(())
         }
 
-        /// Compares a side lobe with the measured one, to half a cell and half a decibel.
         fn hold_side_lobe(&self, side: i64, lobe: SideLobe) -> Result<(), TestCaseError> {
             let at = |i: i64| self.at(side * i);
             let valley = (1..self.half()).find(|i| at(i + 1) > at(*i));
@@ -286,7 +285,6 @@ pub(super) mod tests {
         }
     }
 
-    /// Compares the predicted blob with the simulated map, all within half a cell.
     fn hold(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Result<(), TestCaseError> {
         let map = simulated_finely(radar, reflector, aperture);
         let blob = Blob::of(radar, reflector, aperture).expect("it has an echo");

@@ -96,7 +96,6 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(8))]
 
-        /// The cells joined to the peak of the simulated map reach as far as predicted.
         #[test]
         fn streaks_reach_as_far_as_on_the_map((radar, reflector) in any_place_of_any_radar()) {
             for aperture in [Aperture::Full, Aperture::End(End::Last)] {

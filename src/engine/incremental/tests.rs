@@ -15,7 +15,6 @@ fn lambda(f: &EngineFrame) -> Arc<RangeAngleMap> {
     f.full.as_ref().expect("the whole array's map was wanted").lambda.clone()
 }
 
-/// The outcome of a stage in words.
 fn said(frame: &EngineFrame, stage: EngineStage) -> String {
     match &frame.report.stages.iter().find(|s| s.stage == stage).unwrap().outcome {
         StageOutcome::Computed(what) => what.clone(),
@@ -87,7 +86,6 @@ fn the_engine_survives_a_bad_scene() {
     assert!(engine.update(&Scene::default(), &MapRequest::default()).is_ok());
 }
 
-/// Frames agree with the plain path from samples to maps, floor included.
 #[test]
 fn frames_agree_with_the_plain_path() {
     let radar = Radar::default();
@@ -133,7 +131,6 @@ fn an_empty_scene_without_noise_is_dark() {
             let wanted = MapRequest { floor, normalisation, ..MapRequest::default() };
             let mut engine = Engine::new(radar.clone());
             engine.update(&point, &wanted).unwrap();
-            // The reflector was taken away.
             let moving = engine.update(&Scene::default(), &wanted).unwrap();
             let settled = engine.settle(&Scene::default(), &wanted).unwrap();
             for (frame, how) in [(moving, "in motion"), (settled, "at rest")] {

@@ -17,7 +17,6 @@ pub(super) fn reference() -> WeightFile<'static> {
     WeightFile::parse("reference", REFERENCE).unwrap()
 }
 
-/// The engine of a tiny network.
 pub(super) fn tiny(weights: &[u8]) -> LiveEngine {
     let size = LiveSize { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4, ..LiveSize::default() };
     LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &size).unwrap()
