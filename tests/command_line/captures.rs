@@ -3,7 +3,6 @@
 use crate::cli::*;
 use crate::made_captures::{Echo, RISING, STILL, cfg, samples, two_lanes};
 
-/// The capture of an echo that goes away at 3 m/s.
 fn with_capture() -> TempDir {
     let folder = folder();
     let loops = samples(&RISING, Echo { speed: 3.0, ..STILL }, 2, 8);

@@ -38,7 +38,6 @@ pub fn program(arguments: &[&str]) -> Command {
     command
 }
 
-/// The program in a folder, with the arguments of a line.
 pub fn call(folder: &TempDir, arguments: &str) -> Command {
     let mut command = apertura(folder);
     command.args(arguments.split_whitespace());
@@ -128,7 +127,6 @@ fn maps_have_the_layout_of_the_authors_program() {
         assert_eq!(found.reals::<Ix1>(key).unwrap().len(), count, "{key}");
     }
     assert!(!found.has("output"), "no method was asked for");
-    // The written archive is a scene again.
     call(&folder, "maps maps.npz -o again.npz").assert().success();
     let again = Npz::open(&folder.path().join("again.npz")).unwrap().reals::<Ix3>("polar_full").unwrap();
     assert_eq!(again, full);

@@ -4,7 +4,6 @@ use crate::cli::*;
 use apertura::engine::{Engine, MapRequest};
 use apertura::radar::End;
 
-/// An engine after other scenes, other floors and drags.
 fn with_a_past(scene: &Scene) -> Engine {
     let mut engine = Engine::new(Radar::default());
     let wanted = MapRequest::default();

@@ -82,7 +82,6 @@ fn the_plain_formula_leaves_the_thesis_floor() {
     }
 }
 
-/// With exact phases a single point's floor drops by more than two decades, to where the judge puts it.
 #[test]
 fn exact_phases_lower_the_floor() {
     let exact = smallest_cell(Kind::Set1, 12, |radar, reflectors| exact::beat_signal(radar, reflectors));

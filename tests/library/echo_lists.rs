@@ -38,7 +38,6 @@ fn every_list_of_echoes_begins_with_the_true_one() {
 
 const RANGE_METRES: f64 = 4.0;
 
-/// What both ends hear of a point at a cosine.
 fn heard(radar: &Radar, cosine: f64) -> TwoEnds {
     let scene = Scene::of_points([(RANGE_METRES * cosine, RANGE_METRES * (1.0 - cosine * cosine).sqrt())]);
     simulate(radar, &scene, Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(radar)

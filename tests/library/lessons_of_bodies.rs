@@ -133,7 +133,6 @@ fn the_right_end_sees_less_by_as_much_as_its_lesson_says() {
     taught(id, &format!("{:.0} dB weaker", first - last));
 }
 
-/// Decibels of the glint of a wall ahead.
 fn glint(y_metres: f64, roughness_millimetres: f64) -> f64 {
     let wall = Wall { roughness_millimetres, ..Wall::new(0.0, y_metres, 8.0, 0.0) };
     let heard = heard_in_the_middle(&physical(), &Scene { objects: vec![Object::Wall(wall)], ..Scene::default() });

@@ -9,7 +9,6 @@ use apertura::signal::TwoEnds;
 /// Longest any method may take for one map, even on a busy machine in an unoptimised build.
 const MAX_RUN_TIME: Duration = Duration::from_secs(120);
 
-/// Least difference between P_D and P_FA on a crowded scene.
 const MIN_SEPARATION: f64 = 0.1;
 
 fn radar() -> Radar {

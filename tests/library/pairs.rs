@@ -4,7 +4,6 @@ use super::off_line::{imported, largest_difference, sample, straight as small};
 use crate::prelude::*;
 use rand::seq::SliceRandom;
 
-/// The same elements, each sending and hearing by itself.
 fn monostatic(radar: &Radar) -> Radar {
     Radar { antennas: None, ..radar.clone() }
 }
@@ -42,7 +41,6 @@ fn the_search_finds_points_beside_gaps() {
     let method = methods::by_name("nomp").unwrap();
     let found = reconstruct_and_find(method.as_ref(), &radar, &signal.two_ends(&radar), &request).unwrap().1;
     assert!(found.len() >= 2, "{found:?}");
-    // The two strongest are the points.
     for (point, found) in scene.reflectors().iter().zip(&found) {
         let polar = radar.polar_of(point.x_metres, point.y_metres);
         assert!((found.range_metres - polar.range_metres).abs() < 0.03, "{point:?}: {found:?}");
@@ -95,7 +93,6 @@ fn a_capture_of_pairs_has_its_rows_in_the_order_of_elements() {
     assert!((recording.radar.element_spacing_metres / radar.element_spacing_metres - 1.0).abs() < 1e-9);
 }
 
-/// Methods that take ranges from both antennas of an element.
 const KNOW_PAIRS: [&str; 9] =
     ["baseline", "matched-filter", "matched-filter-incoherent", "fista", "omp", "iaa", "sbl", "nomp", "hybrid"];
 

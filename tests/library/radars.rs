@@ -164,15 +164,6 @@ fn steps_scale_with_the_radar() {
 }
 
 #[test]
-fn a_small_array_hears_nothing_a_wrap_further_out() {
-    // Beyond its far field a range and the same one wrap further out sound alike.
-    let radar = Radar { bandwidth_hz: 250e6, samples: 256, ..array(16, 5, 24.125e9, 0.5) };
-    let places = [(20.0, 0.0), (35.5, 0.5)];
-    let found = found("nomp", &radar, &places).unwrap();
-    assert!(begins_with(&found, &radar, &places, (0.05, 0.002)), "{found:?}");
-}
-
-#[test]
 fn a_cluster_at_600_metres_of_a_coarse_radar_is_answered_soon() {
     let radar = Radar { bandwidth_hz: 50e6, samples: 256, ..array(64, 8, 77e9, 0.5) };
     let places: Vec<(f64, f64)> =

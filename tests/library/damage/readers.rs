@@ -38,12 +38,10 @@ fn written(folder: &Path, name: &str, bytes: &[u8]) -> PathBuf {
     folder.join(name)
 }
 
-/// A file of version 0.1.0.
 fn older(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/program-0.1.0").join(name)
 }
 
-/// Points, a line, a cluster and disturbances.
 fn scene() -> SceneFile {
     file::load(&older("scene-thesis.toml")).unwrap()
 }
@@ -53,7 +51,6 @@ fn scenes() -> Reader {
     files.push(file::to_toml(&scene()).unwrap().into_bytes());
     let read = |_: &Path, bytes: &[u8]| {
         let file = file::from_toml(text(bytes)?).map_err(|e| e.to_string())?;
-        // An accepted text can be written and read again.
         let again = file::to_toml(&file).map_err(|e| e.to_string())?;
         assert_eq!(file::from_toml(&again), Ok(file));
         Ok(())
