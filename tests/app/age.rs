@@ -66,7 +66,6 @@ proptest! {
     }
 }
 
-/// Places that were found are still marked in the scene where the output is closed.
 #[test]
 fn found_places_follow_the_scene_while_the_output_is_closed() {
     let mut s = Session::with_methods(vec![Arc::new(apertura::reconstruct::Omp::default())]);

@@ -105,7 +105,6 @@ fn with_second() -> Session {
     s
 }
 
-/// Types into the field for x of the selected object, and ends the entry with Enter.
 fn enter_x(s: &mut Session, text: &str) {
     s.app.get_by_role_and_label(Role::SpinButton, "x").focus();
     s.settle();

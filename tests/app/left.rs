@@ -8,7 +8,6 @@ use apertura::scene::Reflector;
 use apertura::signal::exact;
 use eframe::egui::ColorImage;
 
-/// The point that must be seen on the left.
 const POINT: [f64; 2] = [-8.0, 12.0];
 
 const KINDS: [MapKind; 6] =

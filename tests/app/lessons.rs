@@ -271,23 +271,3 @@ fn a_shared_scene_comes_with_its_view_and_time() {
     s.ask(EditCommand::Undo);
     assert_eq!((s.editor().scene().clone(), seen(&s)), other);
 }
-
-#[test]
-fn the_map_that_a_question_asks_about_is_the_large_one() {
-    let mut s = Session::start();
-    for (id, step, asked) in [
-        ("range-and-bandwidth", 1, MapKind::Target),
-        ("angle-and-aperture", 3, MapKind::Input0),
-        ("the-floor", 3, MapKind::Input1),
-        ("range-and-bandwidth", 1, MapKind::Target),
-    ] {
-        begin(&mut s, id, step);
-        s.settle();
-        let area = |kind: MapKind| s.app.get_by_label(&format!("{} map", kind.title())).rect().area();
-        for other in [MapKind::Input0, MapKind::Input1, MapKind::Target].into_iter().filter(|kind| *kind != asked) {
-            assert!(area(asked) > 1.5 * area(other), "{id}: {asked:?} beside {other:?}");
-        }
-    }
-    s.ask(LessonCommand::Leave);
-    assert!(s.state().arrangement().is_open(Panel::Controls), "the panels are as before");
-}

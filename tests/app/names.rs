@@ -2,7 +2,6 @@
 
 use crate::session::*;
 
-/// Whether an element of this role is used or has to be read out, so that it needs a name.
 fn has_to_be_named(role: Role) -> bool {
     is_used(role) || matches!(role, Role::Image | Role::Canvas)
 }

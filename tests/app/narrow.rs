@@ -19,14 +19,3 @@ fn a_narrow_window_has_scene_output_and_target_in_one_column() {
     assert!(titles.windows(2).all(|pair| pair[1].min.y - pair[0].max.y > 200.0), "{titles:?}");
     assert!(titles[2].max.y + 150.0 < 844.0, "all three are on screen: {titles:?}");
 }
-
-#[test]
-fn a_point_is_dragged_in_a_narrow_window() {
-    let mut session = narrow();
-    let before = session.place(0);
-    let scene = session.app.get_by_role_and_label(Role::Label, "Scene").rect();
-    let handle = session.handle("point 1: move");
-    assert!(handle.y > scene.max.y && handle.y < scene.max.y + 300.0, "{handle:?}");
-    session.drag(handle, vec2(30.0, 0.0), 4);
-    assert_ne!(session.place(0), before);
-}

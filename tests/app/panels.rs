@@ -1,9 +1,8 @@
 //! Panels that are shown, and the work that is done for them and for no others.
 
 use crate::session::*;
-use apertura::app::{ChirpSettings, Units};
+use apertura::app::Units;
 use apertura::engine::EngineStage;
-use apertura::theory::chirp::{ChirpShape, heard};
 use eframe::egui::Rangef;
 
 #[test]
@@ -88,35 +87,6 @@ fn a_maximised_map_is_the_only_one_computed() {
 }
 
 #[test]
-fn the_palette_runs_every_command_by_name() {
-    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)]);
-    let mut by_palette = |text: &str| {
-        s.press(Modifiers::COMMAND, Key::K);
-        s.app.event(Event::Text(text.to_owned()));
-        s.settle();
-        s.press(Modifiers::NONE, Key::Enter);
-        (s.state().shown_method(), s.objects().len())
-    };
-    assert_eq!(by_palette("add line"), (Some("baseline"), 3));
-    assert_eq!(by_palette("method capon"), (Some("capon"), 3));
-    assert_eq!(by_palette("preset two close"), (Some("capon"), 2));
-    s.undo();
-    let _shown = s.handle("line 3: move the near end: more or fewer reflectors");
-}
-
-#[test]
-fn the_window_function_reaches_the_maps() {
-    let mut s = Session::start();
-    let (requests, painted) = s.state().work_done();
-    s.find_and_click("hamming");
-    assert_eq!(s.state().radar().window, WindowFunction::Hamming);
-    let after = s.state().work_done();
-    assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
-    s.ask(RadarCommand::SetWindow(WindowFunction::Hann));
-    assert_eq!(s.state().radar().window, WindowFunction::Hann);
-}
-
-#[test]
 fn bounds_follow_the_selected_reflector() {
     let mut s = Session::start();
     assert_eq!(s.state().values_asked(Panel::Bounds), 0);
@@ -149,30 +119,6 @@ fn phasors_follow_the_cursor() {
     s.app.hover_at(map.lerp_inside(vec2(0.7, 0.2)));
     s.settle();
     assert_eq!(s.state().values_asked(Panel::Phasors), asked);
-}
-
-#[test]
-fn the_beat_on_screen_is_that_of_the_strongest_echo() {
-    let mut s = Session::start();
-    assert_eq!(s.state().values_asked(Panel::Chirp), 0, "a closed panel costs nothing");
-    s.ask(WindowCommand::OpenPanel(Panel::Chirp));
-    let bin = |s: &Session| {
-        let chirp = ChirpShape::of(s.state().radar());
-        let echoes = heard(s.state().radar(), s.editor().scene(), s.state().settings().chirp.element);
-        let strongest = echoes.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
-        chirp.range_bin(chirp.beat_hz(strongest.range_metres))
-    };
-    let (peak, element) = s.state().beat_peak().expect("a beat");
-    assert!(element == 0 && (peak as f64 - bin(&s)).abs() <= 0.5, "{peak} {}", bin(&s));
-    s.ask(ViewCommand::SetChirp(ChirpSettings { element: 500 }));
-    let longer = apertura::radar::Radar { chirp_seconds: 1e-3, ..s.state().radar().clone() };
-    s.ask(RadarCommand::Set(Box::new(longer)));
-    let (longer, element) = s.state().beat_peak().unwrap();
-    assert_eq!((longer, element), (peak, 127), "the last element; no sample depends on the duration");
-    let asked = s.state().values_asked(Panel::Chirp);
-    s.ask(WindowCommand::TogglePanel(Panel::Chirp));
-    s.ask(ViewCommand::SetChirp(ChirpSettings::default()));
-    assert_eq!(s.state().values_asked(Panel::Chirp), asked);
 }
 
 #[test]

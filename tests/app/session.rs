@@ -108,12 +108,6 @@ impl Session {
         self.settle();
     }
 
-    pub fn find_and_click(&mut self, label: &str) {
-        self.app.get_by_label(label).scroll_to_me();
-        self.settle();
-        self.click(label);
-    }
-
     pub fn undo(&mut self) {
         self.press(Modifiers::COMMAND, Key::Z);
     }
