@@ -1,7 +1,6 @@
 //! Panels that are shown, and the work that is done for them and for no others.
 
 use crate::session::*;
-use apertura::app::Units;
 use apertura::engine::EngineStage;
 use eframe::egui::Rangef;
 
@@ -101,50 +100,6 @@ fn bounds_follow_the_selected_reflector() {
     let at = s.handle("point 2: move");
     s.drag(at, vec2(0.0, 20.0), 4);
     assert_eq!(s.state().values_asked(Panel::Bounds), asked);
-}
-
-#[test]
-fn phasors_follow_the_cursor() {
-    let mut s = Session::start();
-    assert_eq!(s.state().values_asked(Panel::Phasors), 0, "a closed panel costs nothing");
-    s.ask(WindowCommand::OpenPanel(Panel::Phasors));
-    let (cell, sum) = s.state().phasor_sum().expect("of the first object");
-    let map = s.app.get_by_label("Target map").rect();
-    s.app.hover_at(map.lerp_inside(vec2(0.4, 0.4)));
-    s.settle();
-    let (moved, another) = s.state().phasor_sum().unwrap();
-    assert!(moved != cell && another != sum, "{cell:?} {moved:?}");
-    let asked = s.state().values_asked(Panel::Phasors);
-    s.ask(WindowCommand::TogglePanel(Panel::Phasors));
-    s.app.hover_at(map.lerp_inside(vec2(0.7, 0.2)));
-    s.settle();
-    assert_eq!(s.state().values_asked(Panel::Phasors), asked);
-}
-
-#[test]
-fn pinned_cuts_outlive_their_scene() {
-    let mut s = Session::start();
-    s.ask(WindowCommand::OpenPanel(Panel::Cuts));
-    s.press(Modifiers::NONE, Key::K);
-    s.ask(DocumentCommand::RandomScene(Kind::Set1));
-    let _pinned = s.app.get_by_label_contains("Unpin 1: ");
-    s.press(Modifiers::NONE, Key::D);
-    assert_eq!(s.state().settings().units, Units::Decibels);
-    s.ask(ViewCommand::UnpinAll);
-    assert!(!s.shows("Unpin 1: "));
-}
-
-#[test]
-fn a_difference_is_painted_again_when_its_scale_changes() {
-    let mut s = Session::start();
-    s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Difference)));
-    for command in
-        [Command::View(ViewCommand::ToggleAbsoluteDifference), Command::View(ViewCommand::ToggleWholeDifference)]
-    {
-        let (_, painted) = s.state().work_done();
-        s.ask(command);
-        assert_eq!(s.state().work_done().1, painted + 1, "the difference alone");
-    }
 }
 
 fn press_in_the_guide(s: &mut Session, name: &str) {

@@ -115,26 +115,6 @@ fn a_recordings_constants_cannot_be_edited() {
 }
 
 #[test]
-fn a_recording_is_exported() {
-    let mut s = Session::start();
-    s.ask(DocumentCommand::Recording(CHIP));
-    s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
-    let (maps, drawing) = (s.path("maps.npz"), s.path("maps.svg"));
-    s.ask(ExportCommand::MapsTo(maps.clone()));
-    let bitmap = drawing.with_extension("png");
-    s.ask(ExportCommand::PictureTo(drawing.clone()));
-    s.ask(ExportCommand::PictureTo(bitmap.clone()));
-    step_until(&mut s, "no export", |_| maps.exists() && drawing.exists() && bitmap.exists());
-    let size = image::image_dimensions(&bitmap).unwrap();
-    let svg = std::fs::read_to_string(&drawing).unwrap();
-    assert!(svg.contains(&format!("width=\"{}\" height=\"{}\"", size.0, size.1)), "both show the same panels");
-    assert!(std::fs::read_to_string(&drawing).unwrap().contains("Target: all 8 elements"));
-    let mut archive = ndarray_npy::NpzReader::new(std::fs::File::open(&maps).unwrap()).unwrap();
-    let output: ndarray::Array3<f32> = archive.by_name("output").unwrap();
-    assert_eq!(output.dim(), (1, 128, 8));
-}
-
-#[test]
 fn an_overlay_comes_back_over_its_recording_after_a_kill() {
     let mut s = Session::start();
     let path = copied(&s, "chip-8.toml");

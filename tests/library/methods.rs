@@ -114,16 +114,6 @@ fn noise_is_no_detection() {
 }
 
 #[test]
-#[ignore = "half a minute"]
-fn ten_thousand_reflectors_end_in_time() {
-    let cluster = GaussianCluster { seed: 2, ..GaussianCluster::new([1.0, 14.0], [6.0, 3.0], 10_000) };
-    let ends = ends_of(&Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() }, Floor::Thesis);
-    for method in methods::all() {
-        run(&*method, &ends, "ten thousand reflectors");
-    }
-}
-
-#[test]
 fn a_crowded_scene_is_told_from_its_surroundings_in_time() {
     let crowded = Generator::new(&radar(), Reading::Program, Purpose::Validation, 4).scene(Kind::Set3, 0);
     let signal = simulate(&radar(), &crowded, Floor::Thesis, 1).unwrap();

@@ -23,15 +23,6 @@ pub fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
 }
 
 #[test]
-fn a_capture_without_cfg_counts_bins() {
-    let folder = folder(&[("a.bin", &frame())]);
-    let recording = open(&folder.path().join("a.bin"), None).unwrap();
-    assert_eq!((recording.radar.samples, recording.radar.range_resolution_metres()), (64, 1.0));
-    let told = recording.doubts.join(" ");
-    assert!(told.contains("No .cfg says") && told.contains("Nothing says where the antennas stand"), "{told}");
-}
-
-#[test]
 fn parts_of_a_split_capture_are_read_as_one() {
     let bytes = frame();
     let (first, second) = bytes.split_at(bytes.len() / 2 + 100);
