@@ -190,6 +190,10 @@ pub(super) mod tests {
         })
     }
 
+    pub fn at(range: f64, cos: f64) -> Reflector {
+        Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).max(0.0).sqrt(), reflectivity: 1.0 }
+    }
+
     pub fn simulated(radar: &Radar, reflector: &Reflector, aperture: Aperture) -> Array2<f64> {
         let profiles = range_transform(radar, &exact::beat_signal(radar, &[*reflector]));
         angle_transform(radar, &profiles, aperture).cells.mapv(Complex64::norm)
@@ -347,11 +351,7 @@ pub(super) mod tests {
     fn the_formula_alone_is_within_a_column_for_table_3_1() {
         let radar = Radar::default();
         for (range, cos) in [(5.0, 0.0), (8.0, 0.5), (12.0, -0.832), (20.0, 0.9), (35.0, -0.3)] {
-            let r = Reflector {
-                x_metres: range * cos,
-                y_metres: range * (1.0 - f64::powi(cos, 2)).sqrt(),
-                reflectivity: 1.0,
-            };
+            let r = at(range, cos);
             for aperture in APERTURES {
                 let blob = Blob::of(&radar, &r, aperture).unwrap();
                 let (bins, columns) = blob_cell(&radar, r.x_metres, r.y_metres, aperture).offset_to(&blob.peak, &radar);

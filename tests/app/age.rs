@@ -22,6 +22,7 @@ fn action() -> impl Strategy<Value = Command> {
         1 => Just(EditCommand::Add(NewObject::Point, None).into()),
         1 => Just(EditCommand::SelectAll.into()),
         1 => window.prop_map(|window| RadarCommand::SetWindow(window).into()),
+        1 => Just(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))).into()),
         1 => floor.prop_map(|floor| ViewCommand::SetFloor(floor).into()),
         6 => prop::sample::select(panels()).prop_map(|panel| WindowCommand::TogglePanel(panel).into()),
         2 => (0..3usize).prop_map(|i| ViewCommand::Method(["baseline", "capon", "stub"][i]).into()),

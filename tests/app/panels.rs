@@ -16,27 +16,6 @@ fn idling_computes_nothing() {
 }
 
 #[test]
-fn another_normalisation_simulates_nothing() {
-    let mut s = Session::start();
-    for normalisation in [
-        Normalisation::DynamicRange(Decibels(60.0)),
-        Normalisation::DynamicRange(Decibels(100.0)),
-        Normalisation::MinMax,
-    ] {
-        let (_, painted) = s.state().work_done();
-        s.ask(ViewCommand::Normalise(normalisation));
-        assert_eq!(s.state().settings().normalisation, normalisation);
-        assert!(s.state().work_done().1 >= painted + 6, "every map was painted again");
-        let report = s.state().report().unwrap();
-        for stage in [EngineStage::Signal, EngineStage::FirstMap, EngineStage::LastMap, EngineStage::FullMap] {
-            assert!(!report.ran(stage), "{stage}");
-        }
-    }
-    s.ask(ViewCommand::SetFloor(Floor::Exact));
-    assert_eq!(s.state().settings().floor, Floor::Exact);
-}
-
-#[test]
 fn an_empty_scene_has_figures_over_noise_alone() {
     let mut s = Session::start();
     s.press(Modifiers::COMMAND, Key::A);

@@ -80,13 +80,6 @@ fn a_disturbed_scene_is_computed_as_commands_do() {
 }
 
 #[test]
-fn the_engine_survives_a_bad_scene() {
-    let mut engine = Engine::new(small());
-    assert!(engine.update(&Scene::of_points([(f64::NAN, 1.0)]), &MapRequest::default()).is_err());
-    assert!(engine.update(&Scene::default(), &MapRequest::default()).is_ok());
-}
-
-#[test]
 fn frames_agree_with_the_plain_path() {
     let radar = Radar::default();
     let points = Scene::of_points([(1.0, 6.0), (-2.0, 9.5), (8.0, 3.3)]);

@@ -53,12 +53,3 @@ fn a_campaign_goes_on_without_a_method_that_refuses_its_scenes() {
     let [Unfit { method: "refuses", set, scenes: 2, reason }] = &unfit[..] else { panic!("{unfit:?}") };
     assert!(set == "set 1" && reason.contains("made for no radar"), "{reason}");
 }
-
-#[test]
-fn a_campaign_can_be_cancelled() {
-    let task = Task::default();
-    task.cancel();
-    let sets = [SceneSet::Generated(Kind::Set1)];
-    let stopped = Campaign::default().run(&sets, &[&Baseline], &task, |_| ()).unwrap_err();
-    assert!(stopped.is_cancelled() && stopped.to_string().contains("scene 0 of set 1"), "{stopped}");
-}

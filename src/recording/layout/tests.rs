@@ -1,6 +1,7 @@
 use super::stream::Stream;
 use super::*;
 use crate::recording::RadarProfile;
+use crate::recording::card::tests::sent;
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -137,13 +138,8 @@ fn headers_before_chirps_are_found() {
 }
 
 fn packets(bytes: &[u8], lost: &[usize]) -> Vec<u8> {
-    let mut out = Vec::new();
-    for (n, data) in bytes.chunks(1456).enumerate().filter(|(n, _)| !lost.contains(n)) {
-        out.extend((n as u32 + 1).to_le_bytes());
-        out.extend(&(n as u64 * 1456).to_le_bytes()[..6]);
-        out.extend(data);
-    }
-    out
+    let kept = sent(bytes).into_iter().enumerate().filter(|(n, _)| !lost.contains(n));
+    kept.flat_map(|(_, packet)| packet).collect()
 }
 
 #[test]
