@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_dragged_or_added_is_evaluated_alone_and_the_rest_comes_to_rest() {
+    fn what_is_dragged_or_added_is_evaluated_alone() {
         type Points = &'static [f64];
         let cases: [([Points; 3], bool, [Points; 3]); 4] = [
             ([&[1.0, 2.0], &[3.0], &[1.0, 2.0, 3.1]], false, [&[1.0, 2.0], &[], &[3.1]]),

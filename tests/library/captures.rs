@@ -24,9 +24,7 @@ fn opened(bytes: &[u8], cfg: &str) -> Recording {
 }
 
 fn assert_found(recording: &Recording, chirps: &Chirps, echo: Echo) {
-    let method = apertura::methods::by_name("iaa").unwrap();
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let (_, found) = reconstruct_and_find(method.as_ref(), &recording.radar, &recording.two_ends(), &request).unwrap();
+    let found = found_by("iaa", &recording.radar, &recording.two_ends());
     let range = echo.x.hypot(echo.y);
     let first = found.first().unwrap_or_else(|| panic!("nothing found: {:?}", recording.doubts));
     assert!((first.range_metres - range).abs() < chirps.bin_metres(), "{first:?}, {:?}", recording.doubts);

@@ -4,7 +4,6 @@
 use crate::prelude::*;
 use apertura::evaluate::detection_rates;
 use apertura::reconstruct::Reconstruction;
-use apertura::signal::TwoEnds;
 
 /// Longest any method may take for one map, even on a busy machine in an unoptimised build.
 const MAX_RUN_TIME: Duration = Duration::from_secs(120);

@@ -37,9 +37,7 @@ fn the_search_finds_points_beside_gaps() {
     let radar = Radar { end_elements: 13, ..with_gaps() };
     let scene = Scene::of_points([(0.6, 4.4), (-2.0, 6.0)]);
     let signal = simulate(&radar, &scene, Floor::Snr(Decibels(30.0)), 0).unwrap();
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let method = methods::by_name("nomp").unwrap();
-    let found = reconstruct_and_find(method.as_ref(), &radar, &signal.two_ends(&radar), &request).unwrap().1;
+    let found = found_by("nomp", &radar, &signal.two_ends(&radar));
     assert!(found.len() >= 2, "{found:?}");
     for (point, found) in scene.reflectors().iter().zip(&found) {
         let polar = radar.polar_of(point.x_metres, point.y_metres);
@@ -96,12 +94,6 @@ fn a_capture_of_pairs_has_its_rows_in_the_order_of_elements() {
 const KNOW_PAIRS: [&str; 9] =
     ["baseline", "matched-filter", "matched-filter-incoherent", "fista", "omp", "iaa", "sbl", "nomp", "hybrid"];
 
-fn found(method: &str, recording: &Recording) -> Vec<Detection> {
-    let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    reconstruct_and_find(method.as_ref(), &recording.radar, &recording.two_ends(), &request).unwrap().1
-}
-
 fn near_radar() -> Radar {
     Radar { end_elements: 16, ..small(6, 16) }
 }
@@ -148,7 +140,7 @@ fn random_captures_are_placed_within_the_bound() {
             let known = Radar { transmit_power_watts: 1.0, ..radar.clone() };
             let bounds = cramer_rao(&known, &Layout::two_ends(&known), &reflectors, sigma * sigma).unwrap();
             for method in ["nomp", "hybrid"] {
-                let found = found(method, &recording);
+                let found = found_by(method, &recording.radar, &recording.two_ends());
                 for (bound, (x, y)) in bounds.iter().zip(&points) {
                     let (range, cos) = (x.hypot(*y), x / x.hypot(*y));
                     let off = |d: &Detection| {

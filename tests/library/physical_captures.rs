@@ -116,9 +116,7 @@ fn peak_cos(recording: &Recording, range_metres: f64) -> f64 {
 
 fn errors(recording: &Recording) -> (f64, f64) {
     let radar = &recording.radar;
-    let method = methods::by_name("iaa").unwrap_or_else(|e| panic!("{e}"));
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let (_, found) = reconstruct_and_find(method.as_ref(), radar, &recording.two_ends(), &request).unwrap();
+    let found = found_by("iaa", radar, &recording.two_ends());
     let (mut columns, mut degrees) = (0.0f64, 0.0f64);
     for (range, cos) in PLACES {
         columns = columns.max((peak_cos(recording, range) - cos).abs() / (2.0 / ELEMENTS as f64));

@@ -7,9 +7,7 @@ use apertura::recording::presets::Preset;
 fn seen(recording: &Recording, method: &str, end_elements: usize) -> Vec<f64> {
     let radar = Radar { end_elements, ..recording.radar.clone() };
     let ends = recording.signal().unwrap().two_ends(&radar);
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
-    let (_, found) = reconstruct_and_find(method.as_ref(), &radar, &ends, &request).unwrap_or_else(|e| panic!("{e}"));
+    let found = found_by(method, &radar, &ends);
     let strong = found.iter().filter(|f| f.relative_power.0 > -8.0);
     let mut degrees: Vec<f64> = strong.map(|f| f.cos_theta.asin().to_degrees()).collect();
     degrees.sort_by(f64::total_cmp);
