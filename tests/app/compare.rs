@@ -1,7 +1,7 @@
-//! Two methods on one scene.
+//! Two methods on one scene, one flipped in the place of the other.
 
 use crate::session::*;
-use apertura::app::Compare;
+use apertura::app::{Compare, Layout};
 use apertura::maps::RangeAngleMap;
 use egui_kittest::Node;
 
@@ -75,4 +75,24 @@ fn a_second_method_that_refuses_leaves_the_first() {
     assert!(s.shows("made for other radars"));
     assert!(s.state().pictures().contains(&MapKind::Output) && s.state().metrics().is_some());
     assert!(!s.state().pictures().contains(&MapKind::Second));
+}
+
+#[test]
+fn one_key_flips_two_maps_in_place() {
+    let mut s = with_capon();
+    s.press(Modifiers::NONE, Key::X);
+    assert!(s.state().arrangement().is_open(Panel::Compare));
+    s.ask(WindowCommand::Maximise(Panel::Compare));
+    let place = |s: &Session, label: &str| s.app.query_by_label(label).map(|map| map.rect());
+    let first = place(&s, "Output map").expect("the first is in front");
+    assert!(s.state().pictures().contains(&MapKind::Second), "the other is ready");
+    s.press(Modifiers::NONE, Key::X);
+    assert_eq!((place(&s, "Output map"), place(&s, "Second output map")), (None, Some(first)));
+    s.press(Modifiers::NONE, Key::X);
+    assert_eq!(place(&s, "Output map"), Some(first));
+    let maps = [MapKind::Target, MapKind::Input1];
+    s.ask(ViewCommand::SetCompare(Box::new(Compare { maps, layout: Layout::Flip, ..Compare::default() })));
+    assert_eq!(s.state().pictures(), [MapKind::Input1, MapKind::Target], "any two, and no others");
+    s.press(Modifiers::NONE, Key::X);
+    assert!(place(&s, "Input 1 map").is_some());
 }

@@ -99,16 +99,25 @@ fn keys_do_not_reach_the_scene_behind_a_menu() {
     assert!(std::sync::Arc::ptr_eq(s.editor().scene(), &scene), "nothing was added or deleted");
 }
 
-#[test]
-fn keys_after_a_wrong_entry_stay_in_the_field_until_escape() {
+fn with_second() -> Session {
     let mut s = Session::start();
     s.select(1);
+    s
+}
+
+fn enter_x(s: &mut Session, text: &str) {
     s.app.get_by_role_and_label(Role::SpinButton, "x").focus();
     s.settle();
     s.press(Modifiers::COMMAND, Key::A);
-    s.app.event(Event::Text("abc".to_owned()));
+    s.app.event(Event::Text(text.to_owned()));
     s.settle();
     s.press(Modifiers::NONE, Key::Enter);
+}
+
+#[test]
+fn keys_after_a_wrong_entry_stay_in_the_field_until_escape() {
+    let mut s = with_second();
+    enter_x(&mut s, "abc");
     s.app.event(Event::Text("o".to_owned()));
     s.press(Modifiers::NONE, Key::O);
     assert_eq!(selected(&s), Some(1));
@@ -117,4 +126,17 @@ fn keys_after_a_wrong_entry_stay_in_the_field_until_escape() {
     s.press(Modifiers::NONE, Key::Escape);
     assert_eq!((selected(&s), s.place(1)), (Some(1), [8.0, 12.0]), "the entry is given up");
     assert!(!s.shows("Enter a number"));
+}
+
+#[test]
+fn each_entry_is_one_undo_step() {
+    let mut s = with_second();
+    for text in ["-3,5", "4"] {
+        enter_x(&mut s, text);
+    }
+    assert_eq!(s.place(1)[0], 4.0);
+    for x in [-3.5, 8.0] {
+        s.undo();
+        assert_eq!(s.place(1)[0], x);
+    }
 }

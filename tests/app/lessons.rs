@@ -143,6 +143,17 @@ fn the_number_of_blobs_is_not_told_while_maps_are_hidden() {
 }
 
 #[test]
+fn going_back_keeps_the_verdict() {
+    let mut s = Session::start();
+    begin(&mut s, "range-and-bandwidth", 4);
+    predict(&mut s, Guess::Choice(1), "Not quite: the answer is “It stays”.");
+    s.click("Previous");
+    assert!(!s.shows("Not quite"));
+    s.click("Next");
+    assert!(s.shows("Not quite") && s.shows("the right answer"));
+}
+
+#[test]
 fn the_guess_stays_drawn_beside_the_truth() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 1);

@@ -82,3 +82,18 @@ fn a_bad_file_loses_nothing() {
     s.settle();
     assert_eq!(s.state().messages(), before - 1);
 }
+
+#[test]
+fn a_double_click_adds_a_point_where_it_was() {
+    let mut s = Session::start();
+    let at = s.handle("point 1: move") + vec2(-60.0, 0.0);
+    for _ in 0..2 {
+        s.app.hover_at(at);
+        s.app.drag_at(at);
+        s.app.drop_at(at);
+        s.app.step();
+    }
+    s.settle();
+    assert_eq!(s.objects().len(), 3);
+    assert!(s.place(2)[0] < 0.0 && (s.place(2)[1] - 20.0).abs() < 0.2);
+}
