@@ -1,8 +1,10 @@
 //! All readers of files from outside, with valid files to start from.
 
+use crate::made_captures::{RISING, cfg};
 use crate::prelude::*;
 use apertura::evaluate::rows::write_rows;
 use apertura::recording::RadarProfile;
+use apertura::recording::presets::ALL as SHIPPED;
 use apertura::scene::file;
 use ndarray::{Ix2, Ix3};
 
@@ -108,27 +110,14 @@ fn archives() -> Reader {
     Reader { name: "npz", files, read, bound: [1 << 20, 64], slow: 1 }
 }
 
-const RECORDINGS: [(&str, &[u8], &str); 2] = [
-    (
-        "chip-8.npz",
-        include_bytes!("../../../assets/recordings/chip-8.npz"),
-        include_str!("../../../assets/recordings/chip-8.toml"),
-    ),
-    (
-        "cascade-86.mat",
-        include_bytes!("../../../assets/recordings/cascade-86.mat"),
-        include_str!("../../../assets/recordings/cascade-86.toml"),
-    ),
-];
-
 /// Memory for the largest radar's samples is bounded by the radar; damaged numbers of elements and samples stay far below.
 const RECORDING_BOUND_BYTES: [usize; 2] = [64 << 20, 1024];
 
 fn recordings() -> Reader {
-    let files = RECORDINGS.iter().map(|(_, _, text)| text.as_bytes().to_vec()).collect();
+    let files = SHIPPED.iter().map(|preset| preset.toml.as_bytes().to_vec()).collect();
     let read = |folder: &Path, bytes: &[u8]| {
-        for (name, data, _) in RECORDINGS.iter().filter(|(name, ..)| !folder.join(name).exists()) {
-            written(folder, name, data);
+        for preset in SHIPPED.iter().filter(|preset| !folder.join(preset.data_name).exists()) {
+            written(folder, preset.data_name, preset.data);
         }
         told(recording::file::load(&written(folder, "recording.toml", bytes)))
     };
@@ -136,17 +125,17 @@ fn recordings() -> Reader {
 }
 
 fn recorded_data() -> Reader {
-    let files = RECORDINGS.iter().map(|(_, data, _)| data.to_vec()).collect();
+    let files = SHIPPED.iter().map(|preset| preset.data.to_vec()).collect();
     let read = |folder: &Path, bytes: &[u8]| {
         let folder = folder.join("data");
         fs::create_dir_all(&folder).unwrap();
         let mut read = Err(String::new());
-        for (name, _, text) in RECORDINGS {
-            let path = folder.join(name).with_extension("toml");
+        for preset in SHIPPED {
+            let path = folder.join(preset.data_name).with_extension("toml");
             if !path.exists() {
-                fs::write(&path, text).unwrap();
+                fs::write(&path, preset.toml).unwrap();
             }
-            written(&folder, name, bytes);
+            written(&folder, preset.data_name, bytes);
             read = read.or_else(|_| told(recording::file::load(&path)));
         }
         read
@@ -154,12 +143,10 @@ fn recorded_data() -> Reader {
     Reader { name: "recorded data", files, read, bound: RECORDING_BOUND_BYTES, slow: 2 }
 }
 
-const PROFILE: &[u8] = b"channelCfg 15 5 0\nadcCfg 2 1\nprofileCfg 0 77 429 7 57.14 0 0 70 1 8 5209 0 0 30\n\
-                         chirpCfg 0 0 0 0 0 0 0 1\nchirpCfg 1 1 0 0 0 0 0 4\nframeCfg 0 1 2 0 100 1 0\n";
-
 fn profiles() -> Reader {
     let read = |_: &Path, bytes: &[u8]| told(RadarProfile::parse(text(bytes)?));
-    Reader { name: "profile", files: vec![PROFILE.to_vec()], read, bound: [1 << 20, 1024], slow: 1 }
+    let files = vec![cfg(&RISING, &[1, 4], 8, "").into_bytes()];
+    Reader { name: "profile", files, read, bound: [1 << 20, 1024], slow: 1 }
 }
 
 fn tables_of_rows() -> Reader {
