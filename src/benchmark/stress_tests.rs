@@ -18,7 +18,6 @@ const MAX_PLAIN_REFLECTORS: usize = 1000;
 const TOLERANCES: [(Precision, f64); 2] = [(Precision::F32, 1e-6), (Precision::F64, 1e-12)];
 /// The two conventions of errors, and the one whose floor is rounding.
 const CONVENTIONS: [MapConvention; 3] = [MapConvention::FIXED_RANGE, MapConvention::THESIS, MapConvention::NO_FLOOR];
-/// Number of comparisons with a fresh engine over a run of edits.
 const COMPARISONS: usize = 20;
 
 fn small() -> Radar {
@@ -64,7 +63,6 @@ fn out_of_range(map: &RangeAngleMap) -> usize {
     map.lambda.iter().filter(|v| !(0.0..=1.0).contains(*v)).count()
 }
 
-/// A scene, and the reference for the algorithms.
 struct Case<'a> {
     radar: &'a Radar,
     scene: Scene,
@@ -73,7 +71,6 @@ struct Case<'a> {
     scale: f64,
 }
 
-/// An algorithm's result for a case.
 struct Outcome {
     algorithm: Algorithm,
     /// Largest error of a range cell over [`Case::scale`].
@@ -89,8 +86,6 @@ impl<'a> Case<'a> {
         Case { radar, scene: scene(reflectors), judge: JudgedProfiles::new(radar, reflectors), scale }
     }
 
-    /// # Panics
-    /// Where a value isn't finite, or an algorithm exceeds its tolerance.
     fn holds(&self, name: &str) -> Vec<Outcome> {
         let mut outcomes = Vec::new();
         for algorithm in Algorithm::ALL {

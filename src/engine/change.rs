@@ -75,37 +75,24 @@ mod tests {
     use super::*;
     use crate::scene::Scene;
 
-    fn points(x: impl IntoIterator<Item = f64>) -> Vec<SeenObject> {
-        Scene::of_points(x.into_iter().map(|x| (x, 5.0))).objects.into_iter().map(SeenObject::from).collect()
+    fn points(x: &[f64]) -> Vec<SeenObject> {
+        Scene::of_points(x.iter().map(|x| (*x, 5.0))).objects.into_iter().map(SeenObject::from).collect()
     }
 
     #[test]
-    fn the_one_that_is_dragged_is_evaluated_alone() {
-        let change = SceneChange::between(&points([1.0, 2.0]), &points([3.0]), &points([1.0, 2.0, 3.1]));
-        assert!(!change.settles && change.leaving.is_empty());
-        assert_eq!((change.staying, change.arriving), (points([1.0, 2.0]), points([3.1])));
-    }
-
-    #[test]
-    fn unmoved_reflectors_come_to_rest() {
-        let change = SceneChange::between(&points([1.0]), &points([2.0, 3.0, 4.0]), &points([1.0, 2.0, 3.1, 4.0]));
-        assert!(change.settles);
-        assert_eq!(change.staying, points([1.0, 2.0, 4.0]));
-        assert_eq!((change.leaving, change.arriving), (points([3.0]), points([3.1])));
-    }
-
-    #[test]
-    fn what_is_added_beside_active_ones_is_evaluated_alone() {
-        let change = SceneChange::between(&points([1.0]), &points([2.0, 3.0]), &points([1.0, 2.0, 3.0, 4.0]));
-        assert!(change.settles && change.leaving.is_empty());
-        assert_eq!((change.staying, change.arriving), (points([1.0, 2.0, 3.0]), points([4.0])));
-    }
-
-    #[test]
-    fn a_change_at_rest_settles_the_active_ones() {
-        let change = SceneChange::between(&points([1.0, 2.0]), &points([3.0]), &points([1.5, 2.0, 3.0]));
-        assert!(change.settles);
-        assert_eq!(change.staying, points([2.0, 3.0]));
-        assert_eq!((change.leaving, change.arriving), (points([1.0]), points([1.5])));
+    fn what_is_dragged_or_added_is_evaluated_alone() {
+        type Points = &'static [f64];
+        let cases: [([Points; 3], bool, [Points; 3]); 4] = [
+            ([&[1.0, 2.0], &[3.0], &[1.0, 2.0, 3.1]], false, [&[1.0, 2.0], &[], &[3.1]]),
+            ([&[1.0], &[2.0, 3.0, 4.0], &[1.0, 2.0, 3.1, 4.0]], true, [&[1.0, 2.0, 4.0], &[3.0], &[3.1]]),
+            ([&[1.0], &[2.0, 3.0], &[1.0, 2.0, 3.0, 4.0]], true, [&[1.0, 2.0, 3.0], &[], &[4.0]]),
+            ([&[1.0, 2.0], &[3.0], &[1.5, 2.0, 3.0]], true, [&[2.0, 3.0], &[1.0], &[1.5]]),
+        ];
+        for (given, settles, expected) in cases {
+            let [rest, active, scene] = given.map(points);
+            let change = SceneChange::between(&rest, &active, &scene);
+            assert_eq!(change.settles, settles, "{given:?}");
+            assert_eq!([change.staying, change.leaving, change.arriving], expected.map(points), "{given:?}");
+        }
     }
 }

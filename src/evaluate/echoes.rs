@@ -228,16 +228,6 @@ mod tests {
     use crate::signal::{Floor, simulate};
 
     #[test]
-    fn counts_are_read_as_they_were_written() {
-        let counts = EchoCounts([2, 0, 3, 0, 1, 12]);
-        assert_eq!(counts.to_string(), "2 0 3 0 1 12");
-        assert_eq!(counts.to_string().parse(), Ok(counts));
-        for wrong in ["1 2 3", "-1 0 0 0 0 0", "0 0 0 0 0 99999999999", ""] {
-            assert!(wrong.parse::<EchoCounts>().is_err(), "{wrong:?}");
-        }
-    }
-
-    #[test]
     fn glints_alone_score_below_glints_and_walls_ends() {
         let radar = Radar::default();
         let objects = vec![Object::Wall(Wall::new(0.0, 10.0, 5.0, 0.0))];

@@ -113,27 +113,4 @@ mod tests {
         let all: std::collections::BTreeSet<u64> = seeds.into_iter().flatten().collect();
         assert_eq!(all.len(), 12);
     }
-
-    #[test]
-    #[ignore = "minutes; prints the ratio at every signal-to-noise ratio"]
-    fn one_reflectors_place_reaches_the_bound_at_every_snr() {
-        for snr in [0.0, 10.0, 20.0, 30.0, 40.0] {
-            let p = placed(snr, 200);
-            println!(
-                "{snr} dB: error / bound = {:.3}, {} of {} on another tooth",
-                p.ratio(),
-                p.off_by_a_tooth,
-                p.trials
-            );
-            // Of 200 draws the root mean square is known to 3.5 %.
-            assert!(p.miscounted == 0 && (0.89..1.11).contains(&p.ratio()), "{p:?}");
-        }
-    }
-
-    #[test]
-    fn a_reflector_without_a_bound_is_an_error() {
-        let silent = Reflector { x_metres: 5.0, y_metres: 18.0, reflectivity: 0.0 };
-        let error = placement(&Radar::default(), silent, Decibels(10.0), 1, &Task::default()).unwrap_err();
-        assert!(matches!(error, ReconstructError::Unusable { .. }), "{error}");
-    }
 }

@@ -172,18 +172,6 @@ mod tests {
     }
 
     #[test]
-    fn too_few_scenes_keep_no_rate() {
-        let mut roc = Roc::default();
-        let target = RangeAngleMap { lambda: Array2::from_shape_fn((10, 10), |(i, _)| i as f32 / 9.0) };
-        for _ in 0..98 {
-            roc.add(&target, &target);
-        }
-        assert_eq!((roc.keeping_false_alarm(0.01), Roc::fewest_scenes(0.01)), (None, 99.0));
-        roc.add(&target, &target);
-        assert_eq!(roc.keeping_false_alarm(0.01).unwrap().false_alarm, 0.0);
-    }
-
-    #[test]
     fn many_scenes_are_left_nearly_all_of_the_rate() {
         for rate in [0.001, 0.005, 0.01, 0.4] {
             let fewest = Roc::scenes_within_a_tenth(rate) as usize;

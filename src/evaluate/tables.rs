@@ -160,18 +160,6 @@ mod tests {
     }
 
     #[test]
-    fn echoes_of_all_scenes_are_added_class_by_class() {
-        let rows = [
-            row("bodies", 0, "a"),
-            Row { echoes: None, echoes_found: None, ..row("bodies", 1, "a") },
-            row("bodies", 2, "a"),
-        ];
-        let twice = EchoTally { there: [2, 0, 0, 4, 0, 8], found: [2, 0, 0, 2, 0, 0] };
-        assert_eq!(Tally::of(&rows).echoes(), Some(twice));
-        assert_eq!(Tally::of(&rows[1..2]).echoes(), None);
-    }
-
-    #[test]
     fn deviations_allow_for_the_printed_digits() {
         let e = Estimate { mean: 0.0021, standard_error: 0.0001, median: 0.002 };
         assert!((e.deviation_from(0.002, 0.0) - 1.0).abs() < 1e-9);

@@ -233,12 +233,4 @@ mod tests {
         says(ThresholdSearch { kinds: vec![Kind::Noise], ..search() }, "\"noise\" have no echoes");
         says(ThresholdSearch { kinds: vec![Kind::Set2, Kind::Set1, Kind::Set2], ..search() }, "\"2\" is given twice");
     }
-
-    #[test]
-    fn a_search_can_be_cancelled() {
-        let task = Task::default();
-        let cancel = |_| task.cancel();
-        let stopped = search().run(&Baseline, &task, cancel).unwrap_err();
-        assert!(stopped.is_cancelled(), "{stopped}");
-    }
 }

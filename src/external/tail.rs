@@ -59,11 +59,4 @@ mod tests {
         let text = tail.text(Duration::ZERO);
         assert!(text.len() < KEPT_BYTES && text.starts_with("line ") && text.ends_with("\nline 999"), "{text}");
     }
-
-    #[test]
-    fn a_short_text_is_kept_as_it_is() {
-        let tail = Tail::default();
-        tail.follow("no newline".as_bytes());
-        assert_eq!(tail.text(Duration::ZERO), "no newline");
-    }
 }

@@ -25,31 +25,18 @@ pub(super) fn lesson<S: Student>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::thesis::{Thesis, ThesisConfig};
-    use crate::radar::Radar;
+    use crate::network::thesis::Thesis;
+    use crate::network::train::tests::{recipe, run};
     use crate::scene::generate::{Purpose, Reading};
-    use std::time::Duration;
+    use std::path::Path;
 
     #[test]
     fn a_lesson_lies_over_noise_of_its_own() {
-        let radar = Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() };
-        let run = TrainingRun {
-            folder: "none".into(),
-            device: burn::tensor::Device::flex(),
-            radar: radar.clone(),
-            max_steps: None,
-            max_time: None,
-            untrained: false,
-            checkpoint_every: Duration::ZERO,
-            origin: Default::default(),
-        };
-        let config = ThesisConfig { filters: 2, levels: 2, alive_output: false };
-        let generator = |purpose| Generator::new(&radar, Reading::Program, purpose, 0);
-        let target = |purpose| lesson::<Thesis>(&config, &run, &generator(purpose), (Kind::Set1, 0)).unwrap().1.lambda;
-        let scene = |purpose| generator(purpose).scene(Kind::Set1, 0);
-        assert_ne!(scene(Purpose::Training).noise_seed, scene(Purpose::Test).noise_seed);
-        let plain = simulate(&radar, &scene(Purpose::Training), Floor::Thesis, 0).unwrap();
-        let plain = Thesis::target(&config, &radar, &plain).lambda;
-        assert_ne!(target(Purpose::Training), plain, "not the seed that every scene once shared");
+        let (run, (_, config)) = (run(Path::new("none"), 1), recipe());
+        let generator = Generator::new(&run.radar, Reading::Program, Purpose::Training, 0);
+        let (_, target) = lesson::<Thesis>(&config, &run, &generator, (Kind::Set1, 0)).unwrap();
+        let plain = simulate(&run.radar, &generator.scene(Kind::Set1, 0), Floor::Thesis, 0).unwrap();
+        let plain = Thesis::target(&config, &run.radar, &plain).lambda;
+        assert_ne!(target.lambda, plain, "not the seed that every scene once shared");
     }
 }

@@ -149,17 +149,13 @@ fn log_at(path: &Path, goes_on: bool) -> io::Result<fs::File> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::network::recipe::{Decay, KindShare, Network, Optimizer};
     use crate::network::thesis::{Thesis, ThesisConfig};
     use crate::radar::Radar;
 
-    fn radar() -> Radar {
-        Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() }
-    }
-
-    fn recipe() -> (Recipe, ThesisConfig) {
+    pub fn recipe() -> (Recipe, ThesisConfig) {
         let config = ThesisConfig { filters: 2, levels: 2, alive_output: false };
         let recipe = Recipe {
             name: "tiny".into(),
@@ -177,11 +173,11 @@ mod tests {
         (recipe, config)
     }
 
-    fn run(folder: &Path, max_steps: u64) -> TrainingRun {
+    pub fn run(folder: &Path, max_steps: u64) -> TrainingRun {
         TrainingRun {
             folder: folder.to_owned(),
             device: Device::flex(),
-            radar: radar(),
+            radar: Radar { samples: 16, elements: 32, end_elements: 4, ..Radar::default() },
             max_steps: Some(max_steps),
             max_time: None,
             untrained: false,

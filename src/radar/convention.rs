@@ -92,14 +92,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_default_radar_has_the_thesis_conventions_spacing() {
-        let radar = Radar::default();
-        assert_eq!(radar.convention(), Convention::Thesis);
-        assert_eq!(radar.filled_spacing_metres(), radar.element_spacing_metres);
-        assert_eq!(radar.clone().in_convention(Convention::Thesis), radar);
-    }
-
-    #[test]
     fn every_direction_has_one_column_in_the_physical_convention() {
         let radar = Radar::default().in_convention(Convention::Physical);
         assert_eq!(radar.carrier, Carrier::TwoWay);

@@ -255,28 +255,3 @@ impl Radar {
         (self.element_x_metres(r.start) + self.element_x_metres(r.end - 1)) / 2.0
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn table_3_1() {
-        let r = Radar::default();
-        assert!((r.wavelength_metres() - 3.893e-3).abs() < 1e-6);
-        assert!((r.range_resolution_metres() - 0.0749).abs() < 1e-4 && (r.max_range_metres() - 38.37).abs() < 0.01);
-        assert!((r.aperture_metres() - 1.99).abs() < 0.01 && (r.far_field_metres() - 2037.0).abs() < 5.0);
-        assert!((r.far_field_metres() / r.plane_beyond_metres(r.aperture_metres()) - 1.0).abs() < 1e-9);
-        assert_eq!(r.end_range(End::Last), 1012..1024);
-        assert_eq!(r.element_x_metres(0), -r.element_x_metres(1023));
-        r.validate().unwrap();
-    }
-
-    #[test]
-    fn bad_fields_are_named() {
-        let bad = Radar { bandwidth_hz: f64::NAN, ..Radar::default() };
-        assert!(bad.validate().unwrap_err().to_string().contains("bandwidth_hz"));
-        let bad = Radar { end_elements: 600, ..Radar::default() };
-        assert!(bad.validate().unwrap_err().to_string().contains("end_elements"));
-    }
-}

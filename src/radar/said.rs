@@ -197,10 +197,6 @@ mod tests {
         }
         let alone = read("transmitter_x_metres = [0.0]").unwrap_err();
         assert!(alone.contains("receiver_x_metres is missing"), "{alone}");
-        let gaps = read("transmitter_x_metres = [0.0, 1.0]\nreceiver_x_metres = [0.0, 0.2, 0.4]").unwrap();
-        assert_eq!((gaps.elements, gaps.gaps()), (8, 2));
-        let uneven = read("transmitter_x_metres = [0.0, 1.0]\nreceiver_x_metres = [0.0, 0.1, 0.237]").unwrap_err();
-        assert!(uneven.contains("off the even line"), "{uneven}");
     }
 
     #[test]

@@ -28,22 +28,3 @@ impl Radar {
         (cos_theta / self.squint()).clamp(-1.0, 1.0)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::radar::Carrier;
-
-    #[test]
-    fn the_carriers_squint_to_opposite_sides() {
-        let radar = Radar::default();
-        let (x, y) = (-0.832 * 20.0, 20.0 * (1.0f64 - 0.832 * 0.832).sqrt());
-        let blob = radar.blob_of(0.0, x, y);
-        assert!((blob.cos_theta + 0.8104).abs() < 1e-3 && (blob.range_metres - 20.0).abs() < 1e-9, "{blob:?}");
-        assert!((radar.cos_of_blob(blob.cos_theta) + 0.832).abs() < 1e-12);
-        assert_eq!(radar.cos_of_blob(1.0), 1.0, "no reflector's blob is there");
-        let two_way = Radar { carrier: Carrier::TwoWay, ..radar };
-        assert!((two_way.squint() - (1.0 + 1.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
-        assert!((Radar::default().squint() - (1.0 - 2.0 / 77.0 * 511.0 / 512.0)).abs() < 1e-12);
-    }
-}

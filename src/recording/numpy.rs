@@ -132,12 +132,5 @@ mod tests {
         let huge = with_header("{'descr': '<c16', 'fortran_order': False, 'shape': (1000000, 1000000), }");
         let message = read_npy(huge.as_slice()).unwrap_err().to_string();
         assert!(message.contains("[1000000, 1000000]") && message.contains("at most"), "{message}");
-        let nested = with_header(&"(".repeat(3000));
-        assert!(read_npy(nested.as_slice()).unwrap_err().to_string().contains("nested"));
-        let mut long = b"\x93NUMPY\x02\x00".to_vec();
-        long.extend_from_slice(&u32::MAX.to_le_bytes());
-        assert!(read_npy(long.as_slice()).unwrap_err().to_string().contains("4096"));
-        let cut = with_header("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }");
-        assert!(read_npy(cut.as_slice()).is_err());
     }
 }

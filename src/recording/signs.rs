@@ -143,31 +143,6 @@ mod tests {
     const PLUS: &str = "beat_sign = \"+\"\n";
 
     #[test]
-    fn a_two_way_sweep_upwards_is_taken_as_it_is() {
-        let radar = radar(Carrier::TwoWay);
-        let usual = signs(&radar, &format!("{FIRST}{PLUS}"));
-        assert_eq!(usual, Signs { conjugates: false, reverses_samples: false, carrier_hz: 77e9 });
-        assert_eq!(signs(&radar, &format!("{FIRST}beat_sign = \"-\"")), Signs { conjugates: true, ..usual });
-    }
-
-    #[test]
-    fn a_sweep_downwards_is_reversed_for_the_two_way_reading() {
-        // Its last frequency is the first one taken.
-        let down = signs(&radar(Carrier::TwoWay), &format!("{FIRST}{PLUS}sweep = \"down\""));
-        assert!(down.reverses_samples && down.conjugates && (down.carrier_hz - 76e9).abs() < 1.0, "{down:?}");
-    }
-
-    #[test]
-    fn the_one_way_reading_hears_the_middle_of_the_chirp() {
-        for (at, middle_hz) in [("first-sample", 77.5e9), ("middle", 76.995e9)] {
-            let signs = signs(&radar(Carrier::OneWay), &format!("{PLUS}carrier_at = \"{at}\""));
-            assert!(signs.conjugates && signs.reverses_samples);
-            // Sample 50 of 0 to 100: twice 50 steps of 10 MHz are taken off.
-            assert!((signs.carrier_hz - 1e9 - middle_hz).abs() < 1.0, "{signs:?}");
-        }
-    }
-
-    #[test]
     fn keys_that_do_not_go_together_are_told() {
         let all = &format!("{FIRST}{PLUS}");
         for (format, keys, part) in [

@@ -81,7 +81,6 @@ mod tests {
     }
 
     proptest! {
-        /// A disc nearer than the margin is found.
         #[test]
         fn what_is_near_is_found(
             places in prop::collection::vec((-30.0..30.0f64, 0.5..35.0f64, 0.0..3.0f64), 0..60),

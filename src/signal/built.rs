@@ -112,7 +112,7 @@ pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interfer
 mod tests {
     use super::*;
     use crate::radar::{Decibels, ElementError, LinkBudget};
-    use crate::scene::{Disturbances, Mirror, Object, Point, Post, Reflector, Wall};
+    use crate::scene::{Mirror, Object, Point, Post, Reflector, Wall};
     use crate::signal::simulate;
 
     fn small() -> Radar {
@@ -212,30 +212,6 @@ mod tests {
         let part = (with.0 - without.0).norm() / (with.1 - without.1).norm();
         let towards_image = pattern.amplitude(8.0 / (14.0 + x).hypot(8.0));
         assert!((part / (towards_image * expected.sqrt()) - 1.0).abs() < 0.05, "{part}: {towards_image}, {expected}");
-    }
-
-    #[test]
-    fn disturbances_act_on_bodies_as_on_points() {
-        let radar = small();
-        let wall = Object::Wall(Wall::new(0.5, 11.0, 6.0, 0.0));
-        let mut scene = Scene { objects: vec![wall], ..Scene::default() };
-        let ideal = simulate(&radar, &scene, Floor::Exact, 3).unwrap();
-        scene.disturbances.elements = BuiltArray { elements: vec![ElementError::default(); 64] };
-        scene.disturbances.elements.elements[5].dead = true;
-        scene.disturbances.elements.elements[7].position_millimetres = 0.5;
-        let built = simulate(&radar, &scene, Floor::Exact, 3).unwrap();
-        assert!(built.samples.row(5).iter().all(|v| v.norm() == 0.0));
-        assert!((&built.samples.row(8) - &ideal.samples.row(8)).iter().all(|v| v.norm() < 1e-12));
-        assert!((&built.samples.row(7) - &ideal.samples.row(7)).iter().any(|v| v.norm() > 1e-6));
-        // A mirror beside a body adds what its image echoes.
-        let mut mirrored = Scene { disturbances: Disturbances::default(), ..scene.clone() };
-        mirrored.disturbances.mirror = Some(Mirror::default());
-        let with = simulate(&radar, &mirrored, Floor::Exact, 3).unwrap();
-        mirrored.disturbances.mirror = Some(Mirror { reflection: 0.0, ..Default::default() });
-        let without = simulate(&radar, &mirrored, Floor::Exact, 3).unwrap();
-        let differs =
-            |other: &BeatSignal| (&other.samples - &ideal.samples).iter().fold(0.0f64, |m, v| m.max(v.norm()));
-        assert!(differs(&without) < 1e-12 && differs(&with) > 1e-3, "{} {}", differs(&without), differs(&with));
     }
 
     /// Elements displaced along the line and off it, in groups that end within a vector and with gaps between them.

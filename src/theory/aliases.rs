@@ -24,21 +24,12 @@ pub fn wrap_partners(radar: &Radar, place: Polar, farthest_metres: f64) -> Vec<P
 #[cfg(test)]
 mod tests {
     use super::super::Blob;
-    use super::super::blob::tests::any_place_of_any_radar;
+    use super::super::blob::tests::{any_place_of_any_radar, at};
     use super::*;
     use crate::maps::Aperture;
     use crate::radar::{Carrier, End};
     use crate::scene::Reflector;
     use proptest::prelude::*;
-
-    fn at(polar: Polar) -> Reflector {
-        let sin = (1.0 - polar.cos_theta.powi(2)).max(0.0).sqrt();
-        Reflector {
-            x_metres: polar.range_metres * polar.cos_theta,
-            y_metres: polar.range_metres * sin,
-            reflectivity: 1.0,
-        }
-    }
 
     #[test]
     fn only_the_two_way_carrier_folds_at_half_a_wavelength() {
@@ -66,7 +57,7 @@ mod tests {
             let blob = |r: &Reflector| Blob::of(&radar, r, end).unwrap();
             let x = radar.end_centre_metres(End::First);
             let local = radar.polar_of(reflector.x_metres - x, reflector.y_metres.abs());
-            let moved = |polar: Polar| { let r = at(polar); Reflector { x_metres: r.x_metres + x, ..r } };
+            let moved = |polar: Polar| { let r = at(polar.range_metres, polar.cos_theta); Reflector { x_metres: r.x_metres + x, ..r } };
             // Far out, so that waves are plane over the end.
             let far = Polar { range_metres: local.range_metres + 40.0 * radar.max_range_metres(), ..local };
             let (here, columns) = (blob(&moved(far)).peak, blob(&moved(far)).columns);

@@ -83,14 +83,4 @@ mod tests {
             assert!(off.abs() < 0.6, "{place:?}: {off}");
         }
     }
-
-    #[test]
-    fn what_folds_is_said() {
-        let radar = Radar { chirps: 64, ..Radar::default() };
-        let most = radar.unambiguous_velocity_metres_per_second();
-        let scene = |velocity| Scene { objects: vec![moving([0.0, 12.0], [0.0, velocity])], ..Scene::default() };
-        assert_eq!(folded(&radar, &scene(0.9 * most)), None);
-        let told = folded(&radar, &scene(1.5 * most)).unwrap();
-        assert!(told.starts_with("point 1 moves at") && told.contains("unambiguous"), "{told}");
-    }
 }

@@ -44,21 +44,17 @@ impl Ellipse {
 
 #[cfg(test)]
 mod tests {
+    use super::super::blob::tests::at;
     use super::*;
     use crate::bounds::{cramer_rao, noise_variance};
     use crate::radar::{Decibels, Layout, Radar};
-    use crate::scene::Reflector;
 
     #[test]
     fn the_ellipse_is_the_bound_in_both_directions() {
         let radar = Radar { samples: 64, ..Radar::default() };
         let layout = Layout::two_ends(&radar);
         for (range, cos) in [(20.0, 0.3), (3.0, -0.8), (1.5, 0.0)] {
-            let r = Reflector {
-                x_metres: range * cos,
-                y_metres: range * (1.0 - f64::powi(cos, 2)).sqrt(),
-                reflectivity: 1.0,
-            };
+            let r = at(range, cos);
             let variance = noise_variance(&radar, &layout, &r, Decibels(0.0));
             let bound = cramer_rao(&radar, &layout, &[r], variance).unwrap()[0];
             let ellipse = Ellipse::of(&bound).unwrap();

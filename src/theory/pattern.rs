@@ -79,16 +79,19 @@ mod tests {
     }
 
     #[test]
-    fn main_lobes_are_as_wide_as_in_the_textbook() {
-        // Harris, table 1: 3 dB width in bins.
-        for (window, width) in [
-            (WindowFunction::Rectangular, 0.89),
-            (WindowFunction::Hann, 1.44),
-            (WindowFunction::Hamming, 1.30),
-            (WindowFunction::Blackman, 1.68),
+    fn lobes_are_as_wide_and_as_low_as_in_the_textbook() {
+        // Harris, table 1: 3 dB width in bins, first null in bins, and highest side lobe below the peak.
+        for (window, width, null, decibels) in [
+            (WindowFunction::Rectangular, 0.89, 1.0, 13.3),
+            (WindowFunction::Hann, 1.44, 2.0, 31.5),
+            (WindowFunction::Hamming, 1.30, 2.0, 42.7),
+            (WindowFunction::Blackman, 1.68, 3.0, 58.1),
         ] {
             let pattern = WindowPattern::new(window, 1024);
             assert!((pattern.main_lobe_bins(Decibels(3.01)).unwrap() - width).abs() < 0.04, "{window:?}");
+            let lobe = (0..1024).map(|i| pattern.at(null + f64::from(i) / 32.0).abs()).fold(0.0, f64::max);
+            let level = 20.0 * (pattern.at(0.0) / lobe).log10();
+            assert!((level - decibels).abs() < 0.8, "{window:?}: {level} dB");
         }
         assert_eq!(WindowPattern::new(WindowFunction::Hann, 3).main_lobe_bins(Decibels(3.0)), None, "one weight");
     }

@@ -90,7 +90,6 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(16))]
 
-        /// Cell for cell, the response is the simulated map.
         #[test]
         fn every_cell_is_that_of_the_map((radar, reflector) in any_place_of_any_radar()) {
             for aperture in [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)] {

@@ -67,14 +67,10 @@ fn extent(peak: MapPlace, size: [usize; 2], level: f64, mut cell: impl FnMut(usi
 
 #[cfg(test)]
 mod tests {
-    use super::super::blob::tests::{any_place_of_any_radar, simulated};
+    use super::super::blob::tests::{any_place_of_any_radar, at, simulated};
     use super::*;
     use crate::radar::End;
     use proptest::prelude::*;
-
-    fn at(range: f64, cos: f64) -> Reflector {
-        Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).sqrt(), reflectivity: 1.0 }
-    }
 
     /// As an independent program measured it: 153, 75, 39 and 23 columns 20 dB down at 5, 10, 20 and 35 m ahead.
     #[test]
@@ -96,7 +92,6 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(8))]
 
-        /// The cells joined to the peak of the simulated map reach as far as predicted.
         #[test]
         fn streaks_reach_as_far_as_on_the_map((radar, reflector) in any_place_of_any_radar()) {
             for aperture in [Aperture::Full, Aperture::End(End::Last)] {

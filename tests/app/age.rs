@@ -22,6 +22,7 @@ fn action() -> impl Strategy<Value = Command> {
         1 => Just(EditCommand::Add(NewObject::Point, None).into()),
         1 => Just(EditCommand::SelectAll.into()),
         1 => window.prop_map(|window| RadarCommand::SetWindow(window).into()),
+        1 => Just(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))).into()),
         1 => floor.prop_map(|floor| ViewCommand::SetFloor(floor).into()),
         6 => prop::sample::select(panels()).prop_map(|panel| WindowCommand::TogglePanel(panel).into()),
         2 => (0..3usize).prop_map(|i| ViewCommand::Method(["baseline", "capon", "stub"][i]).into()),
@@ -66,7 +67,6 @@ proptest! {
     }
 }
 
-/// Places that were found are still marked in the scene where the output is closed.
 #[test]
 fn found_places_follow_the_scene_while_the_output_is_closed() {
     let mut s = Session::with_methods(vec![Arc::new(apertura::reconstruct::Omp::default())]);

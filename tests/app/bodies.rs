@@ -1,4 +1,4 @@
-//! Walls, boxes, posts and polygons in the window: added, changed while the maps follow, and listed.
+//! Bodies in the window.
 
 use crate::session::*;
 
@@ -7,52 +7,6 @@ fn empty() -> Session {
     s.press(Modifiers::COMMAND, Key::A);
     s.press(Modifiers::NONE, Key::Delete);
     s
-}
-
-fn last(s: &Session) -> Object {
-    s.objects().last().cloned().unwrap()
-}
-
-#[test]
-fn every_kind_of_body_is_added_by_a_button() {
-    let mut s = empty();
-    for (label, noun) in [("+ Wall", "wall"), ("+ Box", "box"), ("+ Post", "post"), ("+ Polygon", "polygon")] {
-        let (_, painted) = s.state().work_done();
-        s.click(label);
-        assert_eq!(last(&s).noun(), noun);
-        assert!(s.state().work_done().1 > painted, "the maps show the {noun}");
-    }
-    assert_eq!(s.objects().len(), 4);
-}
-
-#[test]
-fn the_maps_follow_the_sliders_of_radius_and_roughness() {
-    let mut s = empty();
-    s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(0.0, 12.0))));
-    s.select(0);
-    let depth = s.editor().history().depth();
-    for (name, value) in [
-        ("radius slider", (|o| if let Object::Post(p) = o { p.radius_metres } else { f64::NAN }) as fn(&Object) -> f64),
-        ("roughness slider", |o| if let Object::Post(p) = o { p.roughness_millimetres } else { f64::NAN }),
-    ] {
-        let before = value(&last(&s));
-        let (_, painted) = s.state().work_done();
-        let slider = s.app.get_by_role_and_label(Role::Slider, name).rect();
-        let middle = slider.center();
-        s.hold(middle);
-        let mut during = Vec::new();
-        for step in 1..=10 {
-            s.app.hover_at(middle + vec2(2.0 * step as f32, 0.0));
-            s.app.step();
-            during.push(value(&last(&s)));
-        }
-        step_until(&mut s, "the maps follow before the slider is let go", |s| s.state().work_done().1 > painted);
-        s.app.drop_at(middle + vec2(20.0, 0.0));
-        s.settle();
-        assert!(during.windows(2).all(|w| w[0] <= w[1]) && during[0] < during[9], "{name}: {during:?}");
-        assert!(value(&last(&s)) > before, "{name}");
-    }
-    assert_eq!(s.editor().history().depth(), depth + 2, "each slide is one step");
 }
 
 #[test]

@@ -1,8 +1,8 @@
-//! Two methods on one scene: flipped, read off cell by cell, and the verdicts on every object.
+//! Two methods on one scene, one flipped in the place of the other.
 
 use crate::session::*;
-use apertura::app::{Compare, Layout, MethodSlot};
-use apertura::maps::{LogMaps, RangeAngleMap};
+use apertura::app::{Compare, Layout};
+use apertura::maps::RangeAngleMap;
 use egui_kittest::Node;
 
 fn with_capon() -> Session {
@@ -96,55 +96,4 @@ fn one_key_flips_two_maps_in_place() {
     assert_eq!(s.state().pictures(), [MapKind::Input1, MapKind::Target], "any two, and no others");
     s.press(Modifiers::NONE, Key::X);
     assert!(place(&s, "Input 1 map").is_some());
-}
-
-#[test]
-fn the_table_of_values_has_what_the_maps_have_under_the_pointer() {
-    let mut s = with_capon();
-    s.ask(WindowCommand::OpenPanel(Panel::Compare));
-    s.ask(WindowCommand::OpenPanel(Panel::Values));
-    s.ask(WindowCommand::Maximise(Panel::Values));
-    let (radar, scene) = (s.state().radar().clone(), s.editor().scene().clone());
-    let text = text_of(&s.app.get_by_label_contains("range bin "));
-    let mut numbers = text.split(|c: char| !c.is_ascii_digit()).filter(|part| !part.is_empty());
-    let (bin, column): (usize, usize) =
-        (numbers.next().unwrap().parse().unwrap(), numbers.next().unwrap().parse().unwrap());
-
-    let signal = simulate(&radar, &scene, Floor::Thesis, scene.noise_seed).unwrap();
-    let maps = LogMaps::of_signal(&radar, &signal);
-    let request = Request { noise: Floor::Thesis.into(), ..Request::default() };
-    let output = Baseline.reconstruct(&radar, &signal.two_ends(&radar), &request).unwrap().lambda;
-    let [first, last, target] = [&maps.first, &maps.last, &maps.full].map(|map| map.normalise(Normalisation::MinMax));
-    let scale = maps.full.scale(Normalisation::MinMax);
-    let at = |map: &RangeAngleMap| f64::from(map.lambda[[bin, column]]);
-    for (title, lambda) in [("Input 0", at(&first)), ("Input 1", at(&last)), ("Target", at(&target))] {
-        let _row = s.app.get_by_label(title);
-        assert!(s.app.query_all_by_label(&format!("{lambda:.3}")).next().is_some(), "{title}: {lambda:.3}");
-    }
-    let _row = s.app.get_by_label("Output (baseline)");
-    let decibels = 20.0 * (scale.peak - scale.floor) * (at(&output) - 1.0);
-    for expected in [format!("{:.3}", at(&output)), format!("{decibels:+.1}").replace('-', "−")] {
-        assert!(s.app.query_all_by_label(&expected).next().is_some(), "{expected}");
-    }
-    let difference = format!("{:+.3}", at(&output) - at(&target)).replace('-', "−");
-    assert!(s.app.query_all_by_label(&difference).next().is_some(), "{difference}");
-    assert!(s.app.query_by_label("Second output (capon)").is_none(), "its panel is out of sight");
-}
-
-#[test]
-fn marks_of_failure_are_those_of_the_evaluation() {
-    let mut s = Session::start();
-    assert!(s.state().failures().is_none());
-    s.press(Modifiers::NONE, Key::H);
-    for round in 0..2 {
-        let trial = trial(&s);
-        let answer = trial.ask(&Baseline, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
-        assert_eq!(s.state().failures(), Some(&trial.failures(&answer)), "round {round}");
-        assert!(s.shows("Legend: hit, rim, false alarm, miss, "));
-        let at = s.handle("point 2: move");
-        s.drag(at, vec2(-20.0, 15.0), 5);
-    }
-    s.press(Modifiers::NONE, Key::H);
-    assert!(s.state().failures().is_none());
-    assert!(s.app.query_all_by_label("Legend: hit, rim, false alarm, miss").next().is_some(), "hatches go on");
 }

@@ -46,17 +46,3 @@ fn a_detector_that_can_not_work_says_why() {
     s.ask(ViewCommand::SetCfar(Some(CELLS)));
     assert_eq!(s.state().detected().1, None);
 }
-
-#[test]
-fn the_window_of_the_cell_under_the_pointer_is_told() {
-    let mut s = session();
-    s.ask(ViewCommand::SetCfar(Some(CELLS)));
-    let map = s.app.get_by_label("Target > η' map").rect();
-    s.app.hover_at(map.lerp_inside(vec2(0.4, 0.4)));
-    s.settle();
-    let told = |text: &str| {
-        let shapes = s.app.output().shapes.iter();
-        shapes.filter(|s| matches!(&s.shape, Shape::Text(t) if t.galley.text().contains(text))).count()
-    };
-    assert_eq!([told(" dB\nthreshold"), told("training cells")], [2, 2], "in both maps of detections");
-}

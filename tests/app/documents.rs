@@ -81,24 +81,6 @@ fn what_a_format_cannot_hold_is_asked_before_it_is_written() {
 }
 
 #[test]
-fn a_second_format_leaves_a_scene_saved_or_unsaved() {
-    let mut s = Session::start();
-    s.ask(EditCommand::Add(NewObject::Line, None));
-    s.ask(DocumentCommand::Save);
-    // The second format holds no other radar either.
-    for (name, title_then, said) in
-        [("points.npz", "scene.toml", "The scene itself is saved in"), ("again.npz", "scene.toml •", "still unsaved")]
-    {
-        s.ask(DocumentCommand::SaveTo(s.path(name)));
-        s.click("Save anyway");
-        assert_eq!((title(&s).as_str(), s.shows(said)), (title_then, true), "{name}");
-        assert!(name == "again.npz" || !s.shows("still unsaved"));
-        s.ask(WindowCommand::CloseMessages);
-        s.ask(EditCommand::Add(NewObject::Point, None));
-    }
-}
-
-#[test]
 fn what_another_program_wrote_is_replaced_after_a_question() {
     let mut s = Session::start();
     let path = s.path("scene.toml");

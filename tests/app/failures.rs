@@ -1,7 +1,8 @@
 //! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
 
 use crate::session::*;
-use apertura::evaluate::rows::{Row, write_rows};
+use apertura::app::SearchChoice;
+use apertura::evaluate::rows::Row;
 use apertura::evaluate::sets::Folder;
 use apertura::evaluate::worsen::WorseningSearch;
 
@@ -187,27 +188,4 @@ fn what_a_search_finds_is_one_undo_step() {
     step_until(&mut s, "it starts", |s| s.state().is_at_work());
     s.ask(RowsCommand::CancelSearch);
     step_until(&mut s, "it can be stopped", |s| !s.state().is_at_work());
-}
-
-#[test]
-fn keys_walk_through_ten_thousand_rows() {
-    let mut s = tried();
-    let row = s.state().rows()[0].clone();
-    let path = s.path("many.csv");
-    // Rows of the default radar need no file of conditions beside them.
-    let rows: Vec<Row> = (0..10_000).map(|index| Row { index, radar: "".into(), ..row.clone() }).collect();
-    write_rows(&mut std::fs::File::create(&path).unwrap(), &rows).unwrap();
-    s.ask(RowsCommand::OpenTable(path));
-    assert_eq!(s.state().rows().len(), 10_000);
-    s.ask(WindowCommand::Maximise(Panel::Failures));
-    let first = s.handle(&name(&s.state().rows()[0]));
-    s.drag(first, vec2(0.0, 0.0), 1);
-    for _ in 0..4 {
-        s.press(Modifiers::NONE, Key::PageDown);
-    }
-    assert!((Some(8)..Some(100)).contains(&s.state().opened_row()), "{:?}", s.state().opened_row());
-    s.press(Modifiers::NONE, Key::End);
-    let (last, scene) = (s.state().opened_row(), Scene::clone(s.editor().scene()));
-    let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
-    assert_eq!((last, scene), (Some(9_999), generator.scene(Kind::Set2, 9_999)));
 }

@@ -9,16 +9,12 @@ const SCENE: &str = "noise_seed = 12\n\n[radar]\nelements = 128\nsamples = 64\nb
                      [[object]]\nkind = \"point\"\nx_metres = -4.0\ny_metres = 20.0\n\n\
                      [[object]]\nkind = \"line\"\nx_metres = 8.0\ny_start_metres = 8.0\nspacing_metres = 0.5\ncount = 30\n";
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Figures {
-    squared_error: f64,
-    detection: Option<f64>,
-    false_alarm: f64,
-}
+/// Squared error, P_D and P_FA.
+type Figures = (f64, Option<f64>, f64);
 
 fn on_screen(s: &Session) -> Figures {
     let m = s.state().metrics().expect("figures");
-    Figures { squared_error: m.squared_error, detection: m.detection, false_alarm: m.false_alarm }
+    (m.squared_error, m.detection, m.false_alarm)
 }
 
 fn on_the_command_line(scene: &Path) -> Figures {
@@ -29,8 +25,7 @@ fn on_the_command_line(scene: &Path) -> Figures {
     let arguments = ["evaluate", "--scenes", "scenes", "--method", "baseline", "--rows", "rows.csv"];
     program.current_dir(&folder).args(arguments).assert().success();
     let rows = read_rows(std::fs::File::open(folder.path().join("rows.csv")).unwrap()).unwrap();
-    let row = &rows[0];
-    Figures { squared_error: row.squared_error, detection: row.detection, false_alarm: row.false_alarm }
+    (rows[0].squared_error, rows[0].detection, rows[0].false_alarm)
 }
 
 #[test]

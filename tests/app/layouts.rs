@@ -40,17 +40,6 @@ fn methods_hear_the_layout_that_was_chosen() {
 }
 
 #[test]
-fn a_shared_scene_has_its_layout() {
-    let mut s = session();
-    s.ask(ViewCommand::Hear(Some(nested())));
-    let text = s.state().shared_text().unwrap();
-    let mut other = session();
-    other.ask(EditCommand::PasteText(text));
-    assert_eq!(other.state().settings.view.layout, Some(nested()));
-    assert_eq!(other.state().shown_method(), Some("iaa"));
-}
-
-#[test]
 fn a_layout_that_the_radar_has_not_is_let_go() {
     let mut s = session();
     s.ask(ViewCommand::Hear(Some(nested())));

@@ -8,7 +8,6 @@ use apertura::scene::Reflector;
 use apertura::signal::exact;
 use eframe::egui::ColorImage;
 
-/// The point that must be seen on the left.
 const POINT: [f64; 2] = [-8.0, 12.0];
 
 const KINDS: [MapKind; 6] =
@@ -100,32 +99,6 @@ fn pointing_at_a_blob_reads_the_direction_of_its_object() {
         s.app.hover_at(at);
         s.settle();
         assert!(s.shows("cos θ −0.5"), "{name}: the pointer reads another direction");
-    }
-}
-
-#[test]
-fn a_blob_on_the_left_is_clicked_and_dragged_as_its_object() {
-    for convention in Convention::ALL {
-        let mut s = session(convention);
-        let at = blob(&mut s);
-        for pressed in [true, false] {
-            s.app.hover_at(at);
-            let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-            s.app.event(eframe::egui::Event::PointerButton { pos: at, button, pressed, modifiers });
-            s.app.step();
-        }
-        s.settle();
-        assert_eq!(s.editor().selection().single(), Some(0), "{convention:?}");
-        crate::session::step_until(&mut s, "no longer a double click", |s| {
-            s.app.ctx.input(|i| i.pointer.time_since_last_click() > 1.0)
-        });
-        let by = vec2(-30.0, 0.0);
-        s.drag(at, by, 5);
-        assert!(s.place(0)[0] < POINT[0] - 0.5, "{convention:?}: dragged to {:?}", s.place(0));
-        let off = blob(&mut s).distance(at + by);
-        assert!(off < 6.0, "{convention:?}: its blob is {off} points beside the pointer");
-        s.undo();
-        assert_eq!(s.place(0), POINT);
     }
 }
 

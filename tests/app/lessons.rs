@@ -75,14 +75,14 @@ fn take(s: &mut Session, lesson: &Lesson, number: usize, right: bool) {
     }
 }
 
-fn take_all(right: impl Fn(usize, usize) -> bool) {
+fn take_all(right: bool) {
     let mut s = Session::start();
     s.ask(LessonCommand::Present);
     for (index, file) in shipped::ALL.iter().enumerate() {
         let lesson = file.load().unwrap();
         s.ask(LessonCommand::Begin(index));
         for number in 0..lesson.steps.len() {
-            take(&mut s, &lesson, number, right(index, number));
+            take(&mut s, &lesson, number, right);
         }
     }
     let before = s.state().arrangement.is_open(Panel::Controls);
@@ -93,16 +93,10 @@ fn take_all(right: impl Fn(usize, usize) -> bool) {
 }
 
 #[test]
-#[ignore = "long: minutes in an unoptimised build"]
-fn every_lesson_can_be_taken_to_its_end() {
-    take_all(|lesson, step| (lesson + step) % 2 == 0);
-}
-
-#[test]
 #[ignore = "long: every step of every lesson twice"]
 fn every_step_judges_its_answers() {
-    take_all(|_, _| true);
-    take_all(|_, _| false);
+    take_all(true);
+    take_all(false);
 }
 
 /// Begins the lesson called `id` at a step, counted from 1.
@@ -246,21 +240,6 @@ fn the_end_of_a_lesson_gives_the_zoom_back() {
 }
 
 #[test]
-fn a_lesson_file_whose_solution_fails_is_refused() {
-    let mut s = Session::start();
-    let good = shipped::ALL.iter().find(|file| file.id == "range-and-bandwidth").unwrap().toml;
-    let path = s.path("lesson.toml");
-    std::fs::write(&path, good.replace("bandwidth_hz = 0.95e9", "bandwidth_hz = 0.21e9")).unwrap();
-    s.ask(LessonCommand::OpenFile(path.clone()));
-    assert!(s.shows("the solution does not meet the challenge") && s.shows("lesson.toml: line "));
-    assert!(!s.shows("Step 1 of 5"));
-    s.ask(WindowCommand::CloseMessages);
-    std::fs::write(&path, good).unwrap();
-    s.ask(LessonCommand::OpenFile(path));
-    assert!(s.shows("Step 1 of 5") && s.state().notices.list.len() == 0);
-}
-
-#[test]
 fn a_lesson_is_shared_at_its_step() {
     let mut s = Session::start();
     s.ask(LessonCommand::Begin(3));
@@ -302,76 +281,4 @@ fn a_shared_scene_comes_with_its_view_and_time() {
     assert_eq!(s.state().scene().objects[0].centre_metres(), [0.0, 25.0]);
     s.ask(EditCommand::Undo);
     assert_eq!((s.editor().scene().clone(), seen(&s)), other);
-}
-
-#[test]
-fn hidden_tools_compute_nothing() {
-    let mut s = Session::start();
-    s.ask(ViewCommand::ToggleTheory);
-    s.ask(WindowCommand::OpenPanel(Panel::Several));
-    step_until(&mut s, "all four windows are there", |s| {
-        s.state().jobs.several.shown.iter().filter(|small| small.is_current && small.made.is_some()).count() == 4
-    });
-    s.click("window: rectangular");
-    assert_eq!(s.state().radar().window, WindowFunction::Rectangular);
-    s.press(Modifiers::COMMAND, Key::Z);
-    assert_eq!(s.state().radar().window, WindowFunction::Hann);
-}
-
-#[test]
-fn the_map_that_a_question_asks_about_is_the_large_one() {
-    let mut s = Session::start();
-    for (id, step, asked) in [
-        ("range-and-bandwidth", 1, MapKind::Target),
-        ("angle-and-aperture", 3, MapKind::Input0),
-        ("the-floor", 3, MapKind::Input1),
-        ("range-and-bandwidth", 1, MapKind::Target),
-    ] {
-        begin(&mut s, id, step);
-        s.settle();
-        let area = |kind: MapKind| s.app.get_by_label(&format!("{} map", kind.title())).rect().area();
-        for other in [MapKind::Input0, MapKind::Input1, MapKind::Target].into_iter().filter(|kind| *kind != asked) {
-            assert!(area(asked) > 1.5 * area(other), "{id}: {asked:?} beside {other:?}");
-        }
-    }
-    s.ask(LessonCommand::Leave);
-    assert!(s.state().arrangement.is_open(Panel::Controls), "the panels are as before");
-}
-
-#[test]
-fn a_challenge_shows_its_control_and_where_it_happens() {
-    let mut s = Session::start();
-    begin(&mut s, "range-and-bandwidth", 5);
-    s.settle();
-    assert!(s.state().arrangement.shown().contains(&Panel::Radar), "{:?}", s.state().arrangement.shown());
-    let part = s.state().map_views.range_angle;
-    assert!(part.high.y - part.low.y < 0.1, "the two points alone: {part:?}");
-    step_until(&mut s, "it is measured", |s| s.shows("A dip of at least 0.06 between the two in the target"));
-    let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
-    s.ask(RadarCommand::Set(Box::new(radar)));
-    let followed = s.state().map_views.range_angle;
-    assert!(followed.low.y > part.high.y, "they stand elsewhere in the map now: {followed:?}");
-    begin(&mut s, "smooth-and-rough", 4);
-    s.settle();
-    let shown = s.state().arrangement.shown().clone();
-    assert!(shown.contains(&Panel::Inspector) || shown.contains(&Panel::Scene), "{shown:?}");
-}
-
-#[test]
-fn the_question_is_in_view_on_a_projector() {
-    for size in [[1440.0, 900.0], [1024.0, 640.0]] {
-        let mut s = Session::opened(tempdir().unwrap(), None, baseline(), size);
-        s.ask(LessonCommand::Present);
-        for (id, step) in [("range-and-bandwidth", 1), ("which-points-a-car-is", 4), ("folding-and-wrapping", 4)] {
-            begin(&mut s, id, step);
-            (0..4).for_each(|_| s.app.step());
-            let lesson = shipped::ALL.iter().find(|file| file.id == id).unwrap().load().unwrap();
-            let question = lesson.steps[step - 1].predict.clone().unwrap();
-            let window = s.app.ctx.content_rect();
-            let ask = s.app.get_by_label(&question.ask).rect();
-            assert!(window.contains_rect(ask), "{id} at {size:?}: {ask:?} in {window:?}");
-            let title = s.app.get_by_label_contains(&format!("Step {step} of ")).rect();
-            assert!(window.contains_rect(title), "{id} at {size:?} begins at its top: {title:?}");
-        }
-    }
 }

@@ -53,21 +53,3 @@ fn maps_follow_time_but_the_document_stays() {
     s.ask(EditCommand::Nudge { dx_metres: 1.0, dy_metres: 0.0 });
     assert_eq!((s.place(0), s.state().timeline.seconds), ([1.0, 20.0], 0.0));
 }
-
-#[test]
-fn time_goes_on_while_motion_is_played() {
-    let mut s = moving();
-    s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
-    s.app.step();
-    let first = s.state().timeline.seconds;
-    step_until(&mut s, "time goes on", |s| s.state().timeline.seconds > first + 0.2);
-    s.ask(ViewCommand::TogglePlay);
-    let stopped = s.state().timeline.seconds;
-    s.app.run_steps(5);
-    assert_eq!(s.state().timeline.seconds, stopped);
-    s.ask(ViewCommand::SetTime(0.0));
-    s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(0.0)));
-    s.app.state_mut().ask(Command::View(ViewCommand::TogglePlay));
-    s.app.run_steps(5);
-    assert_eq!(s.state().timeline.seconds, 0.0, "nothing moves");
-}

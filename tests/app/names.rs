@@ -2,7 +2,6 @@
 
 use crate::session::*;
 
-/// Whether an element of this role is used or has to be read out, so that it needs a name.
 fn has_to_be_named(role: Role) -> bool {
     is_used(role) || matches!(role, Role::Image | Role::Canvas)
 }
@@ -104,23 +103,11 @@ fn nothing_is_cut_off_at_twice_the_size() {
 
 /// Texts that reach beyond the left or the right end of the drawable area: no scrolling brings them into sight.
 fn wider_than_their_place(s: &Session) -> Vec<String> {
-    use eframe::egui::{Rect, Shape};
-    fn gather(clip: Rect, shape: &Shape, found: &mut Vec<String>) {
-        match shape {
-            Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(clip, shape, found)),
-            Shape::Text(text) => {
-                let rect = text.visual_bounding_rect();
-                let out = rect.right() > clip.right() + 1.5 || rect.left() < clip.left() - 1.5;
-                if out && rect.intersects(clip) && !text.galley.text().trim().is_empty() {
-                    found.push(text.galley.text().to_owned());
-                }
-            }
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    s.app.output().shapes.iter().for_each(|clipped| gather(clipped.clip_rect, &clipped.shape, &mut found));
-    found
+    let is_cut = |clip: egui::Rect, rect: egui::Rect| {
+        (rect.right() > clip.right() + 1.5 || rect.left() < clip.left() - 1.5) && rect.intersects(clip)
+    };
+    let cut = s.texts().into_iter().filter(|(clip, text)| is_cut(*clip, text.visual_bounding_rect()));
+    cut.map(|(_, text)| text.galley.text().to_owned()).filter(|text| !text.trim().is_empty()).collect()
 }
 
 #[test]

@@ -1,9 +1,7 @@
 //! Panels that are shown, and the work that is done for them and for no others.
 
 use crate::session::*;
-use apertura::app::{ChirpSettings, Units};
 use apertura::engine::EngineStage;
-use apertura::theory::chirp::{ChirpShape, heard};
 use eframe::egui::Rangef;
 
 #[test]
@@ -15,27 +13,6 @@ fn idling_computes_nothing() {
     let before = s.state().work_done();
     s.app.run_steps(40);
     assert_eq!(s.state().work_done(), before);
-}
-
-#[test]
-fn another_normalisation_simulates_nothing() {
-    let mut s = Session::start();
-    for normalisation in [
-        Normalisation::DynamicRange(Decibels(60.0)),
-        Normalisation::DynamicRange(Decibels(100.0)),
-        Normalisation::MinMax,
-    ] {
-        let (_, painted) = s.state().work_done();
-        s.ask(ViewCommand::Normalise(normalisation));
-        assert_eq!(s.state().settings.normalisation, normalisation);
-        assert!(s.state().work_done().1 >= painted + 6, "every map was painted again");
-        let report = s.state().report().unwrap();
-        for stage in [EngineStage::Signal, EngineStage::FirstMap, EngineStage::LastMap, EngineStage::FullMap] {
-            assert!(!report.ran(stage), "{stage}");
-        }
-    }
-    s.ask(ViewCommand::SetFloor(Floor::Exact));
-    assert_eq!(s.state().settings.floor, Floor::Exact);
 }
 
 #[test]
@@ -88,35 +65,6 @@ fn a_maximised_map_is_the_only_one_computed() {
 }
 
 #[test]
-fn the_palette_runs_every_command_by_name() {
-    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)]);
-    let mut by_palette = |text: &str| {
-        s.press(Modifiers::COMMAND, Key::K);
-        s.app.event(Event::Text(text.to_owned()));
-        s.settle();
-        s.press(Modifiers::NONE, Key::Enter);
-        (s.state().shown_method(), s.objects().len())
-    };
-    assert_eq!(by_palette("add line"), (Some("baseline"), 3));
-    assert_eq!(by_palette("method capon"), (Some("capon"), 3));
-    assert_eq!(by_palette("preset two close"), (Some("capon"), 2));
-    s.undo();
-    let _shown = s.handle("line 3: move the near end: more or fewer reflectors");
-}
-
-#[test]
-fn the_window_function_reaches_the_maps() {
-    let mut s = Session::start();
-    let (requests, painted) = s.state().work_done();
-    s.find_and_click("hamming");
-    assert_eq!(s.state().radar().window, WindowFunction::Hamming);
-    let after = s.state().work_done();
-    assert!(after.0 > requests && after.1 >= painted + 6, "every map was made again");
-    s.ask(RadarCommand::SetWindow(WindowFunction::Hann));
-    assert_eq!(s.state().radar().window, WindowFunction::Hann);
-}
-
-#[test]
 fn bounds_follow_the_selected_reflector() {
     let mut s = Session::start();
     assert_eq!(s.state().panels.requests(Panel::Bounds), 0);
@@ -133,74 +81,6 @@ fn bounds_follow_the_selected_reflector() {
     assert_eq!(s.state().panels.requests(Panel::Bounds), asked);
 }
 
-#[test]
-fn phasors_follow_the_cursor() {
-    let mut s = Session::start();
-    assert_eq!(s.state().panels.requests(Panel::Phasors), 0, "a closed panel costs nothing");
-    s.ask(WindowCommand::OpenPanel(Panel::Phasors));
-    let (cell, sum) = s.state().phasor_sum().expect("of the first object");
-    let map = s.app.get_by_label("Target map").rect();
-    s.app.hover_at(map.lerp_inside(vec2(0.4, 0.4)));
-    s.settle();
-    let (moved, another) = s.state().phasor_sum().unwrap();
-    assert!(moved != cell && another != sum, "{cell:?} {moved:?}");
-    let asked = s.state().panels.requests(Panel::Phasors);
-    s.ask(WindowCommand::TogglePanel(Panel::Phasors));
-    s.app.hover_at(map.lerp_inside(vec2(0.7, 0.2)));
-    s.settle();
-    assert_eq!(s.state().panels.requests(Panel::Phasors), asked);
-}
-
-#[test]
-fn the_beat_on_screen_is_that_of_the_strongest_echo() {
-    let mut s = Session::start();
-    assert_eq!(s.state().panels.requests(Panel::Chirp), 0, "a closed panel costs nothing");
-    s.ask(WindowCommand::OpenPanel(Panel::Chirp));
-    let bin = |s: &Session| {
-        let chirp = ChirpShape::of(s.state().radar());
-        let echoes = heard(s.state().radar(), s.editor().scene(), s.state().settings.chirp.element);
-        let strongest = echoes.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
-        chirp.range_bin(chirp.beat_hz(strongest.range_metres))
-    };
-    let (peak, element) = s.state().beat_peak().expect("a beat");
-    assert!(element == 0 && (peak as f64 - bin(&s)).abs() <= 0.5, "{peak} {}", bin(&s));
-    s.ask(ViewCommand::SetChirp(ChirpSettings { element: 500 }));
-    let longer = apertura::radar::Radar { chirp_seconds: 1e-3, ..s.state().radar().clone() };
-    s.ask(RadarCommand::Set(Box::new(longer)));
-    let (longer, element) = s.state().beat_peak().unwrap();
-    assert_eq!((longer, element), (peak, 127), "the last element; no sample depends on the duration");
-    let asked = s.state().panels.requests(Panel::Chirp);
-    s.ask(WindowCommand::TogglePanel(Panel::Chirp));
-    s.ask(ViewCommand::SetChirp(ChirpSettings::default()));
-    assert_eq!(s.state().panels.requests(Panel::Chirp), asked);
-}
-
-#[test]
-fn pinned_cuts_outlive_their_scene() {
-    let mut s = Session::start();
-    s.ask(WindowCommand::OpenPanel(Panel::Cuts));
-    s.press(Modifiers::NONE, Key::K);
-    s.ask(DocumentCommand::RandomScene(Kind::Set1));
-    let _pinned = s.app.get_by_label_contains("Unpin 1: ");
-    s.press(Modifiers::NONE, Key::D);
-    assert_eq!(s.state().settings.units, Units::Decibels);
-    s.ask(ViewCommand::UnpinAll);
-    assert!(!s.shows("Unpin 1: "));
-}
-
-#[test]
-fn a_difference_is_painted_again_when_its_scale_changes() {
-    let mut s = Session::start();
-    s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Difference)));
-    for command in
-        [Command::View(ViewCommand::ToggleAbsoluteDifference), Command::View(ViewCommand::ToggleWholeDifference)]
-    {
-        let (_, painted) = s.state().work_done();
-        s.ask(command);
-        assert_eq!(s.state().work_done().1, painted + 1, "the difference alone");
-    }
-}
-
 fn press_in_the_guide(s: &mut Session, name: &str) {
     use eframe::egui::accesskit::Role;
     while s.app.query_by_role_and_label(Role::Button, name).is_none() {
@@ -211,16 +91,6 @@ fn press_in_the_guide(s: &mut Session, name: &str) {
     s.settle();
     s.app.get_by_role_and_label(Role::Button, name).click();
     s.settle();
-}
-
-#[test]
-fn every_button_of_the_guide_leaves_a_working_app() {
-    let mut s = Session::start();
-    s.ask(WindowCommand::Maximise(Panel::Guide));
-    press_in_the_guide(&mut s, "Two-way");
-    assert_eq!(s.state().radar().carrier, Carrier::TwoWay);
-    assert_eq!(s.editor().scene().name, "Four reflectors");
-    assert_eq!(s.state().notices.list.len(), 0);
 }
 
 #[test]
@@ -251,13 +121,6 @@ fn random_scenes_are_those_of_the_tables() {
         let generator = Generator::new(s.state().radar(), Reading::Program, Purpose::Test, 7);
         assert_eq!(s.objects(), generator.scene(Kind::Set3, number).objects);
     }
-}
-
-#[test]
-fn only_the_user_moves_a_threshold() {
-    let s = Session::with_methods(vec![Arc::new(CAPON)]);
-    assert_eq!(CAPON.eta(), 0.851, "more decimals than the slider shows");
-    assert!(s.state().settings.method_eta.is_empty());
 }
 
 #[test]

@@ -34,17 +34,11 @@ fn compare(name: &str, theme: Theme, panel: Panel, commands: Vec<Command>) {
         app.state_mut().ask(command);
         app.step();
     }
-    let deadline = Instant::now() + Duration::from_secs(60);
-    let mut quiet = 0;
-    while quiet < 5 {
-        assert!(Instant::now() < deadline, "the workers never came to rest");
-        app.step();
-        quiet = if app.state().is_busy() { 0 } else { quiet + 1 };
-        std::thread::sleep(Duration::from_millis(2));
-    }
+    let mut s = Session { app, folder };
+    s.settle();
     // Times in the status line differ from run to run, and drivers round differently.
     let tolerant = SnapshotOptions::new().threshold(2.0).max_failed_pixels(2500usize);
-    app.snapshot_options(name, &tolerant);
+    s.app.snapshot_options(name, &tolerant);
 }
 
 // One picture a test: the harness compares the pictures of one window a thread.

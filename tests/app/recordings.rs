@@ -2,7 +2,7 @@
 
 use crate::session::*;
 use apertura::app::Way;
-use apertura::radar::{BuiltArray, ElementError, Tolerances};
+use apertura::radar::{BuiltArray, ElementError};
 use apertura::scene::{Interferer, Mirror};
 
 const CASCADE: usize = 0;
@@ -115,26 +115,6 @@ fn a_recordings_constants_cannot_be_edited() {
 }
 
 #[test]
-fn a_recording_is_exported() {
-    let mut s = Session::start();
-    s.ask(DocumentCommand::Recording(CHIP));
-    s.ask(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(60.0))));
-    let (maps, drawing) = (s.path("maps.npz"), s.path("maps.svg"));
-    s.ask(ExportCommand::MapsTo(maps.clone()));
-    let bitmap = drawing.with_extension("png");
-    s.ask(ExportCommand::PictureTo(drawing.clone()));
-    s.ask(ExportCommand::PictureTo(bitmap.clone()));
-    step_until(&mut s, "no export", |_| maps.exists() && drawing.exists() && bitmap.exists());
-    let size = image::image_dimensions(&bitmap).unwrap();
-    let svg = std::fs::read_to_string(&drawing).unwrap();
-    assert!(svg.contains(&format!("width=\"{}\" height=\"{}\"", size.0, size.1)), "both show the same panels");
-    assert!(std::fs::read_to_string(&drawing).unwrap().contains("Target: all 8 elements"));
-    let mut archive = ndarray_npy::NpzReader::new(std::fs::File::open(&maps).unwrap()).unwrap();
-    let output: ndarray::Array3<f32> = archive.by_name("output").unwrap();
-    assert_eq!(output.dim(), (1, 128, 8));
-}
-
-#[test]
 fn an_overlay_comes_back_over_its_recording_after_a_kill() {
     let mut s = Session::start();
     let path = copied(&s, "chip-8.toml");
@@ -184,23 +164,6 @@ fn disturbances_are_edits_of_the_scene() {
     }
     assert!(s.editor().scene().disturbances.is_none());
     assert_eq!(s.state().metrics(), before);
-}
-
-#[test]
-fn a_selected_point_calibrates_the_elements() {
-    let mut s = Session::start();
-    s.ask(ViewCommand::SetFloor(Floor::Exact));
-    s.ask(EditCommand::Delete);
-    let drawn = Tolerances { gain: Decibels(1.0), phase_degrees: 15.0, position_millimetres: 0.0 };
-    let built = drawn.build(s.state().radar(), 1);
-    s.ask(RadarCommand::SetElements(Arc::new(built)));
-    s.ask(EditCommand::SelectAll);
-    s.ask(EditCommand::Delete);
-    s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(1.0, 12.0))));
-    s.ask(WindowCommand::OpenPanel(Panel::Elements));
-    s.find_and_click("Calibrate on this reflector");
-    let left = s.editor().scene().disturbances.elements.spread();
-    assert!(left.gain.0 < 0.01 && left.phase_degrees < 0.5, "{left:?}");
 }
 
 /// A capture of two frames of I Q pairs with its `.cfg`, in the session's folder: one transmitter, four receivers, four loops; an echo in range

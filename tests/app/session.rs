@@ -108,12 +108,6 @@ impl Session {
         self.settle();
     }
 
-    pub fn find_and_click(&mut self, label: &str) {
-        self.app.get_by_label(label).scroll_to_me();
-        self.settle();
-        self.click(label);
-    }
-
     pub fn undo(&mut self) {
         self.press(Modifiers::COMMAND, Key::Z);
     }
@@ -141,18 +135,22 @@ impl Session {
         self.app.step();
     }
 
-    /// Every text of the last frame, those without a screen reader's node included.
-    pub fn painted(&self) -> Vec<String> {
-        fn gather(shape: &Shape, found: &mut Vec<String>) {
+    /// Every text of the last frame with its drawable area, those without a screen reader's node included.
+    pub fn texts(&self) -> Vec<(egui::Rect, egui::epaint::TextShape)> {
+        fn gather(clip: egui::Rect, shape: &Shape, found: &mut Vec<(egui::Rect, egui::epaint::TextShape)>) {
             match shape {
-                Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(shape, found)),
-                Shape::Text(text) => found.push(text.galley.text().to_owned()),
+                Shape::Vec(shapes) => shapes.iter().for_each(|shape| gather(clip, shape, found)),
+                Shape::Text(text) => found.push((clip, text.clone())),
                 _ => {}
             }
         }
         let mut found = Vec::new();
-        self.app.output().shapes.iter().for_each(|clipped| gather(&clipped.shape, &mut found));
+        self.app.output().shapes.iter().for_each(|clipped| gather(clipped.clip_rect, &clipped.shape, &mut found));
         found
+    }
+
+    pub fn painted(&self) -> Vec<String> {
+        self.texts().into_iter().map(|(_, text)| text.galley.text().to_owned()).collect()
     }
 
     pub fn ask(&mut self, command: impl Into<Command>) {

@@ -1,7 +1,7 @@
-//! Long work beside the window: evaluations, measurements, training logs, methods that fail.
+//! Long work beside the window: evaluations, training logs, methods that fail.
 
 use crate::session::*;
-use apertura::app::{Purpose, WorkCommand};
+use apertura::app::{ThresholdChoice, WorkCommand};
 use apertura::engine::{StageOutcome, StageReport};
 use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;
@@ -46,18 +46,6 @@ fn a_false_alarm_rate_sets_the_threshold() {
     step_until(&mut s, "it ends", |s| !s.state().is_at_work());
     s.settle();
     assert_eq!(set(&s), Some(expected), "a search that was stopped sets nothing");
-}
-
-#[test]
-fn run_times_arrive_while_they_are_measured() {
-    let mut s = Session::start();
-    s.ask(WindowCommand::Maximise(Panel::RunTime));
-    s.app.get_by_label("Measure").click();
-    step_until(&mut s, "a row arrives", |s| !s.state().jobs.run_time.rows().is_empty());
-    s.app.step();
-    s.app.get_by_label("Cancel").click();
-    step_until(&mut s, "it ends", |s| !s.state().is_at_work());
-    assert!(!s.state().jobs.run_time.rows().is_empty(), "what was measured stays");
 }
 
 #[derive(Debug)]
@@ -130,7 +118,6 @@ fn figures_are_of_one_pair_of_maps() {
     assert!(!s.state().jobs.pipeline.output_is_outdated() && s.state().metrics() != Some(before));
 }
 
-/// The list and the crosses are of the recording before: nothing of them stands while the next is computed.
 #[test]
 fn nothing_found_in_one_recording_is_listed_over_the_next() {
     let mut s = Session::with_methods(vec![Arc::new(Stub::slow(1200))]);
@@ -145,20 +132,6 @@ fn nothing_found_in_one_recording_is_listed_over_the_next() {
     }
     s.settle();
     assert!(s.state().found().is_some_and(|found| !found.is_empty()));
-}
-
-#[test]
-fn nothing_found_in_one_scene_is_marked_over_the_next() {
-    let mut s = Session::with_methods(vec![Arc::new(Stub::slow(1200))]);
-    s.ask(ViewCommand::ToggleFound);
-    s.ask(WindowCommand::OpenPanel(Panel::Found));
-    assert!(!s.state().marked_found().is_empty());
-    let before = s.editor().document().id();
-    s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
-    step_until(&mut s, "another scene is on screen", |s| s.editor().document().id() != before);
-    assert!(s.state().marked_found().is_empty() && s.state().found().is_none());
-    s.settle();
-    assert!(!s.state().marked_found().is_empty());
 }
 
 #[test]
@@ -179,7 +152,6 @@ fn a_drag_lets_a_slow_method_finish_sometimes() {
     s.settle();
 }
 
-/// Reflectors of a cluster whose maps take a while.
 const CLUSTER: usize = 12_000;
 
 #[test]
@@ -226,7 +198,6 @@ fn an_export_of_a_layout_is_what_apertura_maps_writes() {
     assert!(keys.contains("heard") && keys.contains("layout"), "{keys:?}");
 }
 
-/// Asserts that the window and `apertura maps` with `arguments` write the same archive; returns its keys.
 fn exports_agree(mut s: Session, arguments: &[&str]) -> BTreeSet<String> {
     let [by_window, by_command] = ["window.npz", "command.npz"].map(|name| s.path(name));
     s.ask(ExportCommand::MapsTo(by_window.clone()));
@@ -248,14 +219,4 @@ fn exports_agree(mut s: Session, arguments: &[&str]) -> BTreeSet<String> {
     }
     assert!(keys(&window).contains("cos_theta") && keys(&window).contains("output"));
     keys(&window)
-}
-
-#[test]
-fn open_shows_the_windows_own_dialog_where_the_system_has_none() {
-    let mut s = Session::start();
-    s.ask(Purpose::Open);
-    assert!(s.shows("Open a scene"));
-    s.click("scene.toml");
-    s.click("Open");
-    assert!(s.app.query_all_by_label_contains("Open a scene").next().is_none());
 }

@@ -45,18 +45,6 @@ fn a_budget_is_that_of_the_radar_equation() {
 }
 
 #[test]
-fn bounds_follow_noise_level() {
-    let report = json(&["bounds", "--layout", "two-ends,full", "--snr", "0,20", "--apart", "1", "--json"]);
-    let bound = |layout: usize, row: usize, which: &str| {
-        report["layouts"][layout]["bounds"][row][which]["position_millimetres"].as_f64().unwrap()
-    };
-    assert!((bound(0, 0, "alone") / bound(0, 1, "alone") - 10.0).abs() < 1e-6, "20 dB are a factor of ten");
-    assert!(bound(1, 0, "alone") < bound(0, 0, "alone"), "1024 elements hear more than 24");
-    assert!(bound(0, 0, "beside_another") > 1.5 * bound(0, 0, "alone"));
-    assert_eq!(report["layouts"][0]["elements"], 24);
-}
-
-#[test]
 fn pictures_are_written_where_asked() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("new");

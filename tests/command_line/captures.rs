@@ -1,44 +1,14 @@
 //! Raw captures on the command line: described, imported, and opened as they are.
 
 use crate::cli::*;
-use std::f64::consts::TAU;
-
-const C: f64 = 299_792_458.0;
-const SAMPLES: usize = 128;
-const LOOPS: usize = 8;
-
-/// Two transmitters and four receivers, 128 samples, eight loops.
-const CFG: &str = "channelCfg 15 5 0\nadcCfg 2 1\nadcbufCfg -1 0 0 1 1\nprofileCfg 0 77 30 6 60 0 0 60 1 128 4000 0 0 30\n\
-                   chirpCfg 0 0 0 0 0 0 0 1\nchirpCfg 1 1 0 0 0 0 0 4\nframeCfg 0 1 8 0 100 1 0\n";
-
-/// An echo at x = 1.1 m, y = 2.3 m that goes away at 3 m/s, as I I Q Q.
-fn capture() -> Vec<u8> {
-    let frequency = |n: usize| 77e9 + 60e12 * (6e-6 + n as f64 / 4e6);
-    let half_wave = C / frequency(SAMPLES / 2) / 2.0;
-    let mut state = 5u32;
-    let mut noise = move || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        8.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
-    };
-    let mut sample = |chirp: usize, receiver: usize, n: usize| {
-        let grown = 1.0 + 3.0 * 90e-6 * chirp as f64 / 1.1f64.hypot(2.3);
-        let way = |place: f64| (1.1 * grown - (place - 1.75) * half_wave).hypot(2.3 * grown);
-        let path = way(4.0 * (chirp % 2) as f64) + way(receiver as f64);
-        Complex64::from_polar(400.0, TAU * frequency(n) * path / C) + Complex64::new(noise(), noise())
-    };
-    let all: Vec<Complex64> =
-        (0..LOOPS * 2 * 4 * SAMPLES).map(|n| sample(n / (4 * SAMPLES), n / SAMPLES % 4, n % SAMPLES)).collect();
-    let part = |v: f64| (v.round() as i16).to_le_bytes();
-    all.chunks(2)
-        .flat_map(|b| b.iter().map(|v| part(v.re)).chain(b.iter().map(|v| part(v.im))).collect::<Vec<_>>())
-        .flatten()
-        .collect()
-}
+use crate::made_captures::{Echo, RISING, STILL, cfg, samples, two_lanes};
 
 fn with_capture() -> TempDir {
     let folder = folder();
-    std::fs::write(folder.path().join("room.bin"), capture()).unwrap();
-    std::fs::write(folder.path().join("room.cfg"), CFG).unwrap();
+    let loops = samples(&RISING, Echo { speed: 3.0, ..STILL }, 2, 8);
+    std::fs::write(folder.path().join("room.bin"), two_lanes(loops.into_iter().flatten())).unwrap();
+    let cfg = cfg(&RISING, &[1, 4], 8, "adcbufCfg -1 0 0 1 1\n");
+    std::fs::write(folder.path().join("room.cfg"), cfg).unwrap();
     folder
 }
 

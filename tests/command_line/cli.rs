@@ -14,7 +14,7 @@ pub use apertura::signal::Floor;
 pub use assert_cmd::Command;
 pub use ndarray::{Array1, Array2, Array3, Axis, Ix1, Ix2, Ix3};
 use ndarray::{array, s};
-pub use ndarray_npy::{NpzReader, NpzWriter};
+pub use ndarray_npy::NpzReader;
 pub use num_complex::Complex64;
 pub use predicates::prelude::PredicateBooleanExt;
 pub use predicates::str::contains;
@@ -38,7 +38,6 @@ pub fn program(arguments: &[&str]) -> Command {
     command
 }
 
-/// The program in a folder, with the arguments of a line.
 pub fn call(folder: &TempDir, arguments: &str) -> Command {
     let mut command = apertura(folder);
     command.args(arguments.split_whitespace());
@@ -128,7 +127,6 @@ fn maps_have_the_layout_of_the_authors_program() {
         assert_eq!(found.reals::<Ix1>(key).unwrap().len(), count, "{key}");
     }
     assert!(!found.has("output"), "no method was asked for");
-    // The written archive is a scene again.
     call(&folder, "maps maps.npz -o again.npz").assert().success();
     let again = Npz::open(&folder.path().join("again.npz")).unwrap().reals::<Ix3>("polar_full").unwrap();
     assert_eq!(again, full);
@@ -248,28 +246,17 @@ fn bad_input_leaves_no_file() {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("good.toml", TWO_POINTS);
-    write("syntax.toml", "[[object]\n");
-    let point = "[[object]]\nkind = \"point\"\nx_metres = 1\n";
-    write("key.toml", &format!("{point}z_metres = 2\n"));
-    write("nan.toml", &format!("{point}y_metres = nan\n"));
-    let on_element = point.replace('1', "0") + "y_metres = 0\n";
-    write("element.toml", &format!("[radar]\nelements = 7\nend_elements = 3\n{on_element}"));
-    write("large.toml", "[radar]\nelements = 65536\nsamples = 65536\n");
-    let line = point.replace("point", "line") + "y_start_metres = 1\nspacing_metres = 1\n";
-    write("crowd.toml", &format!("{line}count = 1000000000000\n"));
+    write("key.toml", "[[object]]\nkind = \"point\"\nx_metres = 1\nz_metres = 2\n");
     write("text.npz", "not an archive");
     write("scene.yaml", TWO_POINTS);
-    let archive = |name: &str, keys: &[(&str, ndarray::ArrayD<f64>)]| {
-        write_npz(&folder.path().join(name), |out| keys.iter().try_for_each(|(k, v)| out.add(k, v))).unwrap();
-    };
-    archive("half.npz", &[("all_point_x", array![1.0].into_dyn())]);
-    archive("shape.npz", &[("all_point_x", array![[1.0]].into_dyn()), ("all_point_y", array![[1.0]].into_dyn())]);
-    archive("inf.npz", &[("all_point_x", array![1.0].into_dyn()), ("all_point_y", array![f64::INFINITY].into_dyn())]);
-    let whole = std::fs::read(folder.path().join("inf.npz")).unwrap();
-    std::fs::write(folder.path().join("cut.npz"), &whole[..whole.len() - 30]).unwrap();
+    write_npz(&folder.path().join("half.npz"), |out| out.add("all_point_x", &array![1.0])).unwrap();
     let before = names(folder.path());
-    bad_scenes_are_named(&folder);
     for (arguments, part) in [
+        ("maps missing.toml -o out.npz", "No such file"),
+        ("maps key.toml -o out.npz", "key.toml: line 4"),
+        ("maps text.npz -o out.npz", "numpy.savez"),
+        ("maps half.npz -o out.npz", "all_point_y"),
+        ("maps scene.yaml -o out.npz", ".toml or .npz"),
         ("maps good.toml -o out.gif", "a scene has no frames"),
         ("maps good.toml -o out.bmp", ".npz, .png"),
         ("maps good.toml -o nowhere/out.npz", "nowhere"),
@@ -280,32 +267,7 @@ fn bad_input_leaves_no_file() {
         ("evaluate --method magic", "baseline"),
         ("evaluate --set 1,9", "1, 2 or 3"),
     ] {
-        apertura(&folder).args(arguments.split(' ')).assert().failure().stdout("").stderr(contains(part));
+        call(&folder, arguments).assert().failure().stdout("").stderr(contains(part));
     }
     assert_eq!(names(folder.path()), before, "nothing was written");
-}
-
-fn bad_scenes_are_named(folder: &tempfile::TempDir) {
-    for (scene, parts) in [
-        ("missing.toml", ["missing.toml", "No such file"]),
-        ("syntax.toml", ["syntax.toml: line 1", "expected"]),
-        ("key.toml", ["key.toml: line 4", "z_metres"]),
-        ("nan.toml", ["nan.toml: line 4", "finite"]),
-        ("element.toml", ["element.toml: line 4", "element 3"]),
-        ("large.toml", ["large.toml: line 2", "1.0 TiB"]),
-        ("crowd.toml", ["crowd.toml: line 1", "1000000000000 reflectors"]),
-        ("text.npz", ["text.npz", "numpy.savez"]),
-        ("half.npz", ["half.npz", "all_point_y"]),
-        ("shape.npz", ["shape.npz", "dimensions"]),
-        ("inf.npz", ["inf.npz", "finite"]),
-        ("cut.npz", ["cut.npz", "archive"]),
-        ("scene.yaml", ["scene.yaml", ".toml or .npz"]),
-    ] {
-        apertura(folder)
-            .args(["maps", scene, "-o", "out.npz"])
-            .assert()
-            .failure()
-            .stdout("")
-            .stderr(contains("error: ").and(contains(parts[0])).and(contains(parts[1])));
-    }
 }

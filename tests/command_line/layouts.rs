@@ -36,10 +36,8 @@ fn methods_that_hear_the_layout_are_tried_and_rows_name_it() {
 fn both_ends_of_a_dataset_are_reconstructed_with_their_radar() {
     let folder = tempfile::tempdir().unwrap();
     let [input, output, other] = ["in.npz", "out.npz", "other.toml"].map(|name| folder.path().join(name));
-    let mut npz = NpzWriter::new(File::create(&input).unwrap());
     let ends = Array3::from_shape_fn((2, 6, 64), |(_, _, n)| Complex64::from_polar(3.0, 0.9 * n as f64));
-    npz.add_array("ends", &ends).unwrap();
-    npz.finish().unwrap();
+    write_npz(&input, |out| out.add("ends", &ends)).unwrap();
     let reconstruct = |radar: &Path| {
         let mut command = program(&["reconstruct", "--method", "iaa", "-o"]);
         command.arg(&output).arg(&input).arg("--radar").arg(radar);
@@ -56,26 +54,6 @@ fn both_ends_of_a_dataset_are_reconstructed_with_their_radar() {
 }
 
 #[test]
-fn samples_of_a_layout_are_reconstructed() {
-    let folder = tempfile::tempdir().unwrap();
-    let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));
-    let mut npz = NpzWriter::new(File::create(&input).unwrap());
-    let heard = Array2::from_shape_fn((14, 64), |(_, n)| Complex64::from_polar(3.0, 0.9 * n as f64));
-    npz.add_array("heard", &heard).unwrap();
-    npz.finish().unwrap();
-    let reconstruct = |layout: &str, method: &[&str]| {
-        let mut command = program(&["reconstruct"]);
-        command.arg(&input).arg("--radar").arg(radar(folder.path())).args(["--layout", layout]).args(method);
-        command.arg("-o").arg(&output).assert()
-    };
-    reconstruct("nested=6x8", &[]).success().stdout(contains("(iaa, "));
-    let map: Array2<f32> = NpzReader::new(File::open(&output).unwrap()).unwrap().by_name("net_output").unwrap();
-    assert_eq!(map.dim(), (64, 64));
-    reconstruct("nested=6x8", &["--method", "nomp"]).failure().stderr(contains("it hears the two ends of an array"));
-    reconstruct("thinned=8", &[]).failure().stderr(contains("samples of the layout"));
-}
-
-#[test]
 fn maps_of_a_layout_are_what_reconstruct_reads() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("scene.toml");
@@ -89,8 +67,13 @@ fn maps_of_a_layout_are_what_reconstruct_reads() {
     let read = |path: &Path| NpzReader::new(File::open(path).unwrap()).unwrap();
     let numbers: Array1<i64> = read(&archive).by_name("layout").unwrap();
     assert_eq!(numbers.to_vec(), [0, 1, 2, 3, 4, 5, 6, 13, 20, 27, 34, 41, 48, 55]);
-    let mut command = program(&["reconstruct", "--layout", "nested=6x8", "--method", "iaa"]);
-    command.arg(&archive).arg("-o").arg(&again).assert().success();
+    let reconstruct = |layout: &str, method: &[&str]| {
+        let mut command = program(&["reconstruct", "--layout", layout]);
+        command.args(method).arg(&archive).arg("-o").arg(&again).assert()
+    };
+    reconstruct("nested=6x8", &[]).success().stdout(contains("(iaa, "));
+    reconstruct("nested=6x8", &["--method", "nomp"]).failure().stderr(contains("it hears the two ends of an array"));
+    reconstruct("thinned=8", &[]).failure().stderr(contains("samples of the layout"));
     let output: Array3<f32> = read(&archive).by_name("output").unwrap();
     let reconstructed: Array2<f32> = read(&again).by_name("net_output").unwrap();
     assert_eq!(output.index_axis(Axis(0), 0), reconstructed);
@@ -128,22 +111,4 @@ fn elements_of_a_recording_are_chosen() {
     };
     reconstruct("0-2,5,7").success();
     reconstruct("0-2,8").failure().stderr(contains("the radar has elements 0 to 7"));
-}
-
-#[cfg(feature = "live")]
-#[test]
-fn a_dataset_has_the_samples_of_its_layout() {
-    let folder = tempfile::tempdir().unwrap();
-    let data = folder.path().join("data");
-    program(&["dataset", "--set", "2", "--count", "1", "--validation", "0", "--test", "0", "--layout", "nested=6x8"])
-        .arg("--radar")
-        .arg(radar(folder.path()))
-        .arg("-o")
-        .arg(&data)
-        .assert()
-        .success();
-    let manifest: Value = serde_json::from_str(&read_to_string(data.join("manifest.json")).unwrap()).unwrap();
-    assert_eq!(manifest["layout"].as_array().unwrap().len(), 14);
-    assert_eq!(manifest["arrays"]["heard"]["shape"], serde_json::json!([14, 64]));
-    assert!(data.join("train/00000.heard.npy").exists());
 }

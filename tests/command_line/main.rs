@@ -6,6 +6,8 @@ mod cli;
 mod documents;
 mod kept_rows;
 mod layouts;
+#[path = "../common/captures.rs"]
+mod made_captures;
 mod merge;
 mod messages;
 mod numerics_features;

@@ -57,7 +57,6 @@ fn what_is_no_archive_of_samples_is_named() {
     write("half.npz", b"PK\x03\x04");
     run("half.npz").stderr(contains("half.npz"));
     run("missing.npz").stderr(contains("missing.npz").and(contains("No such file")));
-    // The advice is followed.
     call(&folder, "maps s.toml -o in.npz").assert().success();
     call(&folder, "reconstruct in.npz -o out.npz --method baseline").assert().success();
 }

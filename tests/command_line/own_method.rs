@@ -4,12 +4,6 @@ use crate::cli::*;
 use ndarray_npy::{ReadNpyExt, WriteNpyExt};
 use std::fs;
 
-fn apertura(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
-    command.current_dir(folder);
-    command
-}
-
 fn answer() -> Array2<f32> {
     Array2::from_shape_fn((512, 1024), |(bin, _)| bin as f32 / 512.0)
 }
@@ -28,21 +22,21 @@ const ANSWER: &str =
     r#"echo '{"apertura":1,"id":'"$id"',"arrays":[{"name":"lambda","bytes":'"$(wc -c < map.npy)"'}]}'; cat map.npy"#;
 
 /// A shell script that is called "mine" and does `on_question` for every map it is asked for; [`ANSWER`] answers the same map each time.
-fn script(folder: &Path, on_question: &str) {
+fn script(folder: &TempDir, on_question: &str) {
     let mut bytes = Vec::new();
     answer().write_npy(&mut bytes).unwrap();
-    fs::write(folder.join("map.npy"), &bytes).unwrap();
-    fs::write(folder.join("mine.sh"), format!("{READ}{on_question}\ndone\n")).unwrap();
+    fs::write(folder.path().join("map.npy"), &bytes).unwrap();
+    fs::write(folder.path().join("mine.sh"), format!("{READ}{on_question}\ndone\n")).unwrap();
 }
 
 const COMMAND: [&str; 2] = ["--method-command", "sh mine.sh"];
 
 #[test]
 fn rows_name_the_method_that_the_command_says() {
-    let folder = tempfile::tempdir().unwrap();
-    script(folder.path(), ANSWER);
+    let folder = folder();
+    script(&folder, ANSWER);
     let arguments = ["evaluate", "--set", "1", "--count", "2", "--method", "mine,baseline", "--rows", "rows.csv"];
-    let found = apertura(folder.path()).args(arguments).args(COMMAND).assert().success();
+    let found = apertura(&folder).args(arguments).args(COMMAND).assert().success();
     found.stdout(contains("mine (eta 0.125)").and(contains("baseline")));
     let rows = read_rows(File::open(folder.path().join("rows.csv")).unwrap()).unwrap();
     let own: Vec<_> = rows.iter().filter(|row| row.method == "mine").map(|row| (row.eta, &*row.weights)).collect();
@@ -53,25 +47,22 @@ fn rows_name_the_method_that_the_command_says() {
 
 #[test]
 fn a_map_is_written_by_the_command() {
-    let folder = tempfile::tempdir().unwrap();
-    script(folder.path(), ANSWER);
-    apertura(folder.path()).args(["scenes", "--set", "1", "--count", "1", "-o", "."]).assert().success();
-    let scene = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().path());
-    let scene = scene.into_iter().find(|p| p.extension().is_some_and(|e| e == "toml" || e == "npz")).unwrap();
-    apertura(folder.path()).arg("maps").arg(&scene).args(["-o", "in.npz"]).assert().success();
-    let written = apertura(folder.path()).args(["reconstruct", "in.npz", "-o", "out.npz"]).args(COMMAND).assert();
+    let folder = folder();
+    script(&folder, ANSWER);
+    call(&folder, "scenes --set 1 --index 0 -o scene.toml").assert().success();
+    call(&folder, "maps scene.toml -o in.npz").assert().success();
+    let written = apertura(&folder).args(["reconstruct", "in.npz", "-o", "out.npz"]).args(COMMAND).assert();
     written.success().stdout(contains("(mine, "));
-    let mut npz = NpzReader::new(File::open(folder.path().join("out.npz")).unwrap()).unwrap();
-    let map: Array2<f32> = npz.by_name("net_output").unwrap();
-    assert_eq!(map, answer());
+    let map = Npz::open(&folder.path().join("out.npz")).unwrap().reals::<Ix2>("net_output").unwrap();
+    assert_eq!(map, answer().mapv(f64::from));
 }
 
 #[test]
 fn a_command_with_the_name_of_a_method_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let baseline = READ.replace("\"mine\"", "\"baseline\"") + "done\n";
     fs::write(folder.path().join("baseline.sh"), baseline).unwrap();
     let asked = ["evaluate", "--count", "1", "--method-command", "sh baseline.sh"];
-    let refused = apertura(folder.path()).args(asked).assert().failure();
+    let refused = apertura(&folder).args(asked).assert().failure();
     refused.stderr(contains("a method of this program is called \"baseline\""));
 }

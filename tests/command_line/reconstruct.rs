@@ -5,11 +5,8 @@ use ndarray::Ix0;
 
 /// Samples of one far reflector at broadside, as NumPy would store them.
 fn write_samples(path: &Path, gain: f64) {
-    let mut npz = NpzWriter::new(File::create(path).unwrap());
     let end = Array2::from_shape_fn((512, 12), |(n, _)| Complex64::from_polar(gain, 0.9 * n as f64));
-    npz.add_array("sub0", &end).unwrap();
-    npz.add_array("sub1", &end).unwrap();
-    npz.finish().unwrap();
+    write_npz(path, |out| ["sub0", "sub1"].into_iter().try_for_each(|key| out.add(key, &end))).unwrap();
 }
 
 #[test]
@@ -55,9 +52,7 @@ fn unsuitable_input_is_told() {
     };
     run("live").stderr(contains("finite numbers only"));
     run("magic").stderr(contains("unknown method \"magic\""));
-    let mut npz = NpzWriter::new(File::create(&input).unwrap());
-    npz.add_array("polar_partial_mag_phase", &Array3::<f64>::zeros((4, 8, 8))).unwrap();
-    npz.finish().unwrap();
+    write_npz(&input, |out| out.add("polar_partial_mag_phase", &Array3::<f64>::zeros((4, 8, 8)))).unwrap();
     run("live").stderr(contains("needs sub0 and sub1"));
     assert!(!output.exists());
 }
@@ -66,10 +61,8 @@ fn unsuitable_input_is_told() {
 fn weights_from_a_file_are_used_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let (input, output) = (folder.path().join("in.npz"), folder.path().join("out.npz"));
-    let mut npz = NpzWriter::new(File::create(&input).unwrap());
     let ramp = Array3::from_shape_fn((4, 512, 1024), |(c, i, j)| ((c + i + j) % 16) as f64 / 16.0);
-    npz.add_array("polar_partial_mag_phase", &ramp).unwrap();
-    npz.finish().unwrap();
+    write_npz(&input, |out| out.add("polar_partial_mag_phase", &ramp)).unwrap();
     let run = |method: &str, weights: &Path| {
         let mut command = program(&[]);
         command.arg("reconstruct").arg(&input).arg("-o").arg(&output).args(["--method", method]);

@@ -1,13 +1,9 @@
-//! One scene, one seed, the same settings: the same bits in the engine behind the app, in a campaign, and from the command line.
+//! One scene, one seed, the same settings: the same bits in the engine behind the app and from the command line.
 
 use crate::cli::*;
 use apertura::engine::{Engine, MapRequest};
-use apertura::evaluate::Metrics;
 use apertura::radar::End;
-use apertura::reconstruct::Reconstructor;
-use apertura::scene::generate::{Generator, Purpose, Reading};
 
-/// An engine after other scenes, other floors and drags.
 fn with_a_past(scene: &Scene) -> Engine {
     let mut engine = Engine::new(Radar::default());
     let wanted = MapRequest::default();
@@ -44,17 +40,4 @@ fn a_scene_at_rest_has_the_bits_of_the_command_line() {
     let full = written.reals::<Ix3>("polar_full").unwrap().remove_axis(ndarray::Axis(0));
     let lambda = LogMap::new(full).normalise(Normalisation::MinMax);
     assert_eq!(lambda, *frame.full.unwrap().lambda);
-}
-
-#[test]
-fn figures_of_a_scene_at_rest_are_those_of_a_campaign() {
-    let campaign = Campaign { count: 1, ..Campaign::default() };
-    let tallies = campaign.run(&[SceneSet::Generated(Kind::Set2)], &[&Baseline], &Default::default(), |_| ()).unwrap();
-    let generator = Generator::new(&campaign.radar, Reading::Program, Purpose::Test, campaign.seed);
-    let scene = generator.scene(Kind::Set2, 0);
-    let wanted = MapRequest { seed: scene.noise_seed, ..MapRequest::default() };
-    let frame = with_a_past(&scene).settle(&scene, &wanted).unwrap();
-    let found = Baseline.reconstruct(&campaign.radar, &frame.ends.unwrap(), &Request::default()).unwrap();
-    let metrics = Metrics::of(&frame.full.unwrap().lambda, &found.lambda, Baseline.eta());
-    assert_eq!(metrics.squared_error, tallies[0].squared_error);
 }

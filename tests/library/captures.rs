@@ -1,91 +1,15 @@
-//! Raw captures, written by the physics of a stretch receiver: each is opened as it is, and its echo stands at the true place.
+//! Raw captures: each is opened as it is, and its echo stands at the true place.
 
+use crate::made_captures::*;
 use crate::prelude::*;
 use apertura::recording::{FrameLoops, raw};
 
-const C: f64 = 299_792_458.0;
-
-/// A radar's chirps: start in GHz, slope in MHz/us, samples, rate in ksps.
-#[derive(Clone, Copy)]
-struct Chirps {
-    start: f64,
-    slope: f64,
-    samples: usize,
-    rate: f64,
-}
-
-const ADC_US: f64 = 6.0;
-const IDLE_US: f64 = 30.0;
-const RAMP_US: f64 = 60.0;
+const FALLING: Chirps = Chirps { start: 81.0, slope: -60.0, samples: 128, rate: 4000.0 };
 
 impl Chirps {
-    fn frequency_hz(&self, sample: usize) -> f64 {
-        self.start * 1e9 + self.slope * 1e12 * (ADC_US * 1e-6 + sample as f64 / (self.rate * 1e3))
-    }
-
     fn bin_metres(&self) -> f64 {
         C / (2.0 * self.slope.abs() * 1e12 * self.samples as f64 / (self.rate * 1e3))
     }
-}
-
-const RISING: Chirps = Chirps { start: 77.0, slope: 60.0, samples: 128, rate: 4000.0 };
-const FALLING: Chirps = Chirps { start: 81.0, slope: -60.0, samples: 128, rate: 4000.0 };
-
-/// Place and speed of an echo, metres and metres a second; the speed is positive where it goes away.
-#[derive(Clone, Copy)]
-struct Echo {
-    x: f64,
-    y: f64,
-    speed: f64,
-}
-
-const STILL: Echo = Echo { x: 1.1, y: 2.3, speed: 0.0 };
-
-/// `[loops][transmitters][receivers][samples]` of one echo over a little noise; transmitters stand two wavelengths apart.
-fn samples(chirps: &Chirps, echo: Echo, transmitters: usize, loops: usize) -> Vec<Vec<Vec<Vec<Complex64>>>> {
-    let half_wave = C / chirps.frequency_hz(chirps.samples / 2) / 2.0;
-    let middle = (4.0 * (transmitters as f64 - 1.0) + 3.0) / 4.0;
-    let mut state = 11u32;
-    let mut noise = move || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        10.0 * (f64::from(state >> 16) / 65536.0 - 0.5)
-    };
-    let range = echo.x.hypot(echo.y);
-    let mut one = |turn: usize, t: usize, r: usize, n: usize| {
-        let grown = 1.0 + echo.speed * (turn * transmitters + t) as f64 * (IDLE_US + RAMP_US) * 1e-6 / range;
-        let (x, y) = (echo.x * grown, echo.y * grown);
-        let way = |place: f64| (x - (place - middle) * half_wave).hypot(y);
-        let path = way(4.0 * t as f64) + way(r as f64);
-        Complex64::from_polar(400.0, TAU * chirps.frequency_hz(n) * path / C) + Complex64::new(noise(), noise())
-    };
-    (0..loops)
-        .map(|l| {
-            (0..transmitters)
-                .map(|t| (0..4).map(|r| (0..chirps.samples).map(|n| one(l, t, r, n)).collect()).collect())
-                .collect()
-        })
-        .collect()
-}
-
-fn two_lanes(chirps: impl IntoIterator<Item = Vec<Vec<Complex64>>>) -> Vec<u8> {
-    let rows: Vec<Complex64> = chirps.into_iter().flatten().flatten().collect();
-    let part = |v: f64| (v.round() as i16).to_le_bytes();
-    rows.chunks(2)
-        .flat_map(|b| b.iter().map(|v| part(v.re)).chain(b.iter().map(|v| part(v.im))).collect::<Vec<_>>())
-        .flatten()
-        .collect()
-}
-
-fn cfg(chirps: &Chirps, masks: &[u32], loops: usize, more: &str) -> String {
-    let Chirps { start, slope, samples, rate } = chirps;
-    let all = masks.iter().fold(0, |a, b| a | b);
-    let mut text = format!(
-        "channelCfg 15 {all} 0\nadcCfg 2 1\nprofileCfg 0 {start} {IDLE_US} {ADC_US} {RAMP_US} 0 0 {slope} 1 {samples} {rate} 0 0 30\n"
-    );
-    for (n, mask) in masks.iter().enumerate() {
-        text += &format!("chirpCfg {n} {n} 0 0 0 0 0 {mask}\n");
-    }
-    format!("{text}frameCfg 0 {} {loops} 0 100 1 0\n{more}", masks.len() - 1)
 }
 
 fn folder(bytes: &[u8], cfg: &str) -> tempfile::TempDir {
@@ -100,18 +24,12 @@ fn opened(bytes: &[u8], cfg: &str) -> Recording {
 }
 
 fn assert_found(recording: &Recording, chirps: &Chirps, echo: Echo) {
-    let method = apertura::methods::by_name("iaa").unwrap();
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let (_, found) = reconstruct_and_find(method.as_ref(), &recording.radar, &recording.two_ends(), &request).unwrap();
+    let found = found_by("iaa", &recording.radar, &recording.two_ends());
     let range = echo.x.hypot(echo.y);
     let first = found.first().unwrap_or_else(|| panic!("nothing found: {:?}", recording.doubts));
     assert!((first.range_metres - range).abs() < chirps.bin_metres(), "{first:?}, {:?}", recording.doubts);
-    assert!(
-        (first.cos_theta - echo.x / range).abs() < 0.03,
-        "{first:?} for {}, {:?}",
-        echo.x / range,
-        recording.doubts
-    );
+    let off = first.cos_theta - echo.x / range;
+    assert!(off.abs() < 0.03, "{first:?}: {off} off, {:?}", recording.doubts);
 }
 
 #[test]

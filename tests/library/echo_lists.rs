@@ -1,7 +1,6 @@
 //! Lists of echoes on small arrays: the first echo that any method lists is the true one.
 
 use crate::prelude::*;
-use apertura::signal::TwoEnds;
 
 /// A physical radar of 77 GHz whose two ends are all of its elements, or of 86 the outer ones.
 fn radar(elements: usize) -> Radar {
@@ -38,7 +37,6 @@ fn every_list_of_echoes_begins_with_the_true_one() {
 
 const RANGE_METRES: f64 = 4.0;
 
-/// What both ends hear of a point at a cosine.
 fn heard(radar: &Radar, cosine: f64) -> TwoEnds {
     let scene = Scene::of_points([(RANGE_METRES * cosine, RANGE_METRES * (1.0 - cosine * cosine).sqrt())]);
     simulate(radar, &scene, Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(radar)
@@ -82,9 +80,7 @@ fn one_echo_before_two_or_three_elements_has_its_place() {
         let radar = few(elements);
         for cosine in [0.3, -0.6, 0.05] {
             let ends = heard(&radar, cosine);
-            let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-            let method = methods::by_name("iaa").unwrap();
-            let (_, found) = reconstruct_and_find(method.as_ref(), &radar, &ends, &request).unwrap();
+            let found = found_by("iaa", &radar, &ends);
             let first = found.first().expect("an echo");
             assert!((first.cos_theta - cosine).abs() < 0.03, "{elements}: {} for {cosine}", first.cos_theta);
             let off = (first.range_metres - RANGE_METRES).abs();

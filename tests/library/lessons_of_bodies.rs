@@ -98,7 +98,6 @@ fn a_shadow_is_full_where_it_is_wider_than_the_array() {
         let said = format!("{whole:.0} dB in the map of all elements and by {end:.0} dB in those of the ends");
         assert!(page.contains(&said), "{name}: things.md does not say \"{said}\"");
         let [whole, end] = hidden_by_a_post(&radar, 10.0, 0.3);
-        println!("{name}: a narrow shadow takes {whole:.1} dB, and {end:.1} dB at the ends");
         assert!(whole > 5.0 && end < 2.0, "{name}: {whole} {end}");
     }
     for said in [format!("{:.1} m wide", width(18.5, 0.4)), format!("{:.1} m wide", width(10.0, 0.3))] {
@@ -134,7 +133,6 @@ fn the_right_end_sees_less_by_as_much_as_its_lesson_says() {
     taught(id, &format!("{:.0} dB weaker", first - last));
 }
 
-/// Decibels of the glint of a wall ahead.
 fn glint(y_metres: f64, roughness_millimetres: f64) -> f64 {
     let wall = Wall { roughness_millimetres, ..Wall::new(0.0, y_metres, 8.0, 0.0) };
     let heard = heard_in_the_middle(&physical(), &Scene { objects: vec![Object::Wall(wall)], ..Scene::default() });

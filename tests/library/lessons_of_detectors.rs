@@ -38,7 +38,6 @@ fn the_detector_keeps_its_rate_as_its_lesson_says() {
     let cells = 512.0 * 1024.0;
     taught("a-threshold-that-follows-the-noise", &format!("{:.0} false alarms", cells / 1000.0));
     let rate = (0..16).map(|seed| detected_in_noise(1, None, seed).0.count() as f64 / cells / 16.0).sum::<f64>();
-    println!("{:.1} % more false alarms than asked for", 100.0 * (1000.0 * rate - 1.0));
     // Of 16 maps the mean is known to 1.6 %.
     assert!((1000.0 * rate - 1.11).abs() < 0.05, "{rate}");
     taught("a-threshold-that-follows-the-noise", "which adds about 11 %");

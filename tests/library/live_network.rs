@@ -84,24 +84,6 @@ fn its_threshold_follows_the_floor() {
     assert!(detection > 0.9 && false_alarm < 0.02, "P_D {detection}, P_FA {false_alarm}");
 }
 
-#[test]
-fn a_radar_they_were_not_trained_for_is_an_error() {
-    let smaller = Radar { elements: 512, ..Radar::default() };
-    let two_way = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
-    for name in ["live", "thesis", "thesis-1", "unet"] {
-        let method = methods::by_name(name).unwrap();
-        // `live` knows both conventions, but not this spacing in the physical one.
-        let convention =
-            if name == "live" { "2.0260 of the filled spacing" } else { "the physical convention (two-way carrier)" };
-        for (other, differs) in [(&smaller, "512 elements"), (&two_way, convention)] {
-            let signal = simulate(other, &Scene::of_points([(0.0, 5.0)]), Floor::Exact, 0);
-            let ends = signal.unwrap().two_ends(other);
-            let message = method.reconstruct(other, &ends, &Request::default()).unwrap_err().to_string();
-            assert!(message.contains(&format!("this radar has {differs}")), "{name}: {message}");
-        }
-    }
-}
-
 /// A caller's own parallel loop hands a thread that waits inside one map the next map to make.
 #[test]
 fn callers_in_a_parallel_loop_do_not_block_each_other() {

@@ -14,6 +14,8 @@ mod lessons_of_detectors;
 mod lessons_of_pairs;
 #[cfg(feature = "network")]
 mod live_network;
+#[path = "../common/captures.rs"]
+mod made_captures;
 mod memory;
 mod methods;
 #[cfg(feature = "network")]

@@ -4,12 +4,10 @@
 use crate::prelude::*;
 use apertura::evaluate::detection_rates;
 use apertura::reconstruct::Reconstruction;
-use apertura::signal::TwoEnds;
 
 /// Longest any method may take for one map, even on a busy machine in an unoptimised build.
 const MAX_RUN_TIME: Duration = Duration::from_secs(120);
 
-/// Least difference between P_D and P_FA on a crowded scene.
 const MIN_SEPARATION: f64 = 0.1;
 
 fn radar() -> Radar {
@@ -50,15 +48,6 @@ fn run(method: &dyn Reconstructor, ends: &TwoEnds, what: &str) -> Reconstruction
 
 fn largest_difference(a: &Reconstruction, b: &Reconstruction) -> f32 {
     a.lambda.lambda.iter().zip(&b.lambda.lambda).fold(0.0, |m, (a, b)| m.max((a - b).abs()))
-}
-
-#[test]
-fn every_method_has_a_name_of_its_own() {
-    let all = methods::all();
-    for (i, method) in all.iter().enumerate() {
-        assert!(all[..i].iter().all(|m| m.name() != method.name()), "{} is there twice", method.name());
-        assert!(!method.description().is_empty() && (0.0..1.0).contains(&method.eta()), "{}", method.name());
-    }
 }
 
 #[test]
@@ -120,16 +109,6 @@ fn noise_is_no_detection() {
             assert_eq!(above, 0, "{} on {what}: cells above {eta}", method.name());
             assert!(answer.reflectors.len() < 60, "{} on {what}: {} echoes", method.name(), answer.reflectors.len());
         }
-    }
-}
-
-#[test]
-#[ignore = "half a minute"]
-fn ten_thousand_reflectors_end_in_time() {
-    let cluster = GaussianCluster { seed: 2, ..GaussianCluster::new([1.0, 14.0], [6.0, 3.0], 10_000) };
-    let ends = ends_of(&Scene { objects: vec![Object::Gaussian(cluster)], ..Scene::default() }, Floor::Thesis);
-    for method in methods::all() {
-        run(&*method, &ends, "ten thousand reflectors");
     }
 }
 

@@ -47,7 +47,6 @@ fn searches_draw_the_expected_map_of_noise_alone() {
                 squared_error += answer.metrics.squared_error / 4.0;
                 least += of_the_best_constant(&trial.target) / 4.0;
             }
-            println!("{name}, {normalisation}: SE {squared_error:.0}, of the best constant {least:.0}");
             assert!(squared_error < 1.3 * least, "{name}, {normalisation}: SE {squared_error:.0} for {least:.0}");
         }
     }

@@ -157,10 +157,8 @@ fn the_engine_shows_the_focused_map() {
 /// Distance of the strongest echo that each method finds from the point, in metres of range and in cos(theta).
 fn off_by(radar: &Radar, (x, y): (f64, f64)) -> Vec<(&'static str, [f64; 2])> {
     let signal = simulate(radar, &Scene::of_points([(x, y)]), Floor::Snr(Decibels(25.0)), 0).unwrap();
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
     let of = |name: &'static str| {
-        let method = methods::by_name(name).unwrap();
-        let found = reconstruct_and_find(method.as_ref(), radar, &signal.two_ends(radar), &request).unwrap().1;
+        let found = found_by(name, radar, &signal.two_ends(radar));
         let first = found.first().unwrap_or_else(|| panic!("{name} found nothing"));
         (name, [first.range_metres - x.hypot(y), first.cos_theta - x / x.hypot(y)])
     };

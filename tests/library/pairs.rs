@@ -4,7 +4,6 @@ use super::off_line::{imported, largest_difference, sample, straight as small};
 use crate::prelude::*;
 use rand::seq::SliceRandom;
 
-/// The same elements, each sending and hearing by itself.
 fn monostatic(radar: &Radar) -> Radar {
     Radar { antennas: None, ..radar.clone() }
 }
@@ -30,13 +29,6 @@ fn gaps_are_alike_in_every_computation() {
     let wanted = MapRequest { floor: Floor::Exact, ..MapRequest::default() };
     let [followed, settled] = [engine.update(&scene, &wanted).unwrap(), engine.settle(&scene, &wanted).unwrap()];
     assert_eq!(followed.full.unwrap().lambda.lambda, settled.full.unwrap().lambda.lambda);
-    let chirps = Radar { chirps: 4, ..radar.clone() };
-    let rows = simulate_chirps_for(&Task::default(), &chirps, &scene, Floor::Exact, 0).unwrap().samples;
-    let silent = |row: usize| rows.slice(ndarray::s![.., row, ..]).iter().all(|v| v.norm_sqr() == 0.0);
-    let elements: Vec<usize> = chirp_elements(&chirps).into_iter().flatten().collect();
-    for (row, n) in elements.into_iter().enumerate() {
-        assert_eq!(silent(row), radar.is_gap(n), "element {n}");
-    }
     assert_eq!(Layout::uniform(&radar).len(), 22);
 }
 
@@ -45,11 +37,8 @@ fn the_search_finds_points_beside_gaps() {
     let radar = Radar { end_elements: 13, ..with_gaps() };
     let scene = Scene::of_points([(0.6, 4.4), (-2.0, 6.0)]);
     let signal = simulate(&radar, &scene, Floor::Snr(Decibels(30.0)), 0).unwrap();
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let method = methods::by_name("nomp").unwrap();
-    let found = reconstruct_and_find(method.as_ref(), &radar, &signal.two_ends(&radar), &request).unwrap().1;
+    let found = found_by("nomp", &radar, &signal.two_ends(&radar));
     assert!(found.len() >= 2, "{found:?}");
-    // The two strongest are the points.
     for (point, found) in scene.reflectors().iter().zip(&found) {
         let polar = radar.polar_of(point.x_metres, point.y_metres);
         assert!((found.range_metres - polar.range_metres).abs() < 0.03, "{point:?}: {found:?}");
@@ -102,15 +91,8 @@ fn a_capture_of_pairs_has_its_rows_in_the_order_of_elements() {
     assert!((recording.radar.element_spacing_metres / radar.element_spacing_metres - 1.0).abs() < 1e-9);
 }
 
-/// Methods that take ranges from both antennas of an element.
 const KNOW_PAIRS: [&str; 9] =
     ["baseline", "matched-filter", "matched-filter-incoherent", "fista", "omp", "iaa", "sbl", "nomp", "hybrid"];
-
-fn found(method: &str, recording: &Recording) -> Vec<Detection> {
-    let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    reconstruct_and_find(method.as_ref(), &recording.radar, &recording.two_ends(), &request).unwrap().1
-}
 
 fn near_radar() -> Radar {
     Radar { end_elements: 16, ..small(6, 16) }
@@ -158,7 +140,7 @@ fn random_captures_are_placed_within_the_bound() {
             let known = Radar { transmit_power_watts: 1.0, ..radar.clone() };
             let bounds = cramer_rao(&known, &Layout::two_ends(&known), &reflectors, sigma * sigma).unwrap();
             for method in ["nomp", "hybrid"] {
-                let found = found(method, &recording);
+                let found = found_by(method, &recording.radar, &recording.two_ends());
                 for (bound, (x, y)) in bounds.iter().zip(&points) {
                     let (range, cos) = (x.hypot(*y), x / x.hypot(*y));
                     let off = |d: &Detection| {
@@ -175,7 +157,6 @@ fn random_captures_are_placed_within_the_bound() {
         }
         // Two errors of one bound each add up to 2 on average.
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
-        println!("{name}: {mean}");
         assert!((0.5..4.0).contains(&mean), "{name}: mean square {mean} of two errors in bounds; expected about 2");
     }
 }

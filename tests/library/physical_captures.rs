@@ -1,5 +1,4 @@
-//! Captures of physical radars, written by formulas of their own, read as docs/recordings.md says: the directions found are the true ones,
-//! and points are placed within the Cramer-Rao bound.
+//! Captures of physical radars, written by formulas of their own, read as docs/recordings.md says: the directions found are the true ones.
 
 use crate::prelude::*;
 
@@ -71,18 +70,12 @@ fn element_x(n: usize) -> f64 {
     (n as f64 - (ELEMENTS as f64 - 1.0) / 2.0) * wavelength() / 4.0
 }
 
-/// Every element sends and hears by itself, over noise of this standard deviation.
-fn monostatic(made: Made, folder: &Path, places: &[(f64, f64)], sigma: f64, rng: &mut ChaCha8Rng) -> Recording {
-    let mut noise = || rng.sample::<f64, _>(StandardNormal) * sigma / 2f64.sqrt();
-    let samples = Array2::from_shape_fn((ELEMENTS, SAMPLES), |(n, s)| {
-        made.sample(element_x(n), element_x(n), s, places) + Complex64::new(noise(), noise())
-    });
+/// Every element sends and hears by itself.
+fn monostatic(made: Made, folder: &Path) -> Recording {
+    let sample = |(n, s)| made.sample(element_x(n), element_x(n), s, &PLACES);
+    let samples = Array2::from_shape_fn((ELEMENTS, SAMPLES), sample);
     write_npz(&folder.join("c.npz"), |out| out.add("cube", &samples)).unwrap();
     read(made, folder, "two-way", wavelength() / 4.0, "\"element\"")
-}
-
-fn without_noise(made: Made, folder: &Path) -> Recording {
-    monostatic(made, folder, &PLACES, 0.0, &mut ChaCha8Rng::seed_from_u64(0))
 }
 
 /// Four transmitters far apart and sixteen receivers close together; the sums of their positions are half a wavelength apart.
@@ -123,9 +116,7 @@ fn peak_cos(recording: &Recording, range_metres: f64) -> f64 {
 
 fn errors(recording: &Recording) -> (f64, f64) {
     let radar = &recording.radar;
-    let method = methods::by_name("iaa").unwrap_or_else(|e| panic!("{e}"));
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let (_, found) = reconstruct_and_find(method.as_ref(), radar, &recording.two_ends(), &request).unwrap();
+    let found = found_by("iaa", radar, &recording.two_ends());
     let (mut columns, mut degrees) = (0.0f64, 0.0f64);
     for (range, cos) in PLACES {
         columns = columns.max((peak_cos(recording, range) - cos).abs() / (2.0 / ELEMENTS as f64));
@@ -149,7 +140,7 @@ fn assert_true(what: &str, made: Made, recording: &Recording, most_degrees: f64)
 fn a_monostatic_capture_gives_its_true_directions() {
     let folder = tempfile::tempdir().unwrap();
     for made in UPWARDS.into_iter().chain([DOWNWARDS]) {
-        assert_true("monostatic", made, &without_noise(made, folder.path()), DEGREES);
+        assert_true("monostatic", made, &monostatic(made, folder.path()), DEGREES);
     }
 }
 
@@ -191,7 +182,7 @@ fn the_wrong_beat_sign_is_doubted() {
 #[test]
 fn a_spacing_that_folds_directions_is_doubted() {
     let folder = tempfile::tempdir().unwrap();
-    let _quarter = without_noise(UPWARDS[0], folder.path());
+    let _quarter = monostatic(UPWARDS[0], folder.path());
     let half = read(UPWARDS[0], folder.path(), "two-way", wavelength() / 2.0, "\"element\"");
     assert!(half.doubts.iter().any(|d| d.contains("fold to the other side")), "{:?}", half.doubts);
 }
@@ -208,40 +199,5 @@ fn a_sample_has_the_phase_of_its_frequency_over_the_whole_path() {
         let found = signal.samples[[element, n]];
         // The formula of this file reaches some 1e-12 in f64: the phase is 2500 turns.
         assert!((found - expected).norm() < 1e-10 * expected.norm(), "[{element}, {n}]: {found}, {expected}");
-    }
-}
-
-#[test]
-fn points_of_physical_captures_are_placed_within_the_bound() {
-    let method = methods::by_name("nomp").unwrap_or_else(|e| panic!("{e}"));
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
-    let (sigma, captures, folder) = (0.1, 40, tempfile::tempdir().unwrap());
-    let (mut ranges, mut cosines, mut placed) = (0.0, 0.0, 0);
-    for capture in 0..captures {
-        let (range, cos): (f64, f64) = (3.0 + 11.0 * rng.random::<f64>(), 1.4 * (rng.random::<f64>() - 0.5));
-        let recording = monostatic(UPWARDS[2], folder.path(), &[(range, cos)], sigma, &mut rng);
-        let radar = &recording.radar;
-        let found = method.reconstruct(radar, &recording.two_ends(), &request).unwrap().detections(radar);
-        let (x_metres, y_metres) = (range * cos, range * (1.0 - cos * cos).sqrt());
-        let reflector = Reflector { x_metres, y_metres, reflectivity: range * range };
-        let bound = cramer_rao(radar, &Layout::two_ends(radar), &[reflector], sigma * sigma).unwrap()[0];
-        // A point that is taken for two has no single place. The count of such points is bounded below.
-        let [first] = &found[..] else { continue };
-        let range_off = (first.range_metres - range) / bound.range_metres;
-        let cos_off = (first.cos_theta - cos) / bound.cos_theta;
-        assert!(range_off.abs() < 5.0 && cos_off.abs() < 5.0, "capture {capture}: {range_off}, {cos_off} bounds off");
-        ranges += range_off * range_off;
-        cosines += cos_off * cos_off;
-        placed += 1;
-    }
-    println!("{placed} of {captures} were taken for one point");
-    // One in five points is taken for two: the search adds points to noise.
-    assert!(f64::from(placed) >= 0.75 * f64::from(captures), "{placed} of {captures} were taken for one point");
-    // Of 32 draws a root mean square is known to 13 %.
-    for (what, squares) in [("range", ranges), ("cos(theta)", cosines)] {
-        let ratio = f64::sqrt(squares / f64::from(placed));
-        println!("{what}: error / bound = {ratio:.3}");
-        assert!((0.65..1.35).contains(&ratio), "{what}: error / bound is {ratio}");
     }
 }

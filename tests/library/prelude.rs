@@ -23,7 +23,7 @@ pub use apertura::scene::file::SceneFile;
 pub use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 pub use apertura::scene::{Block, GaussianCluster, Line, Object, Point, Post, Reflector, Scene, Wall, presets};
 pub use apertura::signal::chirps::{chirp_elements, simulate_chirps_for};
-pub use apertura::signal::{BeatSignal, Floor, judge, simulate};
+pub use apertura::signal::{BeatSignal, Floor, TwoEnds, judge, simulate};
 pub use apertura::task::Task;
 pub use apertura::theory::Consequences;
 pub use apertura::{methods, recording};
@@ -38,3 +38,10 @@ pub use std::fs;
 pub use std::path::{Path, PathBuf};
 pub use std::process::Command;
 pub use std::time::{Duration, Instant};
+
+/// Echoes that a method finds where nothing tells it how loud the noise is.
+pub fn found_by(method: &str, radar: &Radar, ends: &TwoEnds) -> Vec<Detection> {
+    let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
+    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
+    reconstruct_and_find(method.as_ref(), radar, ends, &request).unwrap_or_else(|e| panic!("{e}")).1
+}

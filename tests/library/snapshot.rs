@@ -7,9 +7,7 @@ use apertura::recording::presets::Preset;
 fn seen(recording: &Recording, method: &str, end_elements: usize) -> Vec<f64> {
     let radar = Radar { end_elements, ..recording.radar.clone() };
     let ends = recording.signal().unwrap().two_ends(&radar);
-    let request = Request { noise: NoisePrior::UNKNOWN, ..Request::default() };
-    let method = methods::by_name(method).unwrap_or_else(|e| panic!("{e}"));
-    let (_, found) = reconstruct_and_find(method.as_ref(), &radar, &ends, &request).unwrap_or_else(|e| panic!("{e}"));
+    let found = found_by(method, &radar, &ends);
     let strong = found.iter().filter(|f| f.relative_power.0 > -8.0);
     let mut degrees: Vec<f64> = strong.map(|f| f.cos_theta.asin().to_degrees()).collect();
     degrees.sort_by(f64::total_cmp);
@@ -21,7 +19,6 @@ fn twelve_elements_at_either_end_see_what_all_86_see() {
     let recording = Preset::by_id("cascade-86").unwrap().load().unwrap();
     for method in ["iaa", "sbl"] {
         let (all, ends) = (seen(&recording, method, 43), seen(&recording, method, 12));
-        println!("{method}: 43 + 43 elements {all:.3?}, 12 + 12 elements {ends:.3?} degrees");
         assert_eq!((all.len(), ends.len()), (2, 2), "{method}: {all:?} {ends:?}");
         for (direction, expected) in all.iter().zip([0.0, 6.96]) {
             assert!((direction - expected).abs() < 0.1, "{method}: all 86 see {all:?}");

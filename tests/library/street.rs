@@ -3,7 +3,6 @@
 use crate::prelude::*;
 use apertura::evaluate::dip_between;
 
-/// Least dip of Lambda between two blobs that count as two.
 const PARTS: f32 = 0.05;
 
 /// Number of blobs of post and wall in either input and in the target, with the post on its ring at an angle from straight ahead.

@@ -133,37 +133,6 @@ fn a_kill_while_autosaving_loses_no_more_than_the_last_edit() {
 
 #[test]
 #[ignore = "the child of the test below"]
-fn child_exports() {
-    let Some(folder) = folder_of_child() else { return };
-    let radar = Radar { elements: 64, samples: 64, ..Radar::default() };
-    std::fs::write(folder.join("begun"), "").unwrap();
-    for number in 1.. {
-        let scene = numbered(number % 30).scene;
-        let signal = simulate(&radar, &scene, Floor::Exact, 0).unwrap();
-        write_maps(&folder.join("maps.npz"), &radar, &scene, &signal, None, None).unwrap();
-        safe(number);
-    }
-}
-
-#[test]
-fn a_kill_while_exporting_leaves_a_whole_archive() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let path = folder.path().join("maps.npz");
-    for _ in 0..KILLS {
-        let safe = kill("child_exports", folder.path(), &mut rng);
-        if safe > 0 {
-            let mut archive = Npz::open(&path).unwrap();
-            let [x, y] = ["all_point_x", "all_point_y"].map(|key| archive.reals::<Ix1>(key).unwrap().len());
-            assert_eq!(x, y);
-            assert!([safe % 30, (safe + 1) % 30].contains(&x), "{x} points where {safe} was exported");
-            archive.complexes::<ndarray::Ix2>("sub1").unwrap();
-        }
-    }
-}
-
-#[test]
-#[ignore = "the child of the test below"]
 fn child_saves_too_much() {
     let Some(folder) = folder_of_child() else { return };
     match file::save(&folder.join("scene.toml"), &numbered(5000)) {

@@ -114,16 +114,6 @@ fn an_unknown_place_costs_a_near_reflectors_amplitude() {
 }
 
 #[test]
-fn cartesian_covariance_gives_the_range_bound_back() {
-    let bound = alone(&Layout::two_ends(&Radar::default()), at(15.0, 0.6));
-    let (cos, sin) = (0.6, 0.8);
-    let along = cos * cos * bound.x_metres.powi(2)
-        + sin * sin * bound.y_metres.powi(2)
-        + 2.0 * cos * sin * bound.xy_covariance_metres2;
-    assert!((along.sqrt() / bound.range_metres - 1.0).abs() < 1e-6, "{bound:?}");
-}
-
-#[test]
 fn the_bound_scales_with_noise() {
     let radar = Radar::default();
     let layout = Layout::two_ends(&radar);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::reconstruct::{About, BARTLETT, Baseline, ReconstructError, Reconstruction};
+use crate::reconstruct::{About, Baseline, ReconstructError, Reconstruction};
 use crate::scene::generate::Kind;
 use crate::signal::TwoEnds;
 
@@ -30,19 +30,6 @@ fn rows_tell_what_the_detector_makes_of_every_output() {
     assert!(wide.starts_with("the detector on scene 0 of set 1: guard and training cells span"), "{wide}");
 }
 
-#[test]
-fn scenes_of_noise_alone_have_no_detection_rate() {
-    let campaign = Campaign { count: 2, ..Campaign::default() };
-    let sets = [SceneSet::Generated(Kind::Noise)];
-    let rows = campaign.run(&sets, &[&Baseline, &BARTLETT], &Task::default(), |_| ()).unwrap();
-    assert_eq!(rows.len(), 4);
-    for row in rows {
-        assert_eq!((&*row.set, row.objects, row.detection, row.detection_at_printed), ("noise", 0, None, None));
-        assert_eq!((row.false_alarm, row.ghosts), (0.0, 0), "{}", row.method);
-        assert!(row.squared_error > 1.0, "the target is noise");
-    }
-}
-
 struct Refuses;
 
 impl Reconstructor for Refuses {
@@ -65,13 +52,4 @@ fn a_campaign_goes_on_without_a_method_that_refuses_its_scenes() {
     assert_eq!(rows.iter().map(|row| &*row.method).collect::<Vec<_>>(), ["baseline"; 2]);
     let [Unfit { method: "refuses", set, scenes: 2, reason }] = &unfit[..] else { panic!("{unfit:?}") };
     assert!(set == "set 1" && reason.contains("made for no radar"), "{reason}");
-}
-
-#[test]
-fn a_campaign_can_be_cancelled() {
-    let task = Task::default();
-    task.cancel();
-    let sets = [SceneSet::Generated(Kind::Set1)];
-    let stopped = Campaign::default().run(&sets, &[&Baseline], &task, |_| ()).unwrap_err();
-    assert!(stopped.is_cancelled() && stopped.to_string().contains("scene 0 of set 1"), "{stopped}");
 }

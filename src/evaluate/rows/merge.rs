@@ -136,17 +136,4 @@ mod tests {
         let shard = Row { shard: "1/2".parse().ok(), ..made("1", 1, "live") };
         assert!(merged(vec![first(), shard]).is_ok(), "shards of one run");
     }
-
-    #[test]
-    fn rows_of_two_formats_are_never_merged() {
-        let exact = |version| Row { version, floor: Some(Floor::Exact), ..made("1", version.unwrap_or(0), "live") };
-        for (other, told) in [(Some(1), "1"), (None, "not recorded")] {
-            let refused = refused(exact(Some(2)), exact(other));
-            let start = "version is 2 in a.csv (scene 2 of set 1, seed 7, by live) and ";
-            assert!(refused.starts_with(&format!("{start}{told} in b.csv")), "{refused}");
-            assert!(refused.ends_with("the floor \"thesis\" is 1.8 dB quieter from format 2 on, so that figures of older rows don't compare with newer ones"));
-        }
-        let both = [exact(Some(1)), Row { index: 5, ..exact(Some(1)) }].map(|row| (String::new(), vec![row]));
-        assert_eq!(merge(both.to_vec()).unwrap().len(), 2, "rows of format 1 among each other");
-    }
 }

@@ -74,15 +74,6 @@ fn windows_have_the_cells_that_counting_finds() {
 }
 
 #[test]
-fn a_strong_neighbour_hides_an_echo_from_the_mean_alone() {
-    let mut map = Array2::from_elem((32, 64), 1.0);
-    map[[16, 32]] = 1e3;
-    map[[16, 35]] = 1e7;
-    let detected = |statistic| small(statistic).detect(map.view()).unwrap().cells[[16, 32]];
-    assert!(!detected(Statistic::CellAveraging) && detected(Statistic::OrderedStatistics));
-}
-
-#[test]
 fn power_is_lambda_on_a_linear_scale() {
     let map = RangeAngleMap { lambda: ndarray::array![[1.0f32, 0.5, 0.0]] };
     let power = relative_power(&map, LambdaScale { floor: -3.0, peak: 1.0 });

@@ -95,32 +95,26 @@ fn mean(numbers: impl ExactSizeIterator<Item = f32>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::live::engine::{LiveEngine, LiveScratch};
+    use crate::network::live::engine::LiveScratch;
     use crate::network::live::grid::ROWS;
-    use crate::network::live::size::LiveSize;
-    use crate::network::live::twin_tests::heard;
+    use crate::network::live::twin_tests::{heard, reference, tiny};
     use crate::radar::Radar;
 
     // `training/reference.py` writes these files.
     /// Weights of a tiny network that has the head.
     const WEIGHTS: &[u8] = include_bytes!("../../../tests/data/doubt_reference_weights.safetensors");
     const WITHOUT: &[u8] = include_bytes!("../../../tests/data/live_reference_weights.safetensors");
-    /// Three reflectors, and PyTorch's results for them.
-    const REFERENCE: &[u8] = include_bytes!("../../../tests/data/live_reference.safetensors");
 
-    fn doubt_of(weights: &[u8], reference: &WeightFile) -> Option<RangeAngleMap> {
-        let size = LiveSize { channels: [4, 6, 8, 10], blocks: [1, 1, 1, 1], fine: 4, ..LiveSize::default() };
-        let engine = LiveEngine::new(&WeightFile::parse("weights", weights).unwrap(), &size).unwrap();
-        let mut scratch = LiveScratch::default();
-        engine.forward(&heard(&Radar::default(), reference, 1.0).1, &mut scratch);
+    fn doubt_of(weights: &[u8]) -> Option<RangeAngleMap> {
+        let (engine, mut scratch) = (tiny(weights), LiveScratch::default());
+        engine.forward(&heard(&Radar::default(), &reference()).1, &mut scratch);
         engine.doubt(&scratch)
     }
 
     #[test]
     fn the_head_agrees_with_its_twin() {
-        let reference = WeightFile::parse("reference", REFERENCE).unwrap();
-        let found = doubt_of(WEIGHTS, &reference).unwrap().lambda;
-        let expected = reference.tensor("doubt", &[ROWS / 16, FINE_COLUMNS / 4]).unwrap();
+        let found = doubt_of(WEIGHTS).unwrap().lambda;
+        let expected = reference().tensor("doubt", &[ROWS / 16, FINE_COLUMNS / 4]).unwrap();
         for (i, expected) in expected.iter().enumerate() {
             let [row, column] = [i / (FINE_COLUMNS / 4) * 16, i % (FINE_COLUMNS / 4) * 4 * COLUMNS_PER_DOUBT];
             let gap = (found[[row, column]] - expected).abs();
@@ -133,7 +127,6 @@ mod tests {
 
     #[test]
     fn weights_without_the_head_say_nothing_of_errors() {
-        let reference = WeightFile::parse("reference", REFERENCE).unwrap();
-        assert_eq!(doubt_of(WITHOUT, &reference), None);
+        assert_eq!(doubt_of(WITHOUT), None);
     }
 }

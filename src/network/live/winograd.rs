@@ -182,10 +182,7 @@ fn put(simd: Simd, [channels, groups, line]: [usize; 3], gathered: &[Vec<f32>; P
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn numbers(n: usize, seed: u32) -> Vec<f32> {
-        (0..n as u32).map(|i| ((i ^ seed).wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 23) as f32 - 1.0).collect()
-    }
+    use crate::network::kernels::convolution::tests::numbers;
 
     #[test]
     fn every_shape_agrees_with_the_definition() {

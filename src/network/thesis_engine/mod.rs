@@ -113,6 +113,7 @@ impl ThesisEngine {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::network::kernels::convolution::tests::numbers;
     use crate::network::students::Student;
     use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
     use burn::tensor::{Device, Tensor, TensorData};
@@ -122,10 +123,6 @@ pub(super) mod tests {
         include_bytes!("../../../assets/weights/thesis.safetensors"),
         include_bytes!("../../../assets/weights/thesis-1.safetensors"),
     ];
-
-    fn numbers(n: usize, seed: u32) -> Vec<f32> {
-        (0..n as u32).map(|i| ((i ^ seed).wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 23) as f32 - 1.0).collect()
-    }
 
     /// A weight file of a network with random weights and random statistics of its batch norms, whose output is well above zero.
     pub(in crate::network) fn random(filters: usize, levels: usize) -> Vec<u8> {

@@ -178,18 +178,6 @@ mod tests {
     }
 
     #[test]
-    fn the_map_of_the_chip_is_numpys() {
-        let recording = Preset::by_id("chip-8").unwrap().load().unwrap();
-        let (_, full) = maps_of(&recording);
-        let full = full.unwrap();
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/chip-8-map.npy");
-        let expected: ndarray::Array2<f64> = ndarray_npy::read_npy(path).unwrap();
-        assert_eq!(full.decades().dim(), expected.dim());
-        let worst = full.decades().iter().zip(&expected).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
-        assert!(worst < 1e-9, "by comparisons/reference_maps.py: {worst}");
-    }
-
-    #[test]
     fn recordings_are_drawn_with_or_without_a_target() {
         let mut recording = Preset::by_id("chip-8").unwrap().load().unwrap();
         let svg = |r: &Recording| {

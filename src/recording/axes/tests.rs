@@ -24,12 +24,6 @@ fn axes_are_put_in_order() {
 }
 
 #[test]
-fn pairs_count_through_the_receivers_first() {
-    let found = arrange(numbered(&[2, 1, 3]), &[Receiver, Sample, Transmitter], None).unwrap();
-    assert_eq!(reals(found), array![[0.0], [3.0], [1.0], [4.0], [2.0], [5.0]]);
-}
-
-#[test]
 fn chirps_are_picked_or_joined_but_never_guessed() {
     let of = |chirp| arrange(numbered(&[2, 2, 1]), &[AxisKind::Chirp, Element, Sample], chirp);
     assert_eq!(reals(of(Some(Chirp::Number(1))).unwrap()), array![[2.0], [3.0]]);

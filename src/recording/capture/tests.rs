@@ -68,13 +68,6 @@ fn every_layout_gives_every_sample_its_place() {
 }
 
 #[test]
-fn two_lanes_stand_as_the_documentation_prints_them() {
-    let bytes = file(1, 2, ReceiverOrder::OneAfterAnother);
-    let words: Vec<i16> = bytes.chunks_exact(2).map(|b| i16::from_le_bytes([b[0], b[1]])).collect();
-    assert_eq!(words[..8], [0, 1, -1, -2, 2, 3, -3, -4], "I0 I1 Q0 Q1 I2 I3 Q2 Q3");
-}
-
-#[test]
 fn contradictions_are_told() {
     let order = ReceiverOrder::OneAfterAnother;
     let whole = file(2, 2, order);

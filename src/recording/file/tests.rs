@@ -208,9 +208,3 @@ fn the_radar_must_be_said() {
     told(&format!("{RADAR}colour = 3\n"), "colour");
     told("", "radar");
 }
-
-#[test]
-fn a_recording_is_known_by_its_table() {
-    assert!(is_recording(&format!("{RADAR}{}", usual(""))));
-    assert!(!is_recording(RADAR) && !is_recording("[recording") && !is_recording(""));
-}

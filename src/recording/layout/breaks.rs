@@ -126,39 +126,3 @@ fn solved(mut system: [[Complex64; ORDER + 1]; ORDER]) -> [Complex64; ORDER] {
     }
     std::array::from_fn(|n| system[n][ORDER] / system[n][n])
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::f64::consts::TAU;
-
-    /// Rows of 90 samples of an echo whose phase jumps by a third of a turn from row to row.
-    fn rows() -> Vec<Complex64> {
-        let mut state = 5u32;
-        let mut noise = move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 16) / 32768.0 - 1.0
-        };
-        let echo = |n: usize| Complex64::from_polar(100.0, TAU * (0.137 * (n % 90) as f64 + (n / 90) as f64 / 3.0));
-        (0..4000).map(|n| echo(n) + Complex64::new(noise(), noise())).collect()
-    }
-
-    #[test]
-    fn rows_begin_where_prediction_fails() {
-        let breaks = Breaks::of(&rows(), 1);
-        let best = (40..400).max_by(|a, b| breaks.gain(*a).total_cmp(&breaks.gain(*b)));
-        assert_eq!(best, Some(90));
-    }
-
-    #[test]
-    fn half_a_row_is_a_part_of_a_whole_one() {
-        let breaks = Breaks::of(&rows(), 1);
-        assert_eq!((breaks.whole(45, &[45, 90, 180]), breaks.divided(180, &[45, 90, 180])), (90, 90));
-    }
-
-    #[test]
-    fn a_row_longer_than_the_samples_is_none() {
-        let breaks = Breaks::of(&rows()[..50], 4);
-        assert_eq!((breaks.whole(400, &[400, 800]), breaks.divided(400, &[100, 200, 400])), (400, 400));
-    }
-}

@@ -1,6 +1,7 @@
 use super::stream::Stream;
 use super::*;
 use crate::recording::RadarProfile;
+use crate::recording::card::tests::sent;
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -69,6 +70,10 @@ fn layout(words: Words, parts: Parts, q_first: bool, receivers: ReceiverOrder) -
     Layout { words, parts, q_first, receivers, header_bytes: 0, packets: false }
 }
 
+fn in_order(parts: Parts) -> Layout {
+    layout(Words::Int16, parts, false, ReceiverOrder::OneAfterAnother)
+}
+
 fn found(bytes: Vec<u8>, profile: Option<&RadarProfile>) -> Found {
     find(&mut Stream::new(Cursor::new(bytes)).unwrap(), profile).unwrap()
 }
@@ -91,7 +96,7 @@ fn every_layout_is_found_by_the_spectrum_alone() {
 
 #[test]
 fn complex_and_real_samples_are_judged_by_the_same_bytes() {
-    let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
+    let right = in_order(Parts::TwoLanes);
     let quiet = chirps();
     let mut all = [quiet.clone(), quiet.clone(), quiet.clone(), quiet].concat();
     // Where the second half is louder, real samples, which are half as long, must not be judged by the first half alone.
@@ -110,7 +115,7 @@ fn four_lanes_carry_a_receiver_each() {
 
 #[test]
 fn the_evidence_says_what_decided() {
-    let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
+    let right = in_order(Parts::TwoLanes);
     let plain = found(written(&right, &chirps()), Some(&profile("")));
     assert_eq!(plain.decided_by(), Kind::Half, "I and Q alone are near: {:#?}", plain.sentences());
     assert!(plain.sentences().iter().any(|s| s.starts_with("Every receiver sees the same echoes")));
@@ -126,21 +131,15 @@ fn the_evidence_says_what_decided() {
 
 #[test]
 fn headers_before_chirps_are_found() {
-    let right =
-        Layout { header_bytes: 64, ..layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother) };
+    let right = Layout { header_bytes: 64, ..in_order(Parts::Pairs) };
     let found = found(written(&right, &chirps()), Some(&profile("lvdsStreamCfg -1 1 1 1\n")));
     assert_eq!(found.best().layout, right);
     assert!(found.notes.iter().any(|n| n.contains("header of 64 bytes: 8 were found")), "{:?}", found.notes);
 }
 
 fn packets(bytes: &[u8], lost: &[usize]) -> Vec<u8> {
-    let mut out = Vec::new();
-    for (n, data) in bytes.chunks(1456).enumerate().filter(|(n, _)| !lost.contains(n)) {
-        out.extend((n as u32 + 1).to_le_bytes());
-        out.extend(&(n as u64 * 1456).to_le_bytes()[..6]);
-        out.extend(data);
-    }
-    out
+    let kept = sent(bytes).into_iter().enumerate().filter(|(n, _)| !lost.contains(n));
+    kept.flat_map(|(_, packet)| packet).collect()
 }
 
 #[test]
@@ -181,7 +180,7 @@ fn samples_with_receivers_are_found_without_a_cfg() {
 
 #[test]
 fn a_cfg_of_another_capture_is_doubted() {
-    let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
+    let right = in_order(Parts::TwoLanes);
     let bytes = written(&right, &(0..5).flat_map(|_| chirps()).collect::<Vec<_>>());
     for (samples, is_doubted) in [(96, false), (48, true), (128, true), (250, true)] {
         let more = format!("profileCfg 0 77 10 6 60 0 0 50 1 {samples} 4000 0 0 30\n");
@@ -201,14 +200,14 @@ fn two_echoes_at_mirrored_places_are_no_image() {
         far + Complex64::from_polar(500.0, TAU * (30.0 * n + 0.21 * receiver)) + Complex64::new(noise(), noise())
     };
     let all: Vec<Vec<Complex64>> = (0..8).map(|_| (0..3 * SAMPLES).map(&mut sample).collect()).collect();
-    let right = layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother);
+    let right = in_order(Parts::Pairs);
     let found = found(written(&right, &all), Some(&profile("adcbufCfg -1 0 0 1 1\n")));
     assert_eq!((found.best().layout, found.best().of_kind(Kind::Images)), (right, 0.0), "{:#?}", found.sentences());
 }
 
 #[test]
 fn a_constant_part_or_saturation_leaves_the_words() {
-    let right = layout(Words::Int16, Parts::TwoLanes, false, ReceiverOrder::OneAfterAnother);
+    let right = in_order(Parts::TwoLanes);
     let changed = |change: fn(Complex64) -> Complex64| -> Vec<Vec<Complex64>> {
         (0..5).flat_map(|_| chirps()).map(|chirp| chirp.into_iter().map(change).collect()).collect()
     };
@@ -228,7 +227,7 @@ fn an_echo_that_hardly_breaks_between_rows_is_cut() {
         Complex64::from_polar(900.0, TAU * turns) + Complex64::new(noise(), noise())
     };
     let loops: Vec<Vec<Complex64>> = (0..16).map(|_| (0..1000).map(&mut sample).collect()).collect();
-    let pairs = layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother);
+    let pairs = in_order(Parts::Pairs);
     let found = found(written(&pairs, &loops), None);
     let counts = found.best().counts;
     assert_eq!((counts.samples, counts.receivers, counts.chirps), (125, 4, 2), "{:#?}", found.sentences());
@@ -245,7 +244,7 @@ fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
             Complex64::from_polar(900.0, TAU * turns) + Complex64::new(noise(), noise())
         };
         let rows: Vec<Vec<Complex64>> = (0..40).map(|_| (0..480 * chirps).map(&mut sample).collect()).collect();
-        let found = found(written(&layout(Words::Int16, parts, false, ReceiverOrder::OneAfterAnother), &rows), None);
+        let found = found(written(&in_order(parts), &rows), None);
         let counts = found.best().counts;
         assert_eq!((counts.samples, counts.receivers, counts.chirps), (120, 4, chirps), "{:#?}", found.sentences());
     }
@@ -261,7 +260,7 @@ fn rows_that_are_all_alike_leave_the_receivers_open() {
         of_echoes + Complex64::new(noise(), noise())
     };
     let one: Vec<Vec<Complex64>> = (0..320).map(|_| (0..SAMPLES).map(&mut sample).collect()).collect();
-    let right = layout(Words::Int16, Parts::Pairs, false, ReceiverOrder::OneAfterAnother);
+    let right = in_order(Parts::Pairs);
     let found = found(written(&right, &one), None);
     assert_ne!(found.certainty(), Certainty::Sure, "{:#?}", found.sentences());
 }

@@ -93,13 +93,6 @@ fn the_command_that_stands_last_holds() {
 }
 
 #[test]
-fn a_chirp_may_fall() {
-    let profile = with(" 70 1 8", " -70 1 8");
-    assert!(!profile.rises() && profile.bandwidth_hz() > 0.0);
-    assert!((profile.carrier_hz() - (77e9 - 70e12 * (7e-6 + 4.0 / 5.209e6))).abs() < 1.0);
-}
-
-#[test]
 fn what_is_said_of_the_data_is_read() {
     let more = "adcbufCfg -1 0 1 0 1\nlvdsStreamCfg -1 1 1 1\ncompRangeBiasAndRxChanPhase 0.05 1 0 -1 0 0 1\n";
     let profile = with("sensorStart", more);

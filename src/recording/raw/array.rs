@@ -162,17 +162,6 @@ mod tests {
     }
 
     #[test]
-    fn a_bare_array_is_opened_in_bins() {
-        let folder = folder(&[("cube.npy", &npy(cube().into_dyn()))]);
-        let recording = load(&folder.path().join("cube.npy")).unwrap();
-        assert_eq!((recording.radar.elements, recording.radar.samples), (4, 64));
-        let origin = recording.origin.clone().unwrap();
-        assert_eq!(origin.offers[0].described, "1 frames × 8 chirps × 4 elements × 64 samples");
-        assert!(recording.doubts.iter().any(|d| d.contains("No .cfg says the carrier")), "{:?}", recording.doubts);
-        assert!(recording.radar.range_resolution_metres() - 1.0 < 1e-9);
-    }
-
-    #[test]
     fn the_cfg_tells_transmitters_in_turn_apart() {
         let folder = folder(&[("cube.npy", &npy(cube().into_dyn())), ("cube.cfg", CFG.as_bytes())]);
         let recording = load(&folder.path().join("cube.npy")).unwrap();

@@ -23,40 +23,6 @@ pub fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
 }
 
 #[test]
-fn a_capture_is_opened_with_the_cfg_beside_it() {
-    let folder = folder(&[("a.bin", &frame()), ("setup.cfg", CFG.as_bytes())]);
-    for name in ["a.bin", "setup.cfg"] {
-        let recording = super::super::file::load(&folder.path().join(name)).unwrap();
-        assert_eq!((recording.name.as_str(), recording.radar.elements, recording.radar.samples), ("a", 8, 64));
-        assert_eq!(recording.radar.end_elements, 4);
-        let quarters = recording.radar.element_spacing_metres * 4.0 / recording.radar.wavelength_metres();
-        assert!((quarters - 1.0).abs() < 0.01, "{quarters}");
-        assert!(recording.notes.contains("I Q in pairs"), "{}", recording.notes);
-        assert!(recording.doubts.iter().any(|d| d.contains("as on the xWR1843")), "{:?}", recording.doubts);
-    }
-}
-
-#[test]
-fn the_text_that_is_written_reads_the_same_samples() {
-    let folder = folder(&[("a.bin", &frame()), ("a.cfg", CFG.as_bytes())]);
-    let imported = import(&folder.path().join("a.bin"), None, None).unwrap();
-    fs::write(folder.path().join("r.toml"), imported.origin.toml()).unwrap();
-    let read = super::super::file::load(&folder.path().join("r.toml")).unwrap();
-    assert_eq!(read.samples, imported.origin.recording().unwrap().samples);
-    let toml = imported.origin.toml();
-    assert!(toml.contains("config = \"a.cfg\"") && toml.contains("parts = \"pairs\""), "{toml}");
-}
-
-#[test]
-fn a_capture_without_cfg_counts_bins() {
-    let folder = folder(&[("a.bin", &frame())]);
-    let recording = open(&folder.path().join("a.bin"), None).unwrap();
-    assert_eq!((recording.radar.samples, recording.radar.range_resolution_metres()), (64, 1.0));
-    let told = recording.doubts.join(" ");
-    assert!(told.contains("No .cfg says") && told.contains("Nothing says where the antennas stand"), "{told}");
-}
-
-#[test]
 fn parts_of_a_split_capture_are_read_as_one() {
     let bytes = frame();
     let (first, second) = bytes.split_at(bytes.len() / 2 + 100);

@@ -149,7 +149,6 @@ fn a_rough_wall_scatters_what_its_glint_loses() {
 #[test]
 fn a_right_inner_corner_is_one_echo_at_its_apex() {
     let radar = Radar::default();
-    // An L whose inner corner faces the array.
     let ell = vec![[-1.0, 7.0], [0.0, 8.0], [1.0, 7.0], [1.5, 7.5], [0.0, 9.0], [-1.5, 7.5]];
     for x in [-0.9, 0.0, 0.5] {
         let found = heard(&radar, &[Object::Polygon(Polygon::new(ell.clone()))], &AntennaPlaces::at([x, 0.0]));

@@ -66,7 +66,6 @@ impl Monkey {
             app.get_by_label(answer).click();
             app.step();
         }
-        // File dialogs could be led anywhere.
         for _ in 0..3 {
             let Some(cancel) = app.query_all_by_label("Cancel").next() else { break };
             cancel.click();

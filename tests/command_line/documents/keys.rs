@@ -10,7 +10,6 @@ const OF_THE_WINDOW: [&str; 6] =
 /// Beginning of the sentence with the keys that a browser keeps from the program.
 const OF_THE_BROWSER: &str = "the browser keeps";
 
-/// A command's key, as pages write it.
 fn written(entry: &Entry) -> Option<String> {
     let key = entry.key?;
     let (m, name) = (key.modifiers, key.logical_key.name());

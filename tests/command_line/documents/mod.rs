@@ -28,7 +28,6 @@ fn names_an_option(command: &clap::Command, arguments: &[String]) -> bool {
     has.any(|argument| argument.get_long().is_some_and(|long| option.strip_prefix("--") == Some(long)))
 }
 
-/// The parser's error on these arguments, if there is one.
 fn fault(arguments: &[String]) -> Option<String> {
     let command = apertura::commands::command();
     let words = std::iter::once("apertura".to_owned()).chain(shell::filled(arguments));

@@ -40,7 +40,6 @@ impl Page {
     }
 }
 
-/// Paragraphs, cells of tables and items of lists.
 fn units(plain: &str) -> Vec<String> {
     let mut units = vec![String::new()];
     for line in plain.lines() {

@@ -1,8 +1,10 @@
 //! All readers of files from outside, with valid files to start from.
 
+use crate::made_captures::{RISING, cfg};
 use crate::prelude::*;
 use apertura::evaluate::rows::write_rows;
 use apertura::recording::RadarProfile;
+use apertura::recording::presets::ALL as SHIPPED;
 use apertura::scene::file;
 use ndarray::{Ix2, Ix3};
 
@@ -38,12 +40,10 @@ fn written(folder: &Path, name: &str, bytes: &[u8]) -> PathBuf {
     folder.join(name)
 }
 
-/// A file of version 0.1.0.
 fn older(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/program-0.1.0").join(name)
 }
 
-/// Points, a line, a cluster and disturbances.
 fn scene() -> SceneFile {
     file::load(&older("scene-thesis.toml")).unwrap()
 }
@@ -53,7 +53,6 @@ fn scenes() -> Reader {
     files.push(file::to_toml(&scene()).unwrap().into_bytes());
     let read = |_: &Path, bytes: &[u8]| {
         let file = file::from_toml(text(bytes)?).map_err(|e| e.to_string())?;
-        // An accepted text can be written and read again.
         let again = file::to_toml(&file).map_err(|e| e.to_string())?;
         assert_eq!(file::from_toml(&again), Ok(file));
         Ok(())
@@ -111,27 +110,14 @@ fn archives() -> Reader {
     Reader { name: "npz", files, read, bound: [1 << 20, 64], slow: 1 }
 }
 
-const RECORDINGS: [(&str, &[u8], &str); 2] = [
-    (
-        "chip-8.npz",
-        include_bytes!("../../../assets/recordings/chip-8.npz"),
-        include_str!("../../../assets/recordings/chip-8.toml"),
-    ),
-    (
-        "cascade-86.mat",
-        include_bytes!("../../../assets/recordings/cascade-86.mat"),
-        include_str!("../../../assets/recordings/cascade-86.toml"),
-    ),
-];
-
 /// Memory for the largest radar's samples is bounded by the radar; damaged numbers of elements and samples stay far below.
 const RECORDING_BOUND_BYTES: [usize; 2] = [64 << 20, 1024];
 
 fn recordings() -> Reader {
-    let files = RECORDINGS.iter().map(|(_, _, text)| text.as_bytes().to_vec()).collect();
+    let files = SHIPPED.iter().map(|preset| preset.toml.as_bytes().to_vec()).collect();
     let read = |folder: &Path, bytes: &[u8]| {
-        for (name, data, _) in RECORDINGS.iter().filter(|(name, ..)| !folder.join(name).exists()) {
-            written(folder, name, data);
+        for preset in SHIPPED.iter().filter(|preset| !folder.join(preset.data_name).exists()) {
+            written(folder, preset.data_name, preset.data);
         }
         told(recording::file::load(&written(folder, "recording.toml", bytes)))
     };
@@ -139,17 +125,17 @@ fn recordings() -> Reader {
 }
 
 fn recorded_data() -> Reader {
-    let files = RECORDINGS.iter().map(|(_, data, _)| data.to_vec()).collect();
+    let files = SHIPPED.iter().map(|preset| preset.data.to_vec()).collect();
     let read = |folder: &Path, bytes: &[u8]| {
         let folder = folder.join("data");
         fs::create_dir_all(&folder).unwrap();
         let mut read = Err(String::new());
-        for (name, _, text) in RECORDINGS {
-            let path = folder.join(name).with_extension("toml");
+        for preset in SHIPPED {
+            let path = folder.join(preset.data_name).with_extension("toml");
             if !path.exists() {
-                fs::write(&path, text).unwrap();
+                fs::write(&path, preset.toml).unwrap();
             }
-            written(&folder, name, bytes);
+            written(&folder, preset.data_name, bytes);
             read = read.or_else(|_| told(recording::file::load(&path)));
         }
         read
@@ -157,12 +143,10 @@ fn recorded_data() -> Reader {
     Reader { name: "recorded data", files, read, bound: RECORDING_BOUND_BYTES, slow: 2 }
 }
 
-const PROFILE: &[u8] = b"channelCfg 15 5 0\nadcCfg 2 1\nprofileCfg 0 77 429 7 57.14 0 0 70 1 8 5209 0 0 30\n\
-                         chirpCfg 0 0 0 0 0 0 0 1\nchirpCfg 1 1 0 0 0 0 0 4\nframeCfg 0 1 2 0 100 1 0\n";
-
 fn profiles() -> Reader {
     let read = |_: &Path, bytes: &[u8]| told(RadarProfile::parse(text(bytes)?));
-    Reader { name: "profile", files: vec![PROFILE.to_vec()], read, bound: [1 << 20, 1024], slow: 1 }
+    let files = vec![cfg(&RISING, &[1, 4], 8, "").into_bytes()];
+    Reader { name: "profile", files, read, bound: [1 << 20, 1024], slow: 1 }
 }
 
 fn tables_of_rows() -> Reader {

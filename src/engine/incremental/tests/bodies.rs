@@ -48,12 +48,8 @@ fn a_moved_body_is_computed_again_with_what_it_hides() {
         ];
         Scene { objects, ..Scene::default() }
     };
-    let said = |engine: &mut Engine, scene: &Scene| {
-        let frame = engine.update(scene, &wanted).unwrap();
-        let signal = frame.report.stages.into_iter().find(|s| s.stage == EngineStage::Signal).unwrap();
-        let StageOutcome::Computed(what) = signal.outcome else { panic!() };
-        what
-    };
+    let said =
+        |engine: &mut Engine, scene: &Scene| super::said(&engine.update(scene, &wanted).unwrap(), EngineStage::Signal);
     assert!(said(&mut engine, &scene(0.0, 15.0)).starts_with("15 echoes from scratch"));
     let what = said(&mut engine, &scene(0.0, 15.1));
     assert!(what.starts_with("1 of 15 echoes") || what.starts_with("2 of 15 echoes"), "the post alone: {what}");

@@ -67,18 +67,6 @@ fn the_manifest_knows_every_file() {
 }
 
 #[test]
-fn a_longer_dataset_begins_with_a_shorter_one() {
-    let folders = [2, 3].map(|count| {
-        let folder = tempfile::tempdir().unwrap();
-        let request = DatasetRequest { counts: [count, 0, 0], parts: vec![ExamplePart::Ends], shard: 4, ..request() };
-        write(folder.path(), &request, &Task::default()).unwrap();
-        folder
-    });
-    let [short, long] = folders.map(|folder| std::fs::read(folder.path().join("train/00000.ends.npy")).unwrap());
-    assert_eq!(short, long);
-}
-
-#[test]
 fn requests_that_cannot_be_are_told() {
     let folder = tempfile::tempdir().unwrap();
     let told = |request: DatasetRequest| write(folder.path(), &request, &Task::default()).unwrap_err().to_string();

@@ -1,5 +1,5 @@
 use super::*;
-use crate::radar::{Convention, Decibels, Tolerances};
+use crate::radar::{Decibels, Tolerances};
 use crate::signal::simulate;
 
 fn examples(seed: u64, floors: Floors) -> Examples {
@@ -55,32 +55,6 @@ fn an_example_of_noise_lies_over_a_level_of_its_own() {
 fn examples_of(mixture: &str, radars: Radars) -> Examples {
     let mixture = mixture.parse().unwrap();
     Examples::new(ExamplesRequest { mixture, seed: 1, radars, ..ExamplesRequest::default() }).unwrap()
-}
-
-#[test]
-fn columns_of_a_physical_radar_rise_with_cos_theta() {
-    let physical = Radar::default().in_convention(Convention::Physical);
-    let generator = Generator::new(&physical, Reading::Program, Purpose::Training, 1);
-    let cos_of = |index: u32| {
-        let point = generator.scene(Kind::Set1, index).reflectors()[0];
-        point.x_metres / point.x_metres.hypot(point.y_metres)
-    };
-    let index = (0..100).find(|index| (0.3..0.9).contains(&cos_of(*index).abs())).unwrap();
-    let cos = cos_of(index);
-    let maker = examples_of("1", Radars::Fixed(Box::new(physical)));
-    let example = maker.example(index, &Task::default()).unwrap();
-    let strongest = |cells: &[f32], columns: usize| {
-        let at = cells.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
-        ((at % columns) as f64 / columns as f64 - 0.5) * 2.0
-    };
-    let input = example.input.as_ref().unwrap();
-    // The whole array's target, the minimum of both ends' Capon spectra, and one end's beams.
-    let target = strongest(decades(&example).as_slice().unwrap(), 1024);
-    let fine = strongest(&input.fine[..512 * 256], 256);
-    let coarse = strongest(&input.coarse[..512 * 64], 64);
-    for (found, off) in [(target, 0.12), (fine, 0.12), (coarse, 0.2)] {
-        assert!((found - cos).abs() < off, "{found} for {cos}");
-    }
 }
 
 #[test]
