@@ -1,7 +1,7 @@
 //! Two methods on one scene, one flipped in the place of the other.
 
 use crate::session::*;
-use apertura::app::{Compare, Layout};
+use apertura::app::{Compare, Layout, MethodSlot};
 use apertura::maps::RangeAngleMap;
 use egui_kittest::Node;
 

@@ -1,7 +1,6 @@
 //! Rows of an evaluation in the window: tried, sorted, filtered, opened, dragged, made worse, kept, and there again after a restart.
 
 use crate::session::*;
-use apertura::app::SearchChoice;
 use apertura::evaluate::rows::Row;
 use apertura::evaluate::sets::Folder;
 use apertura::evaluate::worsen::WorseningSearch;

@@ -1,7 +1,7 @@
 //! Long work beside the window: evaluations, training logs, methods that fail.
 
 use crate::session::*;
-use apertura::app::{ThresholdChoice, WorkCommand};
+use apertura::app::WorkCommand;
 use apertura::engine::{StageOutcome, StageReport};
 use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;

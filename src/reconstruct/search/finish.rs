@@ -251,13 +251,8 @@ fn reflectivities(gains: &[Gains]) -> Vec<f64> {
     let mean: Vec<Complex64> = gains.iter().map(|g| (g[0] + g[1]) / 2.0).collect();
     let doubled: Complex64 = mean.iter().map(|g| g * g).sum();
     let common = Complex64::cis(-doubled.arg() / 2.0);
-    let signed: Vec<f64> = mean
-        .iter()
-        .zip(gains)
-        .map(|(m, g)| {
-            if (m * common).re < 0.0 { -size(g) } else { size(g) }
-        })
-        .collect();
+    let signed: Vec<f64> =
+        mean.iter().zip(gains).map(|(m, g)| if (m * common).re < 0.0 { -size(g) } else { size(g) }).collect();
     let sign = if signed.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
     signed.into_iter().map(|s| s * sign).collect()
 }

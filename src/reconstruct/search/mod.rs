@@ -165,19 +165,12 @@ impl Found {
         let certain = self.reflectivities.iter().zip(&self.needed_decades).filter(|(_, d)| **d >= CERTAIN_DECADES);
         let largest = certain.map(|(reflectivity, _)| reflectivity.abs()).reduce(f64::max).unwrap_or(f64::INFINITY);
         let is_listed = |(r, confidence): &(Reflector, f64)| {
-            *confidence >= confidence_at(CERTAIN_DECADES) || (r.reflectivity * self.scale).abs() <= MAX_OVER_CERTAIN * largest
+            *confidence >= confidence_at(CERTAIN_DECADES)
+                || (r.reflectivity * self.scale).abs() <= MAX_OVER_CERTAIN * largest
         };
         let listed = self.reflectors(self.scale).zip(self.confidences()).filter(is_listed);
         let (reflectors, confidences) = listed.unzip();
-        Reconstruction {
-            lambda,
-            reflectors,
-            confidences,
-            eta: None,
-            least_eta,
-            doubt: None,
-            trace: self.trace.clone(),
-        }
+        Reconstruction { lambda, reflectors, confidences, eta: None, least_eta, doubt: None, trace: self.trace.clone() }
     }
 
     /// The expected map of the objects, and its scale; that of white noise without objects.
