@@ -208,7 +208,7 @@ mod tests {
     fn masks_are_light_in_a_light_window() {
         let (mut painter, radar) = (Painter::default(), Radar::default());
         for (dark, [below, above]) in [true, false].map(|dark| (dark, theme::mask(dark))) {
-            let subject = subject(Paint::Above { eta: 0.9, dark });
+            let subject = Subject { minus: None, ..subject(Paint::Above { eta: 0.9, dark }) };
             let mask = painter.paint(&radar, MapKind::TargetAbove, &subject);
             assert_eq!(mask.image.pixels, [below, above, below, above]);
             assert_eq!(below.intensity() < 0.5, dark);
