@@ -88,7 +88,7 @@ pub fn render_svg(drawing: &impl Drawing) -> Result<String, PictureError> {
 }
 
 fn on_paper<B: DrawingBackend>(drawing: &impl Drawing, backend: B) -> Painted {
-    // Legends of plotters measure their text by these fonts, whatever the backend is.
+    // Legends of plotters measure their text by these fonts on every backend.
     text::register_fonts()?;
     let area = Lettered::new(backend)?.into_drawing_area();
     area.fill(&PAPER)?;
