@@ -95,7 +95,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, state: &mut State) -> Vec<Command> {
         canvas::scale_bar(&painter, canvas);
     }
     if has_numbers && input.tells_maps {
-        let seconds = moved.is_some().then(|| state.timeline.seconds);
+        let seconds = moved.is_some().then_some(state.timeline.seconds);
         elsewhere(ui, &painter, canvas, &scene, seconds, input.hint.as_ref());
     }
     if let Some(hint) = &input.hint {
