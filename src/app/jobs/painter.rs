@@ -134,7 +134,7 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
             let mask = theme::mask(dark);
             cells.map(|&v| shown(v, mask[usize::from(v > eta)])).collect()
         }
-        // Ghosts are drawn over the picture, once the output is judged.
+        // False alarms are drawn over the picture, once the output is judged.
         (Paint::Above { eta, dark }, Some(target)) => {
             let verdicts = told_apart(map, target, [eta, TARGET_ETA], &[]);
             let colours = fills(&verdicts.into_raw_vec_and_offset().0, map.dim(), dark);

@@ -32,7 +32,7 @@ pub enum Paint {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
     pub map: Shared<RangeAngleMap>,
-    /// Subtracted by [`Paint::Difference`]; the target beside [`Paint::Above`].
+    /// The map that [`Paint::Difference`] subtracts, or the target that cells above a threshold are compared with ([`Paint::Above`]).
     pub minus: Option<Shared<RangeAngleMap>>,
     pub paint: Paint,
     pub projection: Projection,

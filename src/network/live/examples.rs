@@ -135,7 +135,7 @@ pub struct ExampleError {
 impl Examples {
     /// The examples of a request.
     /// # Errors
-    /// The message names the kind, radar or element that can't be used.
+    /// Where a kind, a radar or an element can't be used, a message that names it.
     pub fn new(mut request: ExamplesRequest) -> Result<Self, String> {
         let kinds = || request.mixture.shares().iter().map(|(kind, _)| *kind);
         if request.purpose == Purpose::Test && kinds().any(|kind| kind == Kind::World) {

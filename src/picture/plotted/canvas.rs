@@ -44,7 +44,7 @@ pub trait Drawing {
     fn draw<B: DrawingBackend>(&self, root: &PanelArea<B>) -> Painted;
 }
 
-/// RGB pixels, the top row first, of cells `[rows from below, columns]`: `colour` is that of the cells under a pixel, one at least.
+/// RGB pixels, the top row first, of cells `[rows from below, columns]`. `colour` gives a pixel its colour from the cells under it, one at least.
 pub fn painted(
     [width, height]: [usize; 2],
     (rows, columns): (usize, usize),

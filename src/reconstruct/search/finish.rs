@@ -31,7 +31,7 @@ const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
 /// Largest reflectivity over the largest that any of the objects has when it is fitted alone, as a ratio: beyond, neighbours cancel each other.
 const MAX_OVER_ALONE: f64 = 1.5;
 
-/// Prices of a gain where neighbours cancel each other, as parts of its echo's energy; the first that ends it is taken.
+/// Ridges tried one after another where neighbours cancel each other, as parts of the energy of a gain's echo.
 const RIDGES: [f64; 7] = [0.0002, 0.0006, 0.002, 0.006, 0.02, 0.06, 0.2];
 
 /// Range bins and columns below which two points over white noise are one.
@@ -168,7 +168,7 @@ fn size(gains: &Gains) -> f64 {
     (gains[0].norm() + gains[1].norm()) / 2.0
 }
 
-/// `fit` with a ridge on its gains that grows until no two neighbours cancel each other.
+/// `fit` with a ridge on its gains that grows until none exceeds [`MAX_OVER_ALONE`].
 fn bounded(bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
     let alone = fit.atoms.par_iter().map(|atom| size(&bench.solve_alone(samples, *atom).gains[0]));
     let most = MAX_OVER_ALONE * alone.reduce(|| 0.0, f64::max);

@@ -94,8 +94,8 @@ pub(super) const ETA: f32 = 0.896;
 const EVEN_ODDS_DECADES: f64 = 0.8;
 const CONFIDENCE_SLOPE: f64 = 0.8;
 
-/// Decades from which on an object is there without doubt, and the largest reflectivity that another is listed with, over the largest of those, as
-/// a ratio: a ghost far away is large where little is heard.
+/// Energy that an object must explain over what is left around it, decades, for a confidence of 0.9; and the largest reflectivity of an object below
+/// that confidence in the list, over the largest of the others, as a ratio. Little is heard of far places, so a ghost there can be large.
 const CERTAIN_DECADES: f64 = 2.0;
 const MAX_OVER_CERTAIN: f64 = 3.0;
 
