@@ -8,7 +8,7 @@
 use super::cells::GridCells;
 use crate::maps::centred_spectrum;
 use crate::radar::{End, Radar, hann};
-use crate::reconstruct::seen::{seen_by, too_many_folds};
+use crate::reconstruct::seen::seen_by;
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Axis, Zip, s};
 use num_complex::Complex64;
@@ -27,7 +27,8 @@ const BLOCK: usize = 16;
 /// A block's far field begins at most at this part of the maximum range.
 const NEAR_PART: f64 = 1.0 / 64.0;
 
-const MOST_TABLE_BYTES: usize = 1 << 30;
+/// Bytes of tables for each cell of the grid: larger tables are made anew each time, block by block.
+const MAX_TABLE_BYTES_PER_CELL: usize = 64;
 
 /// Place of one cell of the centre's grid in one block's spectrum.
 #[derive(Clone, Copy, Default)]
@@ -40,10 +41,12 @@ struct Place {
 
 struct Block {
     elements: Range<usize>,
-    places: Array2<Place>,
+    /// `None` where the tables would be too large.
+    places: Option<Array2<Place>>,
 }
 
-pub(super) struct Backprojector {
+pub(super) struct Backprojector<'a> {
+    cells: &'a GridCells<'a>,
     blocks: [Vec<Block>; 2],
     rows: usize,
     columns: usize,
@@ -77,57 +80,48 @@ fn blocks(radar: &Radar) -> Vec<Range<usize>> {
     (0..count).map(|i| edge(i)..edge(i + 1)).collect()
 }
 
-/// The reason why the tables can't be made for `radar`: a column has too many directions, or the tables take too much memory.
-pub(super) fn no_tables(radar: &Radar) -> Option<String> {
-    too_many_folds(radar).or_else(|| too_large(radar))
-}
-
-fn too_large(radar: &Radar) -> Option<String> {
-    let (bins, directions) = GridCells::new(radar).dim();
-    let bytes = 2 * blocks(radar).len() * bins * directions * size_of::<Place>();
-    (bytes > MOST_TABLE_BYTES).then(|| {
-        format!("its tables for {bins} range bins and {directions} directions would fill {bytes} bytes; at most {MOST_TABLE_BYTES}")
-    })
-}
-
-impl Backprojector {
-    pub fn new(radar: &Radar, cells: &GridCells<'_>, window: RangeWindow) -> Self {
-        let rows = ROWS_PER_BIN * radar.samples;
+impl<'a> Backprojector<'a> {
+    pub fn new(cells: &'a GridCells<'a>, window: RangeWindow) -> Self {
+        let radar = cells.radar();
         let blocks = blocks(radar);
         let longest = blocks.iter().map(Range::len).max().unwrap_or(1);
-        let columns = (COLUMNS_PER_ELEMENT * longest).next_power_of_two();
         let window = match window {
             RangeWindow::Hann => hann(radar.samples),
             RangeWindow::None => vec![1.0; radar.samples],
         };
         let weight = window.iter().sum::<f64>() * radar.end_elements as f64;
-        let blocks = End::BOTH.map(|end| {
-            let place = |elements: &Range<usize>| {
-                let first = radar.end_range(end).start + elements.start;
-                let places = places(radar, cells, first + elements.len() / 2, rows, columns);
+        let is_held = 2 * blocks.len() * size_of::<Place>() <= MAX_TABLE_BYTES_PER_CELL;
+        let (rows, columns) = (ROWS_PER_BIN * radar.samples, (COLUMNS_PER_ELEMENT * longest).next_power_of_two());
+        let mut projector = Backprojector { cells, blocks: [vec![], vec![]], rows, columns, window, weight };
+        projector.blocks = End::BOTH.map(|end| {
+            let block = |elements: &Range<usize>| {
+                let places = is_held.then(|| projector.places(end, elements));
                 Block { elements: elements.clone(), places }
             };
-            blocks.iter().map(place).collect()
+            blocks.iter().map(block).collect()
         });
-        Backprojector { blocks, rows, columns, window, weight }
+        projector
     }
 
     /// Amplitude of each end at every cell, in phase where one reflector is there: 1 for a reflector whose samples have amplitude 1.
     pub fn amplitudes(&self, ends: &TwoEnds) -> [Array2<Complex64>; 2] {
         [(End::First, &self.blocks[0]), (End::Last, &self.blocks[1])].map(|(end, blocks)| {
-            let dim = blocks.first().map_or((0, 0), |b| b.places.dim());
-            let mut sum = Array2::zeros(dim);
-            for block in blocks {
-                let heard = ends.end(end).slice(s![block.elements.clone(), ..]);
-                self.add(block, &centred_spectrum(heard, &self.window, self.rows, self.columns), &mut sum);
+            let mut sum = Array2::zeros(self.cells.dim());
+            for Block { elements, places } in blocks {
+                let heard = ends.end(end).slice(s![elements.clone(), ..]);
+                let spectrum = centred_spectrum(heard, &self.window, self.rows, self.columns);
+                match places {
+                    Some(places) => self.add(places, &spectrum, &mut sum),
+                    None => self.add(&self.places(end, elements), &spectrum, &mut sum),
+                }
             }
             sum
         })
     }
 
-    fn add(&self, block: &Block, spectrum: &Array2<Complex64>, sum: &mut Array2<Complex64>) {
+    fn add(&self, places: &Array2<Place>, spectrum: &Array2<Complex64>, sum: &mut Array2<Complex64>) {
         let scale = 1.0 / self.weight;
-        Zip::from(sum).and(&block.places).par_for_each(|sum, place| {
+        Zip::from(sum).and(places).par_for_each(|sum, place| {
             let (r, c) = (place.row.floor(), place.column.floor());
             let (fr, fc) = (f64::from(place.row - r), f64::from(place.column - c));
             let (r, c) = (r as usize % self.rows, c as usize % self.columns);
@@ -137,25 +131,29 @@ impl Backprojector {
             *sum += (near * (1.0 - fr) + far * fr) * place.phase * scale;
         });
     }
-}
 
-fn places(radar: &Radar, cells: &GridCells<'_>, origin: usize, rows: usize, columns: usize) -> Array2<Place> {
-    let turns_per_metre = radar.turns_per_metre((radar.samples / 2) as f64);
-    // Turns from one element to the next for cos(theta) = 1.
-    let per_element = -radar.carrier_turns_per_metre() * radar.element_spacing_metres;
-    let pair = radar.pair(origin);
-    let mut places = Array2::from_elem(cells.dim(), Place::default());
-    places.axis_iter_mut(Axis(0)).into_par_iter().zip(&cells.range_metres).for_each(|(mut row, range_metres)| {
-        for (place, direction) in row.iter_mut().zip(&cells.directions) {
-            let seen = seen_by(pair, *range_metres, direction.cos_theta);
-            let bins = radar.bin_of_range(seen.range_metres);
-            let turns = ((per_element * seen.cos_theta + 0.5).rem_euclid(1.0)) * columns as f64;
-            *place = Place {
-                row: ((bins * ROWS_PER_BIN as f64) % rows as f64) as f32,
-                column: turns as f32,
-                phase: Complex64::cis(-TAU * (turns_per_metre * seen.range_metres).fract()),
-            };
-        }
-    });
-    places
+    /// Places of all cells in the spectrum of some elements of an end.
+    fn places(&self, end: End, elements: &Range<usize>) -> Array2<Place> {
+        let radar = self.cells.radar();
+        let (rows, columns) = (self.rows as f64, self.columns as f64);
+        let turns_per_metre = radar.turns_per_metre((radar.samples / 2) as f64);
+        // Turns from one element to the next for cos(theta) = 1.
+        let per_element = -radar.carrier_turns_per_metre() * radar.element_spacing_metres;
+        let pair = radar.pair(radar.end_range(end).start + elements.start + elements.len() / 2);
+        let mut places = Array2::from_elem(self.cells.dim(), Place::default());
+        let ranges = &self.cells.range_metres;
+        places.axis_iter_mut(Axis(0)).into_par_iter().zip(ranges).for_each(|(mut row, range_metres)| {
+            for (place, direction) in row.iter_mut().zip(&self.cells.directions) {
+                let seen = seen_by(pair, *range_metres, direction.cos_theta);
+                let bins = radar.bin_of_range(seen.range_metres);
+                let turns = (per_element * seen.cos_theta + 0.5).rem_euclid(1.0);
+                *place = Place {
+                    row: ((bins * ROWS_PER_BIN as f64) % rows) as f32,
+                    column: (turns * columns) as f32,
+                    phase: Complex64::cis(-TAU * (turns_per_metre * seen.range_metres).fract()),
+                };
+            }
+        });
+        places
+    }
 }

@@ -9,7 +9,6 @@ use ndarray::Array2;
 pub(super) struct GridCells<'a> {
     radar: &'a Radar,
     hears: Vec<bool>,
-    /// Range of each row, metres.
     pub range_metres: Vec<f64>,
     /// Directions; several may share a column of the map.
     pub directions: Vec<Direction>,

@@ -1,11 +1,12 @@
 //! Sparse reconstruction with an l1 penalty, by FISTA.
 
-use super::backprojector::{Backprojector, RangeWindow, no_tables};
+use super::backprojector::{Backprojector, RangeWindow};
 use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::Result;
 use crate::reconstruct::hearing::ends_noise_variance;
+use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
 use crate::reconstruct::{About, Family, Hears, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -229,12 +230,12 @@ impl Reconstructor for Fista {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {
-        no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        too_many_folds(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         let cells = GridCells::heard_by(radar, ends);
-        let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
+        let backprojector = Backprojector::new(&cells, RangeWindow::None);
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
         let noise_variance = ends_noise_variance(radar, ends, request.noise);
@@ -296,7 +297,7 @@ mod tests {
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let request = Request::default();
         let cells = GridCells::heard_by(&radar, &ends);
-        let heard = Backprojector::new(&radar, &cells, RangeWindow::None).amplitudes(&ends);
+        let heard = Backprojector::new(&cells, RangeWindow::None).amplitudes(&ends);
         let chosen = candidates(&radar, &cells, heard, 300, &[], 0.0);
         let problem =
             Problem::new(&cells, &chosen, &ends, Penalty::Part { part: 0.02, least: 0.0 }, &request.task).unwrap();

@@ -1,11 +1,12 @@
 //! The near-field matched filter of both ends.
 
-use super::backprojector::{Backprojector, RangeWindow, no_tables};
+use super::backprojector::{Backprojector, RangeWindow};
 use super::cells::GridCells;
 use crate::radar::{Layout, Radar};
 use crate::reconstruct::error::Result;
 use crate::reconstruct::hearing::ends_noise_variance;
 use crate::reconstruct::power::{focused_gain, of_power};
+use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::{About, Hears, Reconstruction, Reconstructor, Request, layout_matched_filter};
 use crate::signal::TwoEnds;
 use ndarray::Zip;
@@ -51,7 +52,7 @@ impl Reconstructor for MatchedFilter {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {
-        no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        too_many_folds(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn hears(&self) -> Hears {
@@ -65,7 +66,7 @@ impl Reconstructor for MatchedFilter {
             return Ok(Reconstruction::of_map(lambda));
         }
         let cells = GridCells::new(radar);
-        let backprojector = Backprojector::new(radar, &cells, RangeWindow::Hann);
+        let backprojector = Backprojector::new(&cells, RangeWindow::Hann);
         request.task.check()?;
         let [first, last] = backprojector.amplitudes(ends);
         request.task.set_progress(0.8);
@@ -93,7 +94,7 @@ mod tests {
         let (range, cos) = (radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64));
         let scene = Scene::of_points([(range * cos, range * (1.0 - cos * cos).sqrt())]);
         let ends = simulate(&radar, &scene, Floor::Exact, 0).unwrap().two_ends(&radar);
-        let [a, b] = Backprojector::new(&radar, &GridCells::new(&radar), RangeWindow::None).amplitudes(&ends);
+        let [a, b] = Backprojector::new(&GridCells::new(&radar), RangeWindow::None).amplitudes(&ends);
         let expected = radar.transmit_power_watts / (range * range);
         let sum = &a + &b;
         let (at, peak) = sum.indexed_iter().max_by(|a, b| a.1.norm().total_cmp(&b.1.norm())).unwrap();

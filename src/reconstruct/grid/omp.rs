@@ -1,12 +1,13 @@
 //! Orthogonal matching pursuit on the near-field polar grid.
 
-use super::backprojector::{Backprojector, RangeWindow, no_tables};
+use super::backprojector::{Backprojector, RangeWindow};
 use super::cells::GridCells;
 use super::pursuit::{MOST_RELAXED, Pick, Pursuit, energy, unit_gains};
 use crate::radar::Radar;
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::Result;
 use crate::reconstruct::hearing::ends_noise_variance;
+use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
 use crate::reconstruct::{About, Family, Hears, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
@@ -58,12 +59,12 @@ impl Omp {
         if radar.samples > 1 {
             cells.range_metres[0] = radar.max_range_metres();
         }
-        let backprojector = Backprojector::new(radar, &cells, RangeWindow::None);
+        let backprojector = Backprojector::new(&cells, RangeWindow::None);
         let (bins, directions) = cells.dim();
         let noise_level = 100f64.powf(decades_above_cells(noise_variance, bins * directions));
         let worth = noise_level.max(all * LEAST_OF_ALL);
         let mut settled = all;
-        let mut pursuit = Pursuit::new(radar, cells, &samples);
+        let mut pursuit = Pursuit::new(radar, &cells, &samples);
         while pursuit.picks.len() < self.max_atoms && energy(&pursuit.residual) > enough {
             request.task.check()?;
             request.task.set_progress(0.9 * pursuit.picks.len() as f32 / self.max_atoms as f32);
@@ -143,7 +144,7 @@ impl Reconstructor for Omp {
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {
-        no_tables(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
+        too_many_folds(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {

@@ -47,7 +47,7 @@ pub(super) struct Pick {
 
 pub(super) struct Pursuit<'a> {
     radar: &'a Radar,
-    cells: GridCells<'a>,
+    cells: &'a GridCells<'a>,
     pub picks: Vec<Pick>,
     /// Orthonormal basis of the picked atoms.
     basis: Vec<Vec<Complex64>>,
@@ -56,7 +56,7 @@ pub(super) struct Pursuit<'a> {
 
 impl<'a> Pursuit<'a> {
     /// The start, without picks: the residual is `samples`.
-    pub fn new(radar: &'a Radar, cells: GridCells<'a>, samples: &[Complex64]) -> Self {
+    pub fn new(radar: &'a Radar, cells: &'a GridCells<'a>, samples: &[Complex64]) -> Self {
         let (picks, basis) = (Vec::new(), Vec::new());
         Pursuit { radar, cells, picks, basis, residual: samples.to_vec() }
     }
@@ -75,7 +75,7 @@ impl<'a> Pursuit<'a> {
 
     /// `atom` moved off the grid to where it explains most of `samples`, over all nearby directions that only the phase between the ends distinguishes.
     pub fn refined(&self, mut atom: ArrayEcho, samples: &[Complex64]) -> ArrayEcho {
-        let (radar, cells) = (self.radar, &self.cells);
+        let (radar, cells) = (self.radar, self.cells);
         let apart_metres = (radar.elements - radar.end_elements) as f64 * radar.element_spacing_metres;
         let tooth_cos = 1.0 / (apart_metres * radar.carrier_turns_per_metre().abs());
         for _ in 0..WALKS {
@@ -105,7 +105,7 @@ impl<'a> Pursuit<'a> {
             let mut own = self.residual.clone();
             subtract(&mut own, &atom.unit_samples(), -gain);
             let atom =
-                if compares { self.refined(atom, &own) } else { climbed(&self.cells, atom, &own, MOVING_STEPS).1 };
+                if compares { self.refined(atom, &own) } else { climbed(self.cells, atom, &own, MOVING_STEPS).1 };
             let unit = atom.unit_samples();
             let gain = inner(&unit, &own);
             subtract(&mut own, &unit, gain);
