@@ -1,10 +1,10 @@
-//! Kinds of failure: every object of a scene found, missed, merged with a neighbour or on the wrong tooth of the comb; and ghosts, blobs of an
-//! output where the scene has nothing.
+//! Verdicts on the objects of a scene: each is found, missed, merged with a neighbour, on the wrong tooth of the comb, or hidden. A *ghost* is a blob
+//! of the output at a place where the scene has no object.
 //!
-//! An object's *footprint* is the set of cells at which it alone, seen by the whole array without noise, exceeds the level at which the scene's
-//! target is thresholded. The footprint of a body also has each of its ends, corners and glints that stands 10 dB out of the target: the end of
-//! a wall lies 30 to 60 dB below its glint, and belongs to the wall all the same. All verdicts compare footprints with the output above the
-//! method's threshold, so that they hold for methods with and without reflectors.
+//! An object's *footprint* is the set of cells where the whole array's map of the object alone, without noise, exceeds the target's threshold. The
+//! footprint of a body also contains the cells of its ends, corners and glints that are 10 dB above their surroundings in the target: the end of a
+//! wall is 30 to 60 dB weaker than its glint, but belongs to the wall. All verdicts compare footprints with the output above the method's threshold,
+//! so that they hold for methods with and without reflectors.
 
 use super::TARGET_ETA;
 use super::blobs::Blobs;
@@ -18,18 +18,18 @@ use crate::signal::plan::amplitude_bound;
 use crate::signal::{Plan, beat_signal};
 use ndarray::Axis;
 
-/// Part of a footprint that must be detected for the object to count as found.
+/// Least part of a footprint, 0 to 1, that must be detected for the object to count as found.
 const MIN_FOUND_PART: f64 = 0.5;
 /// Error of a footprint's simulation, relative to the object's amplitudes.
-const TOLERANCE: f64 = 1e-6;
-/// Largest shift of a wrong tooth to either side, columns. The two ends' ambiguity has a peak about every column.
+const SIMULATION_TOLERANCE: f64 = 1e-6;
+/// Largest shift of a wrong tooth to either side, columns. The ambiguity function of the two ends has a peak about every column.
 const MAX_TOOTH_COLUMNS: i32 = 8;
-/// An output belongs to another tooth when the target moved there leaves at most this part of the squared error.
-const LEFT_BY_TOOTH: f64 = 0.5;
-/// Cells that a detection may lie from a footprint without being a ghost: side lobes and smeared edges.
-const GHOST_MARGIN: usize = 3;
-/// Blobs of fewer cells are no ghosts.
-const GHOST_CELLS: usize = 8;
+/// Largest squared error of the output against the shifted target, over that against the target, for which an object is on another tooth.
+const MAX_TOOTH_ERROR_RATIO: f64 = 0.5;
+/// Largest distance of a blob from a footprint at which it is no ghost, rows and columns: side lobes and smeared edges.
+const GHOST_MARGIN_CELLS: usize = 3;
+/// Least number of cells of a ghost.
+const MIN_GHOST_CELLS: usize = 8;
 
 /// A cell of a map: range bin and column.
 pub type CellIndex = [usize; 2];
@@ -37,26 +37,26 @@ pub type CellIndex = [usize; 2];
 /// Verdict on an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fate {
-    /// Half of its footprint or more is detected; of a body, its strongest echo or half of those that stand out. No other fate applies.
+    /// Half of its footprint or more is detected. Of a body, its strongest echo or half of its echoes that stand out. No other verdict applies.
     Found,
-    /// Less of its footprint is detected.
+    /// Less of its footprint, or of its echoes, is detected.
     Missed,
-    /// One blob covers the object and another one, which the target shows apart.
+    /// One blob of the output covers this object and another one, which are two blobs of the target.
     Merged {
         /// Index of the other object in the scene.
         with: usize,
     },
-    /// The object is shown shifted along the columns, on another tooth of the two ends' ambiguity.
+    /// The output shows the object shifted along the columns, on another peak of the two ends' ambiguity function.
     WrongTooth {
-        /// The shift, columns.
+        /// The shift, columns; positive to the right.
         columns: i32,
     },
-    /// The object is too weak beside the others: the target itself doesn't show it.
+    /// The object is too weak beside the others: no cell of the target exceeds the threshold for it.
     Hidden,
 }
 
 impl Fate {
-    /// Name in tables.
+    /// Name of the verdict in tables.
     pub fn name(self) -> &'static str {
         match self {
             Fate::Found => "found",
@@ -76,34 +76,34 @@ impl Fate {
 /// A blob of the output where the scene has nothing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ghost {
-    /// Cells of the blob.
+    /// Cells of the blob, (range bin, column).
     pub cells: Vec<CellIndex>,
 }
 
-/// Fates of all objects of a scene, and the ghosts of an output.
+/// Verdicts on all objects of a scene, and the ghosts of an output.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Failures {
-    /// The fate of every object, in the scene's order.
+    /// The verdict on every object, in the scene's order.
     pub objects: Vec<Fate>,
-    /// Part of each object's footprint that is detected at the object's place, of a body the part of its echoes that stand out, 0 to 1; 0 for an
-    /// object without a footprint.
+    /// Detected part of each object's footprint, 0 to 1, without a shift. For a body, the detected part of its echoes that stand out. 0 for an object
+    /// without a footprint.
     pub covered: Vec<f64>,
     /// Blobs far from every object and from every blob of the target.
     pub ghosts: Vec<Ghost>,
 }
 
 impl Failures {
-    /// Objects that are [`Fate::Missed`].
+    /// Number of objects that are [`Fate::Missed`].
     pub fn missed(&self) -> usize {
         self.count(|fate| fate == Fate::Missed)
     }
 
-    /// Number of objects whose fate satisfies `is`.
+    /// Number of objects whose verdict satisfies `is`.
     pub fn count(&self, is: impl Fn(Fate) -> bool) -> usize {
         self.objects.iter().filter(|fate| is(**fate)).count()
     }
 
-    /// The headline: numbers of the objects that the target shows, of those found, and of ghosts.
+    /// One line for the user: the numbers of objects found, of objects that the target shows, and of ghosts.
     pub fn verdict(&self) -> String {
         let shown = self.objects.len() - self.count(|fate| fate == Fate::Hidden);
         format!("{} of {shown} found, {} false", self.count(|fate| fate == Fate::Found), self.ghosts.len())
@@ -113,14 +113,16 @@ impl Failures {
 /// The footprints of all objects of a scene.
 #[derive(Debug, Clone)]
 pub struct Footprints {
+    /// The footprint of each object.
     objects: Vec<Vec<CellIndex>>,
-    /// For each body, the cells of each of its echoes that stands out, the strongest first.
+    /// For each object, the cells of each of its echoes that stand out, the strongest first. Empty for an object that is no body.
     echoes: Vec<Vec<Vec<CellIndex>>>,
+    /// Blobs of the target.
     target: Blobs,
 }
 
 impl Footprints {
-    /// The footprints in `scene`, whose target map is `target`, with `scale` between its decades and Lambda.
+    /// The footprints in `scene`, whose target is `target`, Lambda as `[range bins, columns]`. `scale` converts decades to its Lambda.
     ///
     /// `scene` must have passed [`Scene::validate`].
     pub fn new(radar: &Radar, scene: &Scene, target: &RangeAngleMap, scale: LambdaScale) -> Footprints {
@@ -137,31 +139,31 @@ impl Footprints {
         Footprints { objects, echoes, target: Blobs::of(&shown) }
     }
 
-    /// The cells of every object, in the scene's order; empty for one that the target doesn't show.
+    /// The footprint of every object, in the scene's order; empty for one that the target doesn't show.
     pub fn cells(&self) -> &[Vec<CellIndex>] {
         &self.objects
     }
 
-    /// Judges `output`, thresholded at `eta`, against `target`.
+    /// Verdicts on `output`, with the threshold `eta` on Lambda, against `target`; both are `[range bins, columns]`.
     pub fn judge(&self, target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Failures {
         self.judge_cells(target, output, &output.above(eta))
     }
 
-    /// Judges `output`, of which `detected` are the detections, against `target`.
+    /// Verdicts on `output` with the detections `detected`, against `target`; all are `[range bins, columns]`.
     pub fn judge_cells(&self, target: &RangeAngleMap, output: &RangeAngleMap, detected: &Mask) -> Failures {
         let found = Blobs::of(detected);
-        let alone = self.objects.iter().zip(&self.echoes).map(|(cells, echoes)| {
-            let (fate, part) = alone(cells, target, output, &found);
+        let verdicts = self.objects.iter().zip(&self.echoes).map(|(cells, echoes)| {
+            let (fate, part) = verdict_on_footprint(cells, target, output, &found);
             if echoes.is_empty() || matches!(fate, Fate::WrongTooth { .. }) {
                 (fate, part)
             } else {
-                body(echoes, &found)
+                verdict_on_body(echoes, &found)
             }
         });
-        let (mut objects, covered): (Vec<Fate>, Vec<f64>) = alone.unzip();
+        let (mut objects, covered): (Vec<Fate>, Vec<f64>) = verdicts.unzip();
         for i in 0..objects.len() {
             if objects[i] == Fate::Found
-                && let Some(with) = self.merged(i, &objects, &found)
+                && let Some(with) = self.merged_with(i, &objects, &found)
             {
                 objects[i] = Fate::Merged { with };
             }
@@ -170,7 +172,8 @@ impl Footprints {
         Failures { objects, covered, ghosts }
     }
 
-    fn merged(&self, i: usize, fates: &[Fate], found: &Blobs) -> Option<usize> {
+    /// Index of an object that the output shows in one blob with object `i`, but the target doesn't.
+    fn merged_with(&self, i: usize, fates: &[Fate], found: &Blobs) -> Option<usize> {
         let blob = |blobs: &Blobs, of: usize| blobs.most_of(&self.objects[of]);
         let (shown, seen) = (blob(&self.target, i)?, blob(found, i)?);
         (0..fates.len())
@@ -178,37 +181,44 @@ impl Footprints {
             .find(|&o| blob(found, o) == Some(seen) && blob(&self.target, o).is_some_and(|other| other != shown))
     }
 
+    /// Blobs of the output that are near no footprint and no blob of the target.
     fn ghosts(&self, found: &Blobs, fates: &[Fate]) -> Vec<Ghost> {
         let (rows, columns) = found.labels.dim();
-        let mut taken = vec![false; found.cells.len() + 1];
-        let mut take = |[row, column]: CellIndex, shift: i32| {
-            let near = GHOST_MARGIN as i32;
-            for r in row.saturating_sub(GHOST_MARGIN)..(row + GHOST_MARGIN + 1).min(rows) {
+        let mut explained = vec![false; found.cells.len() + 1];
+        let mut explain = |[row, column]: CellIndex, shift: i32| {
+            let near = GHOST_MARGIN_CELLS as i32;
+            for r in row.saturating_sub(GHOST_MARGIN_CELLS)..(row + GHOST_MARGIN_CELLS + 1).min(rows) {
                 for c in -near..=near {
-                    taken[found.labels[[r, moved(column, c + shift, columns)]] as usize] = true;
+                    explained[found.labels[[r, shifted_column(column, c + shift, columns)]] as usize] = true;
                 }
             }
         };
-        // Blobs of the target beside the objects, from side lobes and noise, are no ghosts either.
-        self.target.cells.iter().flatten().for_each(|&cell| take(cell, 0));
+        // Blobs of the target away from the objects, of side lobes and noise, explain blobs of the output too.
+        self.target.cells.iter().flatten().for_each(|&cell| explain(cell, 0));
         for (cells, fate) in self.objects.iter().zip(fates) {
             let shift = if let Fate::WrongTooth { columns } = fate { *columns } else { 0 };
-            cells.iter().for_each(|&cell| take(cell, shift));
+            cells.iter().for_each(|&cell| explain(cell, shift));
         }
-        let blobs = found.cells.iter().zip(&taken[1..]);
+        let blobs = found.cells.iter().zip(&explained[1..]);
         blobs
-            .filter(|(cells, taken)| !**taken && cells.len() >= GHOST_CELLS)
+            .filter(|(cells, explained)| !**explained && cells.len() >= MIN_GHOST_CELLS)
             .map(|(cells, _)| Ghost { cells: cells.clone() })
             .collect()
     }
 }
 
-fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, found: &Blobs) -> (Fate, f64) {
+/// Verdict on an object by its footprint `cells`, without regard to the other objects, and the detected part of the footprint.
+fn verdict_on_footprint(
+    cells: &[CellIndex],
+    target: &RangeAngleMap,
+    output: &RangeAngleMap,
+    found: &Blobs,
+) -> (Fate, f64) {
     if cells.is_empty() {
         return (Fate::Hidden, 0.0);
     }
     let columns = target.lambda.ncols();
-    let at = |[row, column]: CellIndex, shift: i32| [row, moved(column, shift, columns)];
+    let at = |[row, column]: CellIndex, shift: i32| [row, shifted_column(column, shift, columns)];
     let covered = |shift: i32| {
         let hits = cells.iter().filter(|&&cell| found.labels[at(cell, shift)] != 0).count();
         hits as f64 / cells.len() as f64
@@ -222,7 +232,9 @@ fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, fo
     let best = (-MAX_TOOTH_COLUMNS..=MAX_TOOTH_COLUMNS)
         .map(|shift| (shift, error(shift)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
-        .filter(|(shift, error)| *shift != 0 && *error <= LEFT_BY_TOOTH * here && covered(*shift) >= MIN_FOUND_PART);
+        .filter(|(shift, error)| {
+            *shift != 0 && *error <= MAX_TOOTH_ERROR_RATIO * here && covered(*shift) >= MIN_FOUND_PART
+        });
     let fate = match best {
         Some((columns, _)) => Fate::WrongTooth { columns },
         None if part >= MIN_FOUND_PART => Fate::Found,
@@ -231,34 +243,37 @@ fn alone(cells: &[CellIndex], target: &RangeAngleMap, output: &RangeAngleMap, fo
     (fate, part)
 }
 
-fn body(echoes: &[Vec<CellIndex>], found: &Blobs) -> (Fate, f64) {
+/// Verdict on a body by the cells of its echoes, and the detected part of the echoes.
+fn verdict_on_body(echoes: &[Vec<CellIndex>], found: &Blobs) -> (Fate, f64) {
     let is_seen = |cells: &Vec<CellIndex>| cells.iter().any(|cell| found.labels[*cell] != 0);
     let part = echoes.iter().filter(|cells| is_seen(cells)).count() as f64 / echoes.len() as f64;
     (if part >= MIN_FOUND_PART || is_seen(&echoes[0]) { Fate::Found } else { Fate::Missed }, part)
 }
 
-fn moved(column: usize, by: i32, columns: usize) -> usize {
+/// The column `by` columns to the right; columns wrap.
+fn shifted_column(column: usize, by: i32, columns: usize) -> usize {
     (column as i64 + i64::from(by)).rem_euclid(columns as i64) as usize
 }
 
-/// The cells at which an object alone, in the part that other bodies don't hide, without noise, exceeds `level` (a magnitude).
+/// The cells where the whole array's map of an object alone exceeds the magnitude `level`, without noise. The parts of the object that other bodies
+/// hide don't count.
 fn footprint(radar: &Radar, seen: &SeenObject, level: f64) -> Vec<CellIndex> {
     let echoing = Echoing::seen(radar, std::slice::from_ref(seen));
     let amplitude = amplitude_bound(radar, &echoing);
-    let plan = Plan::cheapest(echoing.len(), amplitude, TOLERANCE);
+    let plan = Plan::cheapest(echoing.len(), amplitude, SIMULATION_TOLERANCE);
     let signal = beat_signal(radar, &echoing, &plan);
     if radar.focus_off_line && !radar.is_on_line() {
         let map = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).cells;
         return map.indexed_iter().filter(|(_, v)| v.norm() > level).map(|((bin, column), _)| [bin, column]).collect();
     }
     let profiles = range_transform(radar, &signal).profiles;
-    // No cell of a row can exceed the sum of its profiles.
+    // The magnitude of a cell is at most the sum of the magnitudes of its range bin's profiles.
     let scale = (radar.elements as f64).sqrt().recip();
     let window = radar.window.weights(radar.elements);
-    let most = |bin: usize| -> f64 {
+    let largest_magnitude = |bin: usize| -> f64 {
         profiles.column(bin).iter().zip(&window).map(|(p, w)| p.norm() * w.abs()).sum::<f64>() * scale
     };
-    let bins: Vec<usize> = (0..radar.samples).filter(|&bin| most(bin) > level).collect();
+    let bins: Vec<usize> = (0..radar.samples).filter(|&bin| largest_magnitude(bin) > level).collect();
     let rows = RangeProfiles { profiles: profiles.select(Axis(1), &bins) };
     let map = angle_transform(radar, &rows, Aperture::Full);
     map.cells.indexed_iter().filter(|(_, v)| v.norm() > level).map(|((row, column), _)| [bins[row], column]).collect()
@@ -286,7 +301,8 @@ mod tests {
 
     fn shifted(map: &RangeAngleMap, by: i32) -> RangeAngleMap {
         let columns = map.lambda.ncols();
-        let lambda = ndarray::Array2::from_shape_fn(map.lambda.dim(), |(r, c)| map.lambda[[r, moved(c, -by, columns)]]);
+        let lambda =
+            ndarray::Array2::from_shape_fn(map.lambda.dim(), |(r, c)| map.lambda[[r, shifted_column(c, -by, columns)]]);
         RangeAngleMap { lambda }
     }
 
@@ -303,7 +319,7 @@ mod tests {
     const TWO: [(f64, f64); 2] = [(-4.0, 12.0), (5.0, 20.0)];
 
     #[test]
-    fn what_is_left_out_is_missed() {
+    fn an_object_that_the_output_lacks_is_missed() {
         let (target, footprints) = scene(&TWO);
         let output = without(&target, &footprints.cells()[1]);
         let found = footprints.judge(&target, &output, TARGET_ETA);
@@ -329,7 +345,7 @@ mod tests {
         output.lambda.slice_mut(ndarray::s![100..104, 200..206]).fill(1.0);
         output.lambda[[50, 50]] = 1.0;
         let found = footprints.judge(&target, &output, TARGET_ETA);
-        assert_eq!((found.objects[0], found.ghosts.len()), (Fate::Found, 1), "a speck is no ghost");
+        assert_eq!((found.objects[0], found.ghosts.len()), (Fate::Found, 1), "one cell is no ghost");
         assert_eq!(found.ghosts[0].cells.len(), 24);
     }
 

@@ -1,7 +1,8 @@
-//! The thesis' encoder-decoder: two towers of dilated circular convolutions, joined, and transposed convolutions back up.
+//! The thesis' encoder-decoder. Its encoder is two parallel towers of dilated convolutions with circular padding, of 3x3 and of 5x5 kernels. Their
+//! outputs are concatenated, and a decoder of transposed convolutions restores the size of the map.
 //!
-//! Five levels of 64 filters a tower in the thesis: 1.62 M parameters, 40.5 GMAC. Width and depth are configurable; two cores can
-//! train 16 filters (3.4 GMAC). Follows the author's published program: dilation 2, circular padding on both axes, no bias.
+//! In the thesis each tower has five levels of 64 filters: 1.62 million parameters, 40.5 GMAC a map. Width and depth are configurable: two processor
+//! cores can train 16 filters (3.4 GMAC). Dilation 2, circular padding on both axes and no bias are as in the author's published program.
 
 use super::students::Student;
 use super::weights::{WeightFile, WeightsError};
@@ -20,22 +21,22 @@ use burn::tensor::{Device, Tensor};
 use ndarray::Array2;
 use serde::{Deserialize, Serialize};
 
-/// Name of the tower of 3x3 convolutions in the author's program.
-const FIRST_TOWER: &str = "down.layer3x3";
+/// Prefix of the tensor names of the 3x3 tower, in the author's program and in this crate.
+const TOWER_3X3_PREFIX: &str = "down.layer3x3";
 
 /// Dilation of every convolution of the towers.
 const DILATION: usize = 2;
 
-/// Width and depth.
+/// Width and depth of [`Thesis`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThesisConfig {
-    /// Filters of each tower; the decoder has twice as many.
+    /// Filters of each tower, 64 in the thesis. The decoder has twice as many.
     pub filters: usize,
-    /// Halvings of the map, 5 in the thesis.
+    /// Levels, each of which halves the map on both axes; 5 in the thesis.
     pub levels: usize,
-    /// Whether training starts with the last batch norm at [`ALIVE_OUTPUT_MOMENTS`], near the targets' mean and deviation, instead of at 0 +- 1
-    /// as in the author's program. With the latter, half of the cells start below zero, where the final ReLU has no gradient.
+    /// Whether training starts with mean and standard deviation [`ALIVE_OUTPUT_MOMENTS`] of the last batch norm, near those of the targets. In the
+    /// author's program they are 0 and 1: half of the cells start below zero, where the final ReLU has no gradient.
     #[serde(default)]
     pub alive_output: bool,
 }
@@ -46,7 +47,10 @@ impl ThesisConfig {
     /// Most levels that a recipe or a weight file may ask for.
     pub const MAX_LEVELS: usize = 8;
 
-    /// Refuses a radar whose maps can't be halved so often.
+    /// Checks that maps of `radar` can be halved `levels` times.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Unusable`] where the numbers of samples or elements are no multiples of `2^levels`.
     pub(super) fn check(&self, radar: &Radar) -> Result<(), ReconstructError> {
         let (Radar { samples, elements, .. }, levels, least) = (radar, self.levels, 1 << self.levels);
         if samples.is_multiple_of(least) && elements.is_multiple_of(least) {
@@ -59,7 +63,7 @@ impl ThesisConfig {
     }
 }
 
-/// Mean and standard deviation of the output at the start of training with [`ThesisConfig::alive_output`].
+/// Mean and standard deviation of the output, before the ReLU, at the start of training with [`ThesisConfig::alive_output`].
 const ALIVE_OUTPUT_MOMENTS: [f64; 2] = [0.45, 0.15];
 
 impl Default for ThesisConfig {
@@ -68,30 +72,35 @@ impl Default for ThesisConfig {
     }
 }
 
+/// A level of a tower: convolution, batch norm, ReLU, maximum over 2x2 cells. `norm` is `None` after folding.
 #[derive(Module, Debug)]
 struct DownStage {
     conv: Conv2d,
     norm: Option<BatchNorm>,
 }
 
+/// A level of the decoder: transposed convolution, batch norm, ReLU. `norm` is `None` after folding.
 #[derive(Module, Debug)]
 struct UpStage {
     conv: ConvTranspose2d,
     norm: Option<BatchNorm>,
 }
 
+/// The encoder. The fields have the names of the tensors in weight files.
 #[derive(Module, Debug)]
 struct Down {
     layer3x3: Vec<DownStage>,
     layer5x5: Vec<DownStage>,
 }
 
+/// The decoder. The field has the name of the tensors in weight files.
 #[derive(Module, Debug)]
 struct Up {
     upconv: Vec<UpStage>,
 }
 
-/// The thesis' network, `[batch, 4, range bins, columns]` to `[batch, 1, range bins, columns]`.
+/// The thesis' network, from `[batch, 4, range bins, columns]` to Lambda, `[batch, 1, range bins, columns]`. The input is that of
+/// [`mag_phase`].
 #[derive(Module, Debug)]
 pub struct Thesis {
     down: Down,
@@ -157,14 +166,14 @@ impl Student for Thesis {
 }
 
 impl Thesis {
-    /// Width and depth of the network whose weights `file` holds.
+    /// Width and depth of the network whose weights are in `file`.
     ///
     /// # Errors
-    /// [`WeightsError`] when it lacks the first convolution.
+    /// [`WeightsError`] when the first convolution is missing or has more than [`ThesisConfig::MAX_FILTERS`] filters.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
         let stage = |level: usize| {
-            let ours = file.shape(&format!("down.layer3x3.{level}.conv.weight"));
-            ours.or_else(|| file.shape(&format!("{FIRST_TOWER}.{level}.0.weight")))
+            let in_this_crate = file.shape(&format!("{TOWER_3X3_PREFIX}.{level}.conv.weight"));
+            in_this_crate.or_else(|| file.shape(&format!("{TOWER_3X3_PREFIX}.{level}.0.weight")))
         };
         let problem = match stage(0) {
             Some(&[filters @ 1..=ThesisConfig::MAX_FILTERS, ..]) => {
@@ -174,13 +183,13 @@ impl Thesis {
             Some(shape) => format!("has shape {shape:?}; expected 1 to {} filters", ThesisConfig::MAX_FILTERS),
             None => "is missing; expected the state of the thesis' network".to_owned(),
         };
-        Err(file.bad_tensor(&format!("{FIRST_TOWER}.0.0.weight"), problem))
+        Err(file.bad_tensor(&format!("{TOWER_3X3_PREFIX}.0.0.weight"), problem))
     }
 
-    /// A network with the weights of `file`: ours, or the author's `MultiFilter.state_dict()`.
+    /// A network with the weights of `file`: a file of this crate, or the author's `MultiFilter.state_dict()`.
     ///
     /// # Errors
-    /// [`WeightsError`] when they don't fit.
+    /// [`WeightsError`] when a tensor is missing or has another shape than `config` expects.
     pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
         let mut network = Thesis::fresh(config, device);
         let renamed = Thesis::in_our_names(file)?;
@@ -188,7 +197,7 @@ impl Thesis {
         Ok(network)
     }
 
-    /// The bytes of `file` with this crate's tensor names. The names of the author's PyTorch program are replaced.
+    /// The bytes of `file`, with this crate's tensor names in place of those of the author's PyTorch program.
     ///
     /// # Errors
     /// [`WeightsError`] if the header can't be written again.
@@ -196,11 +205,12 @@ impl Thesis {
         file.renamed(from_pytorch)
     }
 
+    /// Whether a tensor called `name` is not needed: PyTorch's counts of batches.
     pub(super) fn ignores(name: &str) -> bool {
         name.ends_with("num_batches_tracked")
     }
 
-    /// The same function with every batch norm folded into its convolution, for inference.
+    /// The same network for inference, with every batch norm folded into the convolution before it.
     pub fn folded(mut self) -> Self {
         let Down { layer3x3, layer5x5 } = &mut self.down;
         for DownStage { conv, norm } in layer3x3.iter_mut().chain(layer5x5) {
@@ -213,18 +223,18 @@ impl Thesis {
     }
 }
 
-/// Takes a batch norm into the weights and the bias of the convolution before it, whose dimension `outputs` has the norm's channels.
+/// Folds a batch norm into the weights and the bias of the convolution before it. The weights' dimension `output_dim` is that of the output channels.
 fn fold(
     norm: &mut Option<BatchNorm>,
     weight: &mut Param<Tensor<4>>,
     bias: &mut Option<Param<Tensor<1>>>,
-    outputs: usize,
+    output_dim: usize,
 ) {
     let Some(norm) = norm.take() else { return };
     let scale = norm.gamma.val() / (norm.running_var.value() + norm.epsilon).sqrt();
     let shift = norm.beta.val() - norm.running_mean.value() * scale.clone();
     let mut shape = [1; 4];
-    shape[outputs] = scale.dims()[0];
+    shape[output_dim] = scale.dims()[0];
     *weight = weight.clone().map(|w| w * scale.reshape(shape));
     *bias = Some(Param::from_tensor(shift));
 }
@@ -246,7 +256,7 @@ impl UpStage {
     }
 }
 
-/// Continues both ends of a dimension circularly by `n`, repeating where the dimension is shorter than that.
+/// Pads both ends of dimension `dim` circularly by `n` cells. The cells repeat where the dimension is shorter than `n`.
 fn wrap(x: Tensor<4>, dim: usize, n: usize) -> Tensor<4> {
     let size = x.dims()[dim];
     let n = n.min(size * 8);
@@ -256,7 +266,7 @@ fn wrap(x: Tensor<4>, dim: usize, n: usize) -> Tensor<4> {
     Tensor::cat(edge(size - part).into_iter().chain(whole).chain(edge(0)).collect(), dim)
 }
 
-/// Our name of one of the author's tensors: the convolution and the batch norm of a stage are its items 0 and 1.
+/// This crate's name of a tensor of the author's program, where a stage's convolution and batch norm are its items 0 and 1.
 fn from_pytorch(name: &str) -> String {
     let mut parts: Vec<&str> = name.split('.').collect();
     if let [.., _, index, _] = parts.as_mut_slice() {
@@ -279,7 +289,7 @@ mod tests {
     const REFERENCE: &[u8] = include_bytes!("../../tests/data/thesis_reference.safetensors");
 
     #[test]
-    fn reproduces_pytorch() {
+    fn the_network_reproduces_pytorch() {
         let device = Device::flex();
         let config = ThesisConfig { filters: 3, levels: 3, alive_output: false };
         let file = WeightFile::parse("weights", WEIGHTS).unwrap();

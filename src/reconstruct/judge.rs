@@ -1,45 +1,51 @@
-//! Which of two maps of one scene to believe, cell by cell: that of the objects which a search found, or that of a network.
+//! Combination of two maps of one scene, cell by cell: the map of the objects that a search found, and the map of a network.
 //!
-//! The search's map is exact where its objects are right, and says so: nothing is left of the samples when they are drawn. The network's is
-//! about right everywhere, and says how far off it expects to be. So the search is believed where it leaves nothing. Elsewhere the two are
-//! averaged, and the more they differ beyond the network's doubt, the more the network is believed. White noise hides what the search may lack:
-//! over it nothing left is no proof, so that the network counts everywhere, and alone where the two contradict each other.
+//! The search's map is exact where its objects are right: once they are subtracted, the residual of the samples is zero. The network's map has a
+//! moderate error everywhere, and the network estimates it as its doubt. So the search's map has all weight where the residual vanishes. Elsewhere
+//! the maps are averaged. The network's weight grows with their difference over the network's doubt. White noise may hide objects that the search
+//! lacks, so that a vanishing residual proves nothing. Over noise the network has a weight in every cell, and all weight where the two maps
+//! contradict each other.
 
 use crate::maps::RangeAngleMap;
 use ndarray::{Array1, Array2, ArrayView1, Axis, Zip};
 use rayon::prelude::*;
 
-/// Residual over the drawn map, in decades of power, from which the search's map no longer has all weight, and from which it has least: a tenth
-/// of the power is half a decibel of the cell.
-const LEFT_DECADES: [f32; 2] = [-3.0, -1.0];
+/// Bounds of the residual over the drawn map, decades of power. Below the first the search's map has all weight, above the second the least. A
+/// residual of a tenth of the power changes the cell by half a decibel.
+const RESIDUAL_DECADES: [f32; 2] = [-3.0, -1.0];
 
-/// Shift of these bounds, in decades, where a dynamic range cuts off the dark cells. In bright ones the network draws narrow lobes too dark.
+/// Shift of [`RESIDUAL_DECADES`], decades of power, where a dynamic range cuts off the dark cells. In bright cells the network draws narrow lobes
+/// too dark.
 const BRIGHT_SHIFT_DECADES: f32 = 3.0;
 
-/// Parts of the shown cells with more residual than drawn power between which the weight of the search's map falls everywhere: such a scene is
-/// not made of points and rows. Cells that a dynamic range cuts off don't count.
+/// Bounds of the part of the shown cells that have more residual than drawn power, 0 to 1. Between them the weight of the search's map falls to
+/// the least in every cell: such a scene is not made of points and rows. Cells that a dynamic range cuts off don't count.
 const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
 
-/// Weight of the network where the search has a residual and the two agree. Their errors differ, so that the mean is better than either, and the
-/// network's error is the smaller one there.
+/// Weight of the network's map, 0 to 1, where the search has a residual and the two maps agree. Their errors are different, so that a mean has a
+/// smaller error than either. The network's error is the smaller one there.
 const AGREED_WEIGHT: f32 = 0.7;
 
-/// Mean square of the difference, over that of the network's expected error, from which the two disagree, and from which the network has all weight.
-const CONTRADICTION: [f32; 2] = [1.0, 3.0];
+/// Bounds of the mean squared difference of the maps over the network's expected squared error. Below the first the maps agree, above the second
+/// the network's map has all weight.
+const CONTRADICTION_RATIO: [f32; 2] = [1.0, 3.0];
 
-/// How far a cell over white noise counts as unexplained at least, 0 to 1.
-const HIDDEN_PART: f32 = 0.5;
+/// Degree to which every cell over white noise counts as unexplained at least, 0 to 1.
+const MIN_UNEXPLAINED_OVER_NOISE: f32 = 0.5;
 
-/// Standard deviations in a doubt, which nine of ten normal errors stay below.
+/// A doubt in standard deviations: the magnitude of nine of ten normal errors is smaller.
 const DOUBT_DEVIATIONS: f32 = 1.645;
 
-/// Range bins and columns to each side over which the difference of the maps is averaged: the width of a lobe of the ends' maps.
+/// Range bins and columns to each side over which the squared difference of the maps is averaged: the size of a lobe of the ends' maps.
 const MEAN_SIDE_CELLS: [usize; 2] = [2, 8];
 
-/// Weight of `network`'s map in each cell, 0 to 1, over `drawn`, the search's; both are Lambda on one scale, `[range bins, columns]`.
-/// `left_decades` is what the search leaves ([`Found::left_decades`](super::search::Found::left_decades)), and `doubt` what nine of ten
-/// errors of the network stay below. A network without doubt is believed wherever something is left. Cells whose Lambda lies deeper below 1
-/// than `shown_part` are cut off in what is shown. `is_hidden` says whether noise may hide what the search lacks.
+/// Weight of the map `network` in each cell, 0 to 1. The rest is the weight of `drawn`, the search's map. All arrays are `[range bins, columns]`, and
+/// both maps are Lambda on one scale.
+///
+/// `left_decades` is the search's residual over its drawn map, decades of power
+/// ([`Found::left_decades`](super::search::Found::left_decades)). `doubt` is the bound, in Lambda, which nine of ten errors of the network stay
+/// below. Without it the residual alone sets the weight. Cells of a Lambda of `1 - shown_part` or less are not shown. `is_hidden` says whether
+/// noise may hide objects that the search lacks.
 pub fn network_weight(
     drawn: &RangeAngleMap,
     network: &RangeAngleMap,
@@ -49,20 +55,20 @@ pub fn network_weight(
     is_hidden: bool,
 ) -> Array2<f32> {
     let shown = || left_decades.iter().zip(&drawn.lambda).filter(|(_, drawn)| **drawn > 1.0 - shown_part);
-    let more_left = shown().filter(|(left, _)| **left > 0.0).count() as f32 / shown().count().max(1) as f32;
-    let nowhere = between(UNEXPLAINED_PART, more_left);
+    let unexplained_part = shown().filter(|(left, _)| **left > 0.0).count() as f32 / shown().count().max(1) as f32;
+    let scene_unexplained = ramp(UNEXPLAINED_PART, unexplained_part);
     let mut square = &drawn.lambda - &network.lambda;
     square.par_mapv_inplace(|v| v * v);
-    let mut weight = mean_around(&square);
+    let mut weight = moving_mean(&square);
     let shift = if shown_part < 1.0 { BRIGHT_SHIFT_DECADES } else { 0.0 };
-    let least = if is_hidden { nowhere.max(HIDDEN_PART) } else { nowhere };
-    let unexplained = |left: f32| between(LEFT_DECADES, left - shift).max(least);
+    let least = if is_hidden { scene_unexplained.max(MIN_UNEXPLAINED_OVER_NOISE) } else { scene_unexplained };
+    let unexplained = |left: f32| ramp(RESIDUAL_DECADES, left - shift).max(least);
     let agreed = |contradiction: f32| AGREED_WEIGHT + (1.0 - AGREED_WEIGHT) * contradiction;
     match doubt {
         None => Zip::from(&mut weight).and(left_decades).par_for_each(|w, left| *w = unexplained(*left)),
         Some(doubt) => Zip::from(&mut weight).and(left_decades).and(&doubt.lambda).par_for_each(|w, left, doubt| {
             let expected = (doubt / DOUBT_DEVIATIONS).powi(2).max(f32::MIN_POSITIVE);
-            let contradiction = between(CONTRADICTION, *w / expected);
+            let contradiction = ramp(CONTRADICTION_RATIO, *w / expected);
             let hidden = if is_hidden { contradiction } else { 0.0 };
             *w = unexplained(*left).max(hidden) * agreed(contradiction);
         }),
@@ -70,32 +76,35 @@ pub fn network_weight(
     weight
 }
 
-/// Stretches two maps of one scene, each from its peak downwards, to the geometric mean of their scales, and converts their thresholds.
+/// Stretches two maps of one scene, `[range bins, columns]`, to one scale of Lambda, the geometric mean of their scales. The peaks stay at 1.
+/// Returns the thresholds `etas` on that scale.
 ///
-/// Over noise the smallest of all cells sets the scale by chance. The mean of two scales is nearer to it than either.
+/// Under min-max over noise, the smallest of all cells sets the scale by chance. The mean of the two scales has a smaller error than either.
 pub fn scales_joined(maps: [&mut RangeAngleMap; 2], etas: [f32; 2]) -> [f32; 2] {
     let depths = maps[0].lambda.iter().zip(&maps[1].lambda).map(|(a, b)| [1.0 - f64::from(*a), 1.0 - f64::from(*b)]);
     let [square, product] = depths.fold([0.0; 2], |[square, product], [a, b]| [square + a * a, product + a * b]);
-    let half = if square > 0.0 && product > 0.0 { (product / square).sqrt() as f32 } else { 1.0 };
+    // The least-squares ratio of the second map's depths below the peak to the first's, and its square root.
+    let root = if square > 0.0 && product > 0.0 { (product / square).sqrt() as f32 } else { 1.0 };
     let stretched = |factor: f32, v: f32| (1.0 - factor * (1.0 - v)).clamp(0.0, 1.0);
-    let factors = [half, half.recip()];
+    let factors = [root, root.recip()];
     for (map, factor) in maps.into_iter().zip(factors) {
         map.lambda.par_mapv_inplace(|v| stretched(factor, v));
     }
     [0, 1].map(|i| stretched(factors[i], etas[i]))
 }
 
-/// Place of `value` between two bounds, 0 to 1.
-fn between([low, high]: [f32; 2], value: f32) -> f32 {
+/// Linear ramp: 0 up to `low`, 1 from `high` on.
+fn ramp([low, high]: [f32; 2], value: f32) -> f32 {
     ((value - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-/// Mean of the cells within [`MEAN_SIDE_CELLS`] of each; those beyond the edges count as the edges.
-fn mean_around(cells: &Array2<f32>) -> Array2<f32> {
+/// Moving mean over the cells within [`MEAN_SIDE_CELLS`] of each cell, `[range bins, columns]`. Beyond its edges the map continues with the edge
+/// cells.
+fn moving_mean(cells: &Array2<f32>) -> Array2<f32> {
     let [rows, columns] = MEAN_SIDE_CELLS;
     let mut along = cells.clone();
     along.axis_iter_mut(Axis(0)).into_par_iter().for_each(|mut row| {
-        let mean = mean_of_window(row.view(), columns);
+        let mean = moving_mean_of_row(row.view(), columns);
         row.assign(&mean);
     });
     let (height, _) = along.dim();
@@ -110,8 +119,8 @@ fn mean_around(cells: &Array2<f32>) -> Array2<f32> {
     mean
 }
 
-/// Running mean of `2 * side + 1` cells.
-fn mean_of_window(cells: ArrayView1<f32>, side: usize) -> Array1<f32> {
+/// Moving mean over `2 * side + 1` cells of a row, which continues with its edge cells.
+fn moving_mean_of_row(cells: ArrayView1<f32>, side: usize) -> Array1<f32> {
     let last = cells.len() as isize - 1;
     let at = |i: isize| f64::from(cells[i.clamp(0, last) as usize]);
     let side = side as isize;
@@ -124,7 +133,7 @@ fn mean_of_window(cells: ArrayView1<f32>, side: usize) -> Array1<f32> {
     })
 }
 
-/// The mean of `drawn` and `network`, with the weight `weight` of the latter; all `[range bins, columns]`.
+/// The weighted mean of two maps of Lambda, all `[range bins, columns]`. `weight`, 0 to 1, is that of `network`.
 pub fn blended(mut drawn: RangeAngleMap, network: &RangeAngleMap, weight: &Array2<f32>) -> RangeAngleMap {
     Zip::from(&mut drawn.lambda).and(&network.lambda).and(weight).par_for_each(|d, n, w| *d += w * (n - *d));
     drawn
@@ -144,12 +153,12 @@ mod tests {
     }
 
     #[test]
-    fn the_search_is_believed_where_it_leaves_nothing() {
+    fn the_search_has_all_weight_where_no_residual_is_left() {
         assert_eq!(weight(0.2, 0.6, 0.01, -4.0), 0.0);
     }
 
     #[test]
-    fn the_network_is_believed_where_the_search_contradicts_it() {
+    fn the_network_has_all_weight_where_the_search_contradicts_it() {
         // Twice the expected error is a square of four.
         assert_eq!(weight(0.2, 0.4, 0.1645, -0.5), 1.0);
         assert_eq!(weight(0.2, 0.25, 0.1645, -0.5), AGREED_WEIGHT);
@@ -158,11 +167,11 @@ mod tests {
     }
 
     #[test]
-    fn over_noise_nothing_left_does_not_outweigh_a_contradiction() {
+    fn over_noise_a_contradiction_outweighs_a_zero_residual() {
         let left = Array2::from_elem((40, 60), -9.0);
         let over_noise =
             |network| network_weight(&flat(0.2), &flat(network), Some(&flat(0.1645)), &left, 1.0, true)[[20, 30]];
-        assert_eq!([over_noise(0.25), over_noise(0.4)], [HIDDEN_PART * AGREED_WEIGHT, 1.0]);
+        assert_eq!([over_noise(0.25), over_noise(0.4)], [MIN_UNEXPLAINED_OVER_NOISE * AGREED_WEIGHT, 1.0]);
     }
 
     #[test]
@@ -176,18 +185,18 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_that_is_mostly_unexplained_is_the_networks() {
+    fn the_network_has_all_weight_in_a_mostly_unexplained_scene() {
         let mut left = Array2::from_elem((40, 60), 1.0);
         left.row_mut(3).fill(-9.0);
         let mut drawn = flat(0.2);
         drawn.lambda.row_mut(3).fill(0.6);
         let weight = |part| network_weight(&drawn, &flat(0.9), Some(&flat(0.1)), &left, part, false)[[3, 5]];
         assert_eq!(weight(1.0), 1.0);
-        assert_eq!(weight(0.5), 0.0, "what is cut off says nothing");
+        assert_eq!(weight(0.5), 0.0, "cells that are cut off do not count");
     }
 
     #[test]
-    fn bright_cells_are_the_searchs_until_as_much_is_left() {
+    fn the_search_has_all_weight_in_bright_cells_up_to_the_residual() {
         let of = |left: f32, part| {
             let left = Array2::from_elem((40, 60), left);
             network_weight(&flat(0.9), &flat(0.95), Some(&flat(0.2)), &left, part, false)[[20, 30]]
@@ -196,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_network_without_doubt_is_believed_where_something_is_left() {
+    fn without_doubt_the_residual_alone_sets_the_weight() {
         let left = Array2::from_elem((40, 60), -2.0);
         let weight = network_weight(&flat(0.2), &flat(0.9), None, &left, 1.0, false);
         assert!((weight[[1, 1]] - 0.5).abs() < 1e-6);
@@ -204,10 +213,10 @@ mod tests {
     }
 
     #[test]
-    fn a_mean_counts_each_cell_around_once() {
+    fn a_moving_mean_counts_each_cell_once() {
         let mut one = Array2::zeros((40, 60));
         one[[20, 30]] = 1.0;
-        let mean = mean_around(&one);
+        let mean = moving_mean(&one);
         let [rows, columns] = MEAN_SIDE_CELLS;
         let cells = ((2 * rows + 1) * (2 * columns + 1)) as f32;
         assert!((mean[[20 + rows, 30 - columns]] - 1.0 / cells).abs() < 1e-6);

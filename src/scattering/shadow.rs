@@ -1,7 +1,10 @@
-//! Diffraction past an obstacle between an antenna and a scatterer: two knife edges, left and right.
+//! Diffraction past an obstacle between an antenna and a scatterer, as by two knife edges, left and right.
 //!
-//! Near the boundary of a shadow [`passing`] falls over the width of a Fresnel zone. The phase in the shadow is that of the detour over the
-//! nearer edge. An obstacle far beside the way has no effect, to the last bit.
+//! Near the boundary of the shadow the field [`passing`] an edge falls over the width of a Fresnel zone. In the shadow its phase is that of the
+//! detour over the nearer edge. An obstacle far beside the path has no effect, to the last bit.
+//!
+//! The *Fresnel parameter* `w` of an edge is the square root of the phase of the detour over it, radians, positive or negative by the side of the
+//! path. The parameter of ITU-R P.526 is `nu = w sqrt(2/pi)`.
 
 use super::geometry::{V, hypotenuse, root};
 use super::transition::{passing, transition};
@@ -9,19 +12,21 @@ use super::{AntennaPlaces, PathEcho, Wave};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Between these values of Fresnel's measure the ripple beside an obstacle fades out: farther out it belongs at another range.
-const FADE: [f64; 2] = [3.0, FADED];
+/// Between these magnitudes of the Fresnel parameter the ripple beside an obstacle is faded out: farther out it would belong to another range.
+const FADE_PARAMETERS: [f64; 2] = [3.0, FADED];
 
-/// Fresnel's measure from which on an edge has no effect at all.
+/// Magnitude of the Fresnel parameter from which on an edge beside the path has no effect.
 pub(super) const FADED: f64 = 6.0;
 
+/// Most corners for which no memory is allocated.
 const MAX_INLINE_CORNERS: usize = 16;
 
-/// A convex obstacle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
     shape: Convex,
+    /// (x, y), metres.
     centre: V,
+    /// Radius of a circle around the obstacle.
     radius_metres: f64,
 }
 
@@ -31,14 +36,14 @@ enum Convex {
     Corners(Vec<V>),
 }
 
-/// The field past an obstacle on one way.
+/// The field past an obstacle on the path between an antenna and the place of an echo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passage {
-    /// Factor of the field, but for the phase of the detour.
+    /// Factor of the field relative to free space, without the phase of the detour.
     pub factor: Complex64,
-    /// Length of the way over the nearer edge above that of the straight way, metres; 0 where the straight way is clear.
+    /// Length of the path over the nearer edge minus that of the straight path, metres; 0 where the straight path is clear.
     pub detour_metres: f64,
-    /// Place of the edge: its distance from the antenna over the rest of the way.
+    /// Distance of the edge from the antenna, over its distance from the end of the path.
     pub part: f64,
 }
 
@@ -47,12 +52,11 @@ impl Passage {
 }
 
 impl Obstacle {
-    /// A post.
     pub fn circle(centre_metres: [f64; 2], radius_metres: f64) -> Self {
         Obstacle { shape: Convex::Circle, centre: centre_metres.into(), radius_metres }
     }
 
-    /// A wall's two ends, or the corners of a convex outline in order; (x, y) in metres.
+    /// A wall by its two ends, or a convex polygon by its corners in order; (x, y) in metres.
     pub fn corners(corners_metres: &[[f64; 2]]) -> Self {
         let corners: Vec<V> = corners_metres.iter().map(|c| V::from(*c)).collect();
         let sum = corners.iter().fold(V(0.0, 0.0), |a, b| a + *b);
@@ -61,8 +65,9 @@ impl Obstacle {
         Obstacle { shape: Convex::Corners(corners), centre, radius_metres }
     }
 
-    fn passage(&self, way: &Way) -> Passage {
-        let Way { antenna, unit, widest_square, ref ray } = *way;
+    /// The field past the obstacle on a path.
+    fn passage(&self, path: &AntennaPath) -> Passage {
+        let AntennaPath { antenna, unit, faded_square, ref ray } = *path;
         let full = ray.full;
         let to_centre = self.centre - antenna;
         let (along, across) = (to_centre.dot(unit), unit.cross(to_centre));
@@ -70,15 +75,15 @@ impl Obstacle {
             return Passage::CLEAR;
         }
         let beside = across.abs() - self.radius_metres;
-        if beside > 0.0 && (beside * beside >= widest_square || ray.has_faded(along, self.radius_metres, beside)) {
+        if beside > 0.0 && (beside * beside >= faded_square || ray.has_faded(along, self.radius_metres, beside)) {
             return Passage::CLEAR;
         }
         let mut edges = Edges::none();
         match &self.shape {
             Convex::Circle => {
                 if along > 0.0 && along < full {
-                    edges.meet(ray, along, across - self.radius_metres);
-                    edges.meet(ray, along, across + self.radius_metres);
+                    edges.add(ray, along, across - self.radius_metres);
+                    edges.add(ray, along, across + self.radius_metres);
                 }
             }
             Convex::Corners(corners) => {
@@ -86,9 +91,9 @@ impl Obstacle {
                 if corners.len() <= MAX_INLINE_CORNERS {
                     let mut few = [(0.0, 0.0); MAX_INLINE_CORNERS];
                     few.iter_mut().zip(corners).for_each(|(f, c)| *f = seen(c));
-                    edges.meet_outline(ray, &few[..corners.len()]);
+                    edges.add_outline(ray, &few[..corners.len()]);
                 } else {
-                    edges.meet_outline(ray, &corners.iter().map(seen).collect::<Vec<_>>());
+                    edges.add_outline(ray, &corners.iter().map(seen).collect::<Vec<_>>());
                 }
             }
         }
@@ -96,116 +101,130 @@ impl Obstacle {
     }
 }
 
-/// One way, from an antenna to the place of an echo.
-struct Way {
+/// The straight path from an antenna to the place of an echo.
+struct AntennaPath {
+    /// Place of the antenna, (x, y) in metres.
     antenna: V,
+    /// Direction of the path, a unit vector.
     unit: V,
-    /// Square of the distance from the way beyond which an edge's ripple has faded anywhere along it, square metres.
-    widest_square: f64,
+    /// Square of the distance from the path beyond which an edge has no effect anywhere along it, square metres.
+    faded_square: f64,
     ray: Ray,
 }
 
-impl Way {
-    /// The way from `antenna` to `place` at a wave of `radians_per_metre` there and back. `beyond_metres` is its length behind `place`, straight in
-    /// the mirror of a face.
+impl AntennaPath {
+    /// The path from `antenna` to `place`, of a wave with `radians_per_metre` of phase there and back for each metre of range. `beyond_metres` is the
+    /// length of the path behind `place`, straight in the mirror of a face.
     fn new(radians_per_metre: f64, antenna: V, place: V, beyond_metres: f64) -> Self {
-        let way = place - antenna;
-        let full = way.norm();
+        let path = place - antenna;
+        let full = path.norm();
         let whole = full + beyond_metres;
-        // A detour in the middle of the way has w = FADE[1].
-        let faded = FADE[1] * FADE[1] / radians_per_metre;
+        // Half the detour over an edge of Fresnel parameter FADE_PARAMETERS[1].
+        let faded = FADE_PARAMETERS[1] * FADE_PARAMETERS[1] / radians_per_metre;
         let ray = Ray { full, whole, half_kappa: radians_per_metre / 2.0 };
-        Way { antenna, unit: way * full.recip(), widest_square: faded * (whole + faded), ray }
+        AntennaPath { antenna, unit: path * full.recip(), faded_square: faded * (whole + faded), ray }
     }
 }
 
+/// Lengths of a path and the wave number on it.
 struct Ray {
+    /// Length from the antenna to the place of the echo, metres.
     full: f64,
+    /// The same with the length behind that place, metres.
     whole: f64,
+    /// Wave number, radians per metre: half the phase there and back for each metre of range.
     half_kappa: f64,
 }
 
 impl Ray {
-    /// Fresnel's measure of an edge `l` along the way and `q` beside it, with the sign of `q`.
-    fn measure(&self, l: f64, q: f64) -> f64 {
+    /// Fresnel parameter of an edge `l` metres along the path and `q` metres beside it, with the sign of `q`.
+    fn fresnel_parameter(&self, l: f64, q: f64) -> f64 {
         if q == 0.0 {
             return 0.0;
         }
         let l = l.clamp(0.0, self.full);
+        // The hypotenuse minus l, without cancellation.
         let leg = |l: f64| q * q / (hypotenuse(l, q) + l);
         root(self.half_kappa * (leg(l) + leg(self.whole - l))).copysign(q)
     }
 
-    /// Whether the ripple has faded of everything within `radius_metres` of a place `along` the way and farther than `beside` beside it.
-    /// The measure is least nearest to the middle of the way.
+    /// Whether every edge has no effect that lies within `radius_metres` of the place `along` the path, measured along it, and at least `beside`
+    /// metres beside it. The Fresnel parameter is least nearest to the middle of the path.
     fn has_faded(&self, along: f64, radius_metres: f64, beside: f64) -> bool {
         let middle = (self.whole / 2.0).max(along - radius_metres).min(along + radius_metres);
-        // Rounding may not decide here, where the corners are not looked at.
-        self.measure(middle, beside) > FADE[1] * (1.0 + 1e-9)
+        // The margin keeps rounding from deciding, since the corners themselves are not evaluated here.
+        self.fresnel_parameter(middle, beside) > FADE_PARAMETERS[1] * (1.0 + 1e-9)
     }
 }
 
+/// The edges of an obstacle beside a path.
 struct Edges {
-    top: f64,
-    low: f64,
-    /// Measure and place along the way of the edge nearest to it.
+    /// Largest Fresnel parameter of an edge.
+    max_parameter: f64,
+    /// Smallest Fresnel parameter of an edge.
+    min_parameter: f64,
+    /// Magnitude of the Fresnel parameter of the edge nearest to the path, and its place along the path, metres.
     nearest: (f64, f64),
 }
 
 impl Edges {
     fn none() -> Self {
-        Edges { top: f64::NEG_INFINITY, low: f64::INFINITY, nearest: (f64::INFINITY, 0.0) }
+        Edges { max_parameter: f64::NEG_INFINITY, min_parameter: f64::INFINITY, nearest: (f64::INFINITY, 0.0) }
     }
 
-    fn meet(&mut self, ray: &Ray, l: f64, q: f64) {
-        let w = ray.measure(l, q);
-        self.top = self.top.max(w);
-        self.low = self.low.min(w);
+    /// Adds an edge `l` metres along the path and `q` metres beside it.
+    fn add(&mut self, ray: &Ray, l: f64, q: f64) {
+        let w = ray.fresnel_parameter(l, q);
+        self.max_parameter = self.max_parameter.max(w);
+        self.min_parameter = self.min_parameter.min(w);
         if w.abs() < self.nearest.0 {
             self.nearest = (w.abs(), l.clamp(0.0, ray.full));
         }
     }
 
-    /// Meets the corners beside the way, and the outline where it crosses the ends of the way.
-    fn meet_outline(&mut self, ray: &Ray, corners: &[(f64, f64)]) {
+    /// Adds the corners beside the path, and the points where the outline crosses the lines across the path at its ends. `corners` are (along,
+    /// beside), metres.
+    fn add_outline(&mut self, ray: &Ray, corners: &[(f64, f64)]) {
         for (i, &(l, q)) in corners.iter().enumerate() {
             if l >= 0.0 && l <= ray.full {
-                self.meet(ray, l, q);
+                self.add(ray, l, q);
             }
             let (l2, q2) = corners[if i + 1 == corners.len() { 0 } else { i + 1 }];
             for level in [0.0, ray.full] {
                 let part = (level - l) / (l2 - l);
                 if part > 0.0 && part < 1.0 {
-                    self.meet(ray, level, q + part * (q2 - q));
+                    self.add(ray, level, q + part * (q2 - q));
                 }
             }
         }
     }
 
+    /// The field past the edges.
     fn passage(&self, ray: &Ray) -> Passage {
-        let Edges { top, low, nearest: (_, l) } = *self;
-        if top < low {
+        let Edges { max_parameter, min_parameter, nearest: (_, l) } = *self;
+        if max_parameter < min_parameter {
             return Passage::CLEAR;
         }
         let part = l / (ray.whole - l).max(1e-9);
-        if top > 0.0 && low < 0.0 {
-            // The fields past both edges, the farther one turned by the phase between the two detours.
-            let (shorter, longer) = (top.min(-low), top.max(-low));
+        if max_parameter > 0.0 && min_parameter < 0.0 {
+            // In the shadow: the sum of the fields past both edges, the second with the phase between the two detours.
+            let (shorter, longer) = (max_parameter.min(-min_parameter), max_parameter.max(-min_parameter));
             let turn = Complex64::cis((shorter - longer) * (shorter + longer));
             let detour_metres = shorter * shorter / ray.half_kappa;
             return Passage { factor: transition(shorter) + transition(longer) * turn, detour_metres, part };
         }
-        let near = top.abs().min(low.abs());
-        let left = ((FADE[1] - near) / (FADE[1] - FADE[0])).clamp(0.0, 1.0);
-        if left == 0.0 {
+        let near = max_parameter.abs().min(min_parameter.abs());
+        let remaining = ((FADE_PARAMETERS[1] - near) / (FADE_PARAMETERS[1] - FADE_PARAMETERS[0])).clamp(0.0, 1.0);
+        if remaining == 0.0 {
             return Passage::CLEAR;
         }
-        let fade = left * left * (3.0 - 2.0 * left);
-        let factor = 1.0 + (passing(top) + passing(-low) - 1.0) * fade;
+        let fade = remaining * remaining * (3.0 - 2.0 * remaining);
+        let factor = 1.0 + (passing(max_parameter) + passing(-min_parameter) - 1.0) * fade;
         Passage { factor, detour_metres: 0.0, part }
     }
 }
 
+/// The echo after diffraction past each of `obstacles`, on the path from the transmitter and on that to the receiver.
 pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlaces, mut echo: PathEcho) -> PathEcho {
     if obstacles.is_empty() {
         return echo;
@@ -213,34 +232,36 @@ pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlac
     let place = V::from(echo.place_metres);
     let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
     let beyond = |other: V| if echo.is_mirrored { (place - other).norm() } else { 0.0 };
-    let way = |from: V, other: V| Way::new(wave.radians_per_metre, from, place, beyond(other));
-    let there = way(t, r);
-    let back = (antennas.transmitter_metres != antennas.receiver_metres).then(|| way(r, t));
+    let path = |from: V, other: V| AntennaPath::new(wave.radians_per_metre, from, place, beyond(other));
+    let there = path(t, r);
+    let back = (antennas.transmitter_metres != antennas.receiver_metres).then(|| path(r, t));
     for obstacle in obstacles {
         let passed = obstacle.passage(&there);
-        let passed_back = back.as_ref().map(|way| obstacle.passage(way));
+        let passed_back = back.as_ref().map(|path| obstacle.passage(path));
         if passed != Passage::CLEAR || passed_back.is_some_and(|back| back != Passage::CLEAR) {
-            echo = past(passed, passed_back, echo);
+            echo = diffracted(passed, passed_back, echo);
         }
     }
     echo
 }
 
-/// The echo, of which the way there passes an obstacle; `back` is the way back where it is another.
+/// The echo after diffraction past one obstacle. `back` is the passage on the path back, `None` where it is the same as `there`.
 ///
-/// A glint's way passes the obstacle, the mirror and the obstacle's image in it: two edges that act as one where the obstacle touches the
-/// face, and apart where it is far from it.
-fn past(there: Passage, back: Option<Passage>, echo: PathEcho) -> PathEcho {
+/// The path of a glint passes the obstacle, and then the obstacle's image in the mirror. The two edges act as one where the obstacle touches the
+/// face, and independently where it is far from the face.
+fn diffracted(there: Passage, back: Option<Passage>, echo: PathEcho) -> PathEcho {
     let (is_one, back) = (back.is_none(), back.unwrap_or(there));
-    let more = (there.detour_metres + back.detour_metres) / 2.0;
+    let mean_detour_metres = (there.detour_metres + back.detour_metres) / 2.0;
     let (factor, power) = if echo.is_mirrored {
         let correlation = (there.part * back.part).max(0.0).sqrt().min(1.0);
+        // At grazing incidence the field past two edges is the probability that two correlated normal variables are both positive: 1/4 for
+        // independent edges, 1/2 for one. The exponent makes 1/2 of one edge that value.
         let power = -(0.25 + correlation.asin() / TAU).log2();
-        // Each way is raised to its own power: neither turns by half a turn, their product may.
+        // Each path's factor is raised on its own: the phase of neither reaches half a turn, that of their product may.
         let raised = there.factor.powf(power / 2.0);
         (raised * if is_one { raised } else { back.factor.powf(power / 2.0) }, power)
     } else {
         (there.factor * back.factor, 2.0)
     };
-    PathEcho { range_metres: echo.range_metres + more * power / 2.0, ..echo.times(factor) }
+    PathEcho { range_metres: echo.range_metres + mean_detour_metres * power / 2.0, ..echo.times(factor) }
 }

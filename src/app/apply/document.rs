@@ -15,6 +15,10 @@ use crate::scene::{Scene, presets};
 use crate::signal::Floor;
 use std::path::{Path, PathBuf};
 
+/// Carries out a command.
+///
+/// # Errors
+/// A sentence for the user where a preset, a weight file or a shared text can't be read. Errors of scene files and recordings are shown as notices.
 pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) -> Result<(), String> {
     match command {
         DocumentCommand::New => {
@@ -27,11 +31,11 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) -> Re
         DocumentCommand::AnswerSave(answer) => saving::answer(state, jobs, answer),
         DocumentCommand::Recover(id) => state.scene_view.fit |= state.editor.recover(id),
         DocumentCommand::Discard(id) => state.editor.discard(id),
-        DocumentCommand::Preset(index) => preset(state, index)?,
-        DocumentCommand::Recording(index) => shipped_recording(state, index)?,
+        DocumentCommand::Preset(index) => open_preset(state, index)?,
+        DocumentCommand::Recording(index) => open_shipped_recording(state, index)?,
         DocumentCommand::ReadAnotherWay(way) => read_another_way(state, way),
         DocumentCommand::ShowFrame(frame) => show_frame(state, jobs, frame),
-        DocumentCommand::RandomScene(kind) => random_scene(state, kind),
+        DocumentCommand::RandomScene(kind) => open_random_scene(state, kind),
         DocumentCommand::SetNextRandom { seed, number } => {
             (state.settings.random_seed, state.settings.random_number) = (seed, number);
         }
@@ -40,14 +44,14 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) -> Re
     Ok(())
 }
 
-/// Opens a scene file or a recording; on any error the scene on screen stays.
+/// Opens a scene file, a recording or a weight file. After an error the scene on screen stays.
 fn open(state: &mut State, path: PathBuf) -> Result<(), String> {
     #[cfg(feature = "live")]
     if crate::files::ends_in(&path, &["safetensors"]) {
         return open_weights(state, &path);
     }
     if let Some(document) = read(state, &path) {
-        show(state, document);
+        show_document(state, document);
     }
     Ok(())
 }
@@ -68,28 +72,28 @@ fn open_weights(state: &mut State, path: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Puts a document on screen, with a method that takes its radar and the panels of a recording.
-fn show(state: &mut State, document: Document) {
+/// Shows a document, selects a method that takes its radar, and opens the panels of a recording.
+fn show_document(state: &mut State, document: Document) {
     state.set_document(document);
     opened(state);
 }
 
 /// Selects a method that takes the radar of the document on screen, and opens the panels of a recording.
 pub fn opened(state: &mut State) {
-    use_a_method_that_can(state);
+    select_usable_method(state);
     let Some(recording) = state.editor.document().recording() else { return };
-    // The panel lists the recording's doubts.
+    // The panel of the recording lists the doubts about it.
     let is_doubtful = recording.origin.is_some() || !recording.doubts.is_empty();
     let listed = [state.finds_reflectors().then_some(Panel::Found), is_doubtful.then_some(Panel::Recording)];
-    // The map of the unexplained part opens behind the output.
+    // The map opened last is in front: the output.
     let maps = [MapKind::Unexplained, MapKind::Output].map(|kind| Some(Panel::Map(kind)));
     for panel in maps.into_iter().chain(listed).flatten() {
         state.arrangement.set_open(panel, true);
     }
 }
 
-/// Selects a method that takes the radar of the opened document, where the method in use doesn't; tells the user.
-fn use_a_method_that_can(state: &mut State) {
+/// Selects a method that takes the radar of the document on screen, or the layout in use, where the method in use doesn't. A notice tells the user.
+fn select_usable_method(state: &mut State) {
     fit_layout(state);
     if state.settings.layout.is_some() {
         return;
@@ -102,8 +106,8 @@ fn use_a_method_that_can(state: &mut State) {
     }
 }
 
-/// Selects a method that takes the layout in use, where the method in use doesn't. Falls back to the two ends where the document on screen lacks elements of
-/// the layout. Tells the user either way.
+/// Selects a method that takes the layout in use, where the method in use doesn't. Where the document on screen lacks elements of the layout, the two
+/// ends are used in its place. A notice tells the user of either change.
 pub fn fit_layout(state: &mut State) {
     let Some(kind) = &state.settings.layout else { return };
     let has_ends_alone = state.editor.document().recording().is_some_and(|recording| recording.signal().is_none());
@@ -126,7 +130,7 @@ pub fn fit_layout(state: &mut State) {
     }
 }
 
-/// Reads a scene file or a recording; an error becomes a message.
+/// Reads a scene file or a recording. `None` after an error, which a notice tells the user.
 pub fn read(state: &mut State, path: &Path) -> Option<Document> {
     let read = match recording::file::is_recording_at(path) {
         true => Document::read_recording(path).map_err(|e| e.to_string()),
@@ -144,10 +148,10 @@ pub fn read(state: &mut State, path: &Path) -> Option<Document> {
     }
 }
 
-fn preset(state: &mut State, index: usize) -> Result<(), String> {
+fn open_preset(state: &mut State, index: usize) -> Result<(), String> {
     let Some(preset) = presets::ALL.get(index) else { return Ok(()) };
     let file = preset.load().map_err(|error| format!("Preset {}: {error}", preset.id))?;
-    // A preset of failures needs its own radar: its method fails with that one.
+    // A preset of a failure needs its own radar: its method fails with that radar.
     let keeps_radar = !preset.has_radar() && !preset.is_failure();
     let before = state.setup();
     preset.failing_method().into_iter().for_each(|name| state.settings.method = name.to_owned());
@@ -155,7 +159,7 @@ fn preset(state: &mut State, index: usize) -> Result<(), String> {
     let document = Document::shipped(SceneFile { radar, ..file });
     state.failures.wanted = preset.is_failure().then(|| document.id());
     state.set_document(document);
-    use_a_method_that_can(state);
+    select_usable_method(state);
     if preset.is_failure() {
         // Undo brings back the method together with the scene.
         let after = state.setup();
@@ -164,14 +168,14 @@ fn preset(state: &mut State, index: usize) -> Result<(), String> {
     Ok(())
 }
 
-fn shipped_recording(state: &mut State, index: usize) -> Result<(), String> {
+fn open_shipped_recording(state: &mut State, index: usize) -> Result<(), String> {
     let Some(preset) = recording::presets::ALL.get(index) else { return Ok(()) };
     let read = Document::shipped_recording(preset);
-    show(state, read.map_err(|error| format!("Recording {}: {error}", preset.id))?);
+    show_document(state, read.map_err(|error| format!("Recording {}: {error}", preset.id))?);
     Ok(())
 }
 
-/// Reads the file of the recording on screen with another layout, frame or board; on any error the recording stays as it is.
+/// Reads the file of the recording on screen with another layout, frame or board. After an error the recording stays as it is.
 fn read_another_way(state: &mut State, way: Way) {
     let Some(origin) = state.editor.document().recording().and_then(|r| r.origin.clone()) else { return };
     let read = match way {
@@ -187,7 +191,7 @@ fn read_another_way(state: &mut State, way: Way) {
                 state.editor.open_frame(document);
             } else {
                 state.editor.open(document);
-                use_a_method_that_can(state);
+                select_usable_method(state);
             }
         }
         Err(error) => {
@@ -197,16 +201,16 @@ fn read_another_way(state: &mut State, way: Way) {
     }
 }
 
-/// Shows the newest frame of a capture card. Where another document is on screen since the last frame, the card is no longer listened to.
+/// Shows the newest frame of a capture card. Where another document came on screen since the last frame, the reception of frames ends.
 fn show_frame(state: &mut State, jobs: &mut Jobs, frame: LiveFrame) {
     let LiveFrame { recording, config, is_first } = frame;
     let recording = Recording::clone(&recording);
     if is_first {
-        return show(state, Document::of_frame(recording, &config));
+        return show_document(state, Document::of_frame(recording, &config));
     }
     let on_screen = state.editor.document();
-    let is_followed = on_screen.recording().is_some_and(|shown| is_live(shown, &config));
-    match on_screen.read_another_way(recording).filter(|_| is_followed) {
+    let is_same_capture = on_screen.recording().is_some_and(|shown| is_live(shown, &config));
+    match on_screen.read_another_way(recording).filter(|_| is_same_capture) {
         Some(document) => state.editor.open_frame(document),
         None => {
             jobs.listening.stop();
@@ -215,7 +219,7 @@ fn show_frame(state: &mut State, jobs: &mut Jobs, frame: LiveFrame) {
     }
 }
 
-/// Plays the frames of the recording, from the first where the last is on screen, or stops them.
+/// Starts or stops the playback of the recording's frames. It starts again at the first frame where the last is on screen.
 pub fn play_frames(state: &mut State, is_playing: bool) {
     state.timeline.play_frames(is_playing);
     if is_playing && state.frames().is_some_and(|[frame, count]| frame + 1 >= count) {
@@ -224,7 +228,7 @@ pub fn play_frames(state: &mut State, is_playing: bool) {
     }
 }
 
-/// Goes to the recording's next frame where it is due, `step` seconds after the last call; stops at the last frame.
+/// Shows the recording's next frame where it is due. `step` is the time since the last call, seconds. Playback stops at the last frame.
 pub fn next_frame(state: &mut State, step: f64) {
     let [frame, count] = state.frames().unwrap_or_default();
     if frame + 1 >= count {
@@ -236,14 +240,14 @@ pub fn next_frame(state: &mut State, step: f64) {
     }
 }
 
-fn random_scene(state: &mut State, kind: Kind) {
+fn open_random_scene(state: &mut State, kind: Kind) {
     let Settings { random_seed: seed, random_number: number, .. } = state.settings;
     let scene = Generator::new(state.radar(), Reading::Program, ScenePurpose::Test, seed).scene(kind, number);
     let scene = Scene { name: kind.scene_name(seed, number), ..scene };
     state.settings.random_number = number.wrapping_add(1);
     let file = SceneFile { scene, radar: state.radar().clone() };
     if kind == Kind::Noise && !state.settings.floor.has_level() {
-        // No other floor has noise in an empty scene.
+        // In an empty scene only a thermal floor of a given level has noise.
         state.settings.floor = Floor::Level(state.settings.level);
     }
     state.set_document(Document::unsaved(None, file));

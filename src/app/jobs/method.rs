@@ -1,4 +1,4 @@
-//! One method at work on the scene on screen: its last request and its last output, or the reason why it has none.
+//! The worker of one method for the scene on screen: the last request, and the last output or the reason why there is none.
 
 use super::memo::Memo;
 use super::scene_maps::{MapsRequest, MapsResult, Origin, Pair};
@@ -16,13 +16,14 @@ use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Longest time of a reconstruction of a scene that has moved on; a slower one is cancelled. During a drag the last one finishes, so that the user sees it.
+/// Longest time of a reconstruction whose scene has changed since; a slower one is cancelled. During a drag none is cancelled, so that the user sees
+/// its output.
 const PATIENCE: Duration = Duration::from_millis(400);
 
-/// Most origins kept of those on screen since the output on screen; an output older than them is marked anyway.
+/// Most entries of [`MethodJob::wanted`]. An output older than all of them is marked as outdated in any case.
 const MAX_ORIGINS: usize = 64;
 
-/// The inputs of a method.
+/// The inputs of a method: samples of the two ends or of a layout, the radar, and the noise prior.
 #[derive(Clone, PartialEq)]
 pub struct Basis {
     radar: Radar,
@@ -35,7 +36,7 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// The inputs from a result of the maps' worker; `None` where it has no samples of the ends.
+    /// The inputs in a result of the maps' worker. `None` where it lacks the samples of the ends, or those of the layout in use.
     pub fn of(result: &MapsResult) -> Option<Basis> {
         let MapsRequest { source: Source { radar, recording, .. }, wanted, layout, .. } = &result.request;
         Some(Basis {
@@ -63,20 +64,22 @@ impl Basis {
 /// A request for a method's output.
 #[derive(Clone)]
 pub struct MethodRequest {
+    /// Identifier of the document on screen.
     pub document: u64,
     pub origin: Origin,
     pub basis: Basis,
-    /// The target map; `None` where a recording has the two ends alone.
+    /// The target map, `[range bins, columns]`; `None` where a recording has the two ends alone.
     pub target: Option<Shared<RangeAngleMap>>,
     pub method: Shared<dyn Reconstructor>,
+    /// Whether a list of detections is requested.
     pub listed: bool,
-    /// Whether the scene rests. The answer is then that of a method without a memory.
+    /// Whether the scene is not being changed. The method then computes from scratch, without its memory of the last answer.
     pub at_rest: bool,
 }
 
 impl MethodRequest {
-    /// Whether the answer to this request answers `other` too. An answer at rest serves a request in motion; the opposite holds only for a method without a
-    /// memory.
+    /// Whether the answer to this request answers `other` too. An answer from scratch serves a request during a change of the scene. The opposite
+    /// holds only for a method without a memory.
     fn serves(&self, other: &MethodRequest) -> bool {
         self.basis == other.basis
             && self.method == other.method
@@ -88,14 +91,18 @@ impl MethodRequest {
 /// The output of a method.
 #[derive(Clone)]
 pub struct MethodResult {
+    /// Identifier of the document that the output belongs to.
     pub document: u64,
     pub pair: Pair,
-    /// The threshold that the method derived from the samples, if it did.
+    /// The threshold on Lambda that the method derived from the samples, if it did.
     pub eta: Option<f32>,
     /// Detections, the strongest first, where a list was requested.
     pub found: Option<Vec<Detection>>,
+    /// The method's reflectors, or those of the detections where it has none.
     pub reflectors: Vec<Reflector>,
+    /// The search's attempts, in order.
     pub attempts: Vec<Attempt>,
+    /// Time of the computation.
     pub took: Duration,
     basis: Basis,
 }
@@ -106,13 +113,13 @@ impl MethodResult {
         self.pair.origin.method
     }
 
-    /// The radar of the samples.
+    /// The radar that the samples are of.
     pub fn radar(&self) -> &Radar {
         &self.basis.radar
     }
 }
 
-/// A method's failure to give an output.
+/// The method that gave no output, and the reason as a clause.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
     pub method: &'static str,
@@ -126,67 +133,67 @@ type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
 
 /// State of the worker between requests.
 struct MethodWorker {
-    /// Threads of its own: on shared ones the maps would wait for a slow reconstruction.
+    /// The worker's own threads: on shared ones the maps would wait for a slow reconstruction.
     threads: Option<rayon::ThreadPool>,
-    /// The method of the last request, with a memory where it has such a form.
+    /// The form with a memory of the last request's method, if it has one.
     follower: Memo<Shared<dyn Reconstructor>, Option<Arc<dyn Reconstructor>>>,
 }
 
 impl MethodWorker {
-    fn work(&mut self, q: MethodRequest, task: &Task) -> MethodReply {
-        let follower = self.follower.of(q.method.clone(), |method| method.following());
-        let method = follower.as_deref().unwrap_or(&**q.method);
+    fn work(&mut self, request: MethodRequest, task: &Task) -> MethodReply {
+        let follower = self.follower.of(request.method.clone(), |method| method.following());
+        let method = follower.as_deref().unwrap_or(&**request.method);
         let result = match &self.threads {
-            Some(threads) => threads.install(|| reconstruct(&q, method, task)),
-            None => reconstruct(&q, method, task),
+            Some(threads) => threads.install(|| reconstruct(&request, method, task)),
+            None => reconstruct(&request, method, task),
         };
-        (q, result)
+        (request, result)
     }
 }
 
 /// The worker of one method slot, its last request and its last output.
 pub struct MethodJob {
     worker: Worker<MethodRequest, MethodReply>,
-    asked: Option<MethodRequest>,
-    /// Origins wanted by the frames since the output on screen became old, the oldest first, with the times at which they came on screen; none where no panel
-    /// of the last frame drew the output.
+    last_request: Option<MethodRequest>,
+    /// Origins that the frames wanted since the output on screen became outdated, the oldest first, each with the time at which it was first wanted.
+    /// Empty where no panel of the last frame drew the output.
     wanted: Vec<(Origin, Instant)>,
-    /// Time since which the output or its picture belongs to another origin than the one wanted.
+    /// Time since which the output or its picture belongs to another origin than the wanted one.
     outdated: Option<Instant>,
     output: Option<MethodResult>,
     refusal: Option<Refusal>,
 }
 
 impl MethodJob {
-    /// Starts the worker's `thread`; `wake` is called from it when there is an output to show.
+    /// Starts the worker on a thread named `thread`. It calls `wake` when there is a reply.
     pub fn start(thread: &'static str, wake: impl Fn() + Send + Sync + 'static) -> MethodJob {
-        let work = |kept: &mut MethodWorker, q: MethodRequest, task: &Task| kept.work(q, task);
+        let work = |state: &mut MethodWorker, request: MethodRequest, task: &Task| state.work(request, task);
         let start = move || MethodWorker { threads: platform::pool(thread), follower: Memo::default() };
         let worker = Worker::spawn(thread, start, work, wake);
         let wanted = Vec::new();
-        MethodJob { worker, asked: None, wanted, outdated: None, output: None, refusal: None }
+        MethodJob { worker, last_request: None, wanted, outdated: None, output: None, refusal: None }
     }
 
-    /// Takes in the worker's answers. Answers to the `latest` maps get their document, origin and target. Adds the
-    /// duration of answers from scratch to `times`. Returns messages for the user.
+    /// Reads the worker's replies. An answer for the samples of the `latest` maps gets their document, origin and target. Adds the duration of
+    /// answers from scratch to `times`. Returns messages for the user.
     pub fn poll(&mut self, latest: Option<&MapsResult>, times: &mut MethodTimes) -> Vec<String> {
         let mut messages = Vec::new();
         for reply in self.worker.replies() {
             match reply {
                 Reply::Done { result: (request, Ok(answer)), elapsed, .. } => {
-                    // A method with a memory is faster than from scratch; users choose methods by the time from scratch.
+                    // Users choose methods by the time from scratch, and a method with a memory takes less.
                     if request.at_rest || request.method.following().is_none() {
                         times.record(&request.basis.radar, request.method.name(), elapsed);
                     }
-                    self.take_in(request, answer, elapsed, latest);
+                    self.set_output(request, answer, elapsed, latest);
                 }
-                // Cancelled by the user, or because the scene moved on and the next request waits.
+                // Cancelled by the user, or because the scene has changed and the next request waits.
                 Reply::Done { result: (_, Err(ReconstructError::Cancelled)), .. } => {}
                 Reply::Done { result: (request, Err(error)), .. } => {
                     self.refuse(request.method.name(), error.to_string());
                 }
                 Reply::Panicked { message, .. } => {
-                    let method = self.asked.as_ref().map_or("", |q| q.method.name());
+                    let method = self.last_request.as_ref().map_or("", |request| request.method.name());
                     self.refuse(method, format!("failed: {message}"));
                     messages.push(format!(
                         "The reconstruction failed ({message}). It was started afresh; choose another method, or change the scene to try again."
@@ -197,7 +204,8 @@ impl MethodJob {
         messages
     }
 
-    fn take_in(
+    /// Makes an answer the output, with the `latest` maps' document, origin and target where they are of the same samples.
+    fn set_output(
         &mut self,
         request: MethodRequest,
         (answer, found): Answer,
@@ -227,7 +235,7 @@ impl MethodJob {
         self.refusal = Some(Refusal { method, reason });
     }
 
-    /// Gives the output the document, origin and target of new maps, where they are of the same samples, as when a scene comes to rest.
+    /// Gives the output the document, origin and target of new maps, where they are of the same samples. They are when a drag ends.
     pub fn aim(&mut self, maps: &MapsResult) {
         if let Some(output) = &mut self.output
             && Basis::of(maps).is_some_and(|basis| basis == output.basis)
@@ -238,55 +246,57 @@ impl MethodJob {
         }
     }
 
-    /// Notes the origin of the output that panels of this frame want to draw, `None` where none does, and decides how old is what they draw: the output, and
-    /// the pictures and figures of it or of one before it, `pictured`. The age goes on from the change of the scene until its pictures are there, however long
-    /// maps, output and pictures take one after another. An output that became old out of sight is dropped, since its age is unknown.
+    /// Takes the origin `wanted` by the panels of this frame, `None` where none draws the output, and sets the time since which they draw something
+    /// outdated. They draw the output, and the pictures and figures of `pictured`, which is the output or an earlier one. The time counts from the
+    /// change of the scene until its pictures are there: maps, output and pictures take their time one after another. An output that became outdated
+    /// while no panel drew it is dropped, since the time is unknown.
     pub fn look(&mut self, wanted: Option<Origin>, pictured: Option<&Pair>) {
         let Some(wanted) = wanted else {
             (self.wanted, self.outdated) = (Vec::new(), None);
             return;
         };
         if self.wanted.is_empty() && self.output.as_ref().is_some_and(|o| o.pair.origin != wanted) {
-            (self.output, self.asked) = (None, None);
+            (self.output, self.last_request) = (None, None);
         }
         if self.wanted.last().is_none_or(|(last, _)| *last != wanted) {
             self.wanted.push((wanted, Instant::now()));
         }
-        // Both are old since the origin after theirs, or since the first one where theirs was never seen.
+        // Each is outdated since the origin after its own came, or since the first one where its own was never wanted.
         let after = |pair: &Pair| self.wanted.iter().rposition(|(of, _)| *of == pair.origin).map_or(0, |at| at + 1);
         let drawn = [pictured, self.output.as_ref().map(|output| &output.pair)];
         let next = drawn.into_iter().flatten().map(after).min().unwrap_or(self.wanted.len());
         self.outdated = self.wanted.get(next).map(|(_, since)| *since);
         self.wanted.drain(..next.saturating_sub(1));
         if self.wanted.len() > MAX_ORIGINS {
+            // The first two set the time.
             self.wanted.remove(2);
         }
     }
 
-    /// Asks for an output, unless the last request serves; `held` while an object is dragged.
+    /// Sends a request to the worker, unless the last one serves. `held` is whether an object is being dragged.
     pub fn ask(&mut self, request: MethodRequest, held: bool) {
-        if !self.asked.as_ref().is_some_and(|a| a.serves(&request)) {
+        if !self.last_request.as_ref().is_some_and(|last| last.serves(&request)) {
             if !held {
                 self.worker.cancel_older_than(PATIENCE);
             }
             self.worker.request(request.clone());
-            self.asked = Some(request);
+            self.last_request = Some(request);
         }
     }
 
     /// Cancels the work at the user's request.
     pub fn cancel(&mut self) {
         self.worker.cancel();
-        let method = self.asked.as_ref().map_or("", |q| q.method.name());
+        let method = self.last_request.as_ref().map_or("", |request| request.method.name());
         let reason = "cancelled; change the scene or the method to start again".to_owned();
         self.refusal = Some(Refusal { method, reason });
     }
 
-    /// Cancels the work while it is out of sight; the next frame with it in sight asks again.
+    /// Cancels the work while no panel shows its output. The next frame with such a panel sends the request again.
     pub fn rest(&mut self) {
         if self.worker.is_busy() {
             self.worker.cancel();
-            self.asked = None;
+            self.last_request = None;
         }
     }
 
@@ -310,25 +320,30 @@ impl MethodJob {
         self.worker.is_busy()
     }
 
-    /// Name of the method of the shown output, where it is of the samples on screen and another method works on them.
+    /// Name of the method of the output on screen, where the output is of the requested samples and another method works on them.
     pub fn of_another_method(&self) -> Option<&'static str> {
-        let (output, asked) = (self.output.as_ref()?, self.asked.as_ref()?);
-        let is_only_method = output.basis == asked.basis && output.method() != asked.method.name();
+        let (output, requested) = (self.output.as_ref()?, self.last_request.as_ref()?);
+        let is_only_method = output.basis == requested.basis && output.method() != requested.method.name();
         (is_only_method && self.is_busy()).then_some(output.method())
     }
 
-    /// Time since which the output or its picture belongs to other samples or another method than those on screen, if it does.
+    /// Time since which the output or its picture belongs to another origin than the wanted one, if it does.
     pub fn outdated(&self) -> Option<Instant> {
         self.outdated
     }
 }
 
-fn reconstruct(q: &MethodRequest, method: &dyn Reconstructor, task: &Task) -> Result<Answer, ReconstructError> {
-    let Basis { radar, ends, .. } = &q.basis;
-    let request = q.basis.request(!q.at_rest, task.clone());
+fn reconstruct(
+    method_request: &MethodRequest,
+    method: &dyn Reconstructor,
+    task: &Task,
+) -> Result<Answer, ReconstructError> {
+    let MethodRequest { basis, listed, at_rest, .. } = method_request;
+    let Basis { radar, ends, .. } = basis;
+    let request = basis.request(!at_rest, task.clone());
     let answer = method.reconstruct(radar, ends, &request)?;
     let list = || find(method, radar, ends, &request, &answer);
-    let found = q.listed.then(list).transpose()?;
+    let found = listed.then(list).transpose()?;
     Ok((answer, found))
 }
 

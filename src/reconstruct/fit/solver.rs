@@ -1,17 +1,20 @@
-//! Small dense systems that may be nearly singular.
+//! Small dense systems of equations that may be nearly singular.
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 use num_complex::Complex64;
 
-/// Solver of a positive semi-definite system, scaled to unit diagonal, with a ridge of rounding size.
+/// Cholesky solver of a positive semi-definite Hermitian system. The matrix is scaled to unit diagonal, and a ridge is added to it.
 pub struct Ridge {
+    /// The Cholesky factor; `None` where no ridge made the matrix positive definite.
     factor: Option<Llt<Complex64>>,
+    /// Inverse square roots of the diagonal.
     scale: Vec<f64>,
 }
 
 impl Ridge {
-    /// Factors `matrix` with `ridge` times its diagonal added, or with the smallest ridge that makes it positive definite.
+    /// Factors `matrix`, `[n, n]`, with `ridge` times its diagonal added. The ridge is raised to 1e-14, 1e-11, 1e-8 or 1e-4, the first of them that
+    /// makes the matrix positive definite.
     pub fn new(matrix: &Mat<Complex64>, ridge: f64) -> Self {
         let n = matrix.nrows();
         let scale: Vec<f64> =
@@ -25,7 +28,7 @@ impl Ridge {
         Ridge { factor, scale }
     }
 
-    /// The solution, or zeros for a system that has none.
+    /// The solution for the right-hand sides `rhs`; both are `[n, right-hand sides]`. Zeros where no ridge made the matrix positive definite.
     pub fn solve(&self, rhs: &Mat<Complex64>) -> Mat<Complex64> {
         let Some(factor) = &self.factor else { return Mat::zeros(rhs.nrows(), rhs.ncols()) };
         let scaled = Mat::from_fn(rhs.nrows(), rhs.ncols(), |i, j| rhs[(i, j)] * self.scale[i]);
@@ -34,7 +37,10 @@ impl Ridge {
     }
 }
 
-/// Solution of `(H + damping diag H) step = gradient`, or `None` where H is not positive definite.
+/// The Levenberg-Marquardt step: the solution of `(H + damping diag H) step = gradient`, for `H`, `[n, n]`, and `gradient`, `[n]`. `None` where the
+/// damped matrix is not positive definite or the step is not finite.
+///
+/// Marquardt, J. SIAM 11 (1963) 431.
 pub fn damped_step(hessian: &Mat<f64>, gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
     let n = gradient.len();
     let scale: Vec<f64> = (0..n).map(|i| hessian[(i, i)].abs().max(f64::MIN_POSITIVE).sqrt().recip()).collect();

@@ -1,7 +1,7 @@
-//! Beams of both ends with their phases, and the echoes of rows of reflectors in them.
+//! Complex beams of both ends over range, and the echoes of a row of reflectors in them.
 //!
-//! A row's echoes are looked up in the beams at their places and added with their phases: this is far cheaper than computing samples, and good
-//! enough to choose the rows for that.
+//! A row's echoes are interpolated in the beams at the reflectors' places and summed coherently. This is far cheaper than a fit to the samples, and
+//! accurate enough to choose the rows for such a fit.
 
 use super::end_beams::{beam_of_cos, end_beams};
 use super::view::View;
@@ -10,27 +10,28 @@ use crate::signal::simd::{Kernel, LANES_F64 as W, Lanes, Simd, phasor};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Beams formed by each end: fine enough to take the nearest.
-const BEAMS: usize = 96;
+/// Number of beams of each end. They are so dense that the nearest one is used without interpolation.
+const BEAM_COUNT: usize = 96;
 
-/// Least distance of a row's place, metres; nearer places count as this far.
-const NEAREST_METRES: f64 = 0.05;
+/// Least range of a reflector, metres. A nearer one is treated as if at this range.
+const MIN_RANGE_METRES: f64 = 0.05;
 
-/// Beams of both ends, referred to the middle of the chirp and of the end so that they vary slowly with range and angle.
+/// Beams of both ends. Their phases are referred to the middle of the chirp and of the end, so that they vary slowly with range and angle.
 pub struct PhasedBeams {
-    /// `[beam * bins + range bin]` for each end.
+    /// Complex amplitudes of each end, at index `beam * bins + range bin`.
     beams: [Vec<Complex64>; 2],
     /// The view of each end.
     pub views: [View; 2],
+    /// Number of range bins.
     bins: usize,
     bins_per_metre: f64,
-    /// Phase of an echo at the middle of the chirp, turns a metre.
+    /// Phase of an echo in the middle of the chirp for each metre of range, turns.
     pub turns_per_metre: f64,
-    /// Sign of a wrap: referred to the middle of the chirp, the rows of an even number of samples change sign with every wrap.
+    /// Factor of a beam at each wrap of the range. With phases referred to the middle of the chirp it is -1 for an even number of samples, else 1.
     wrap_sign: f64,
 }
 
-/// Places at equal steps along a straight line.
+/// A row of reflectors: places at equal steps along a straight line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// The first place (x, y), metres.
@@ -39,29 +40,29 @@ pub struct Row {
     pub step_metres: [f64; 2],
 }
 
-/// A reflector's echo at an end, without its phase.
+/// A reflector's echo at an end. The phase of its range is taken out.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Heard {
-    /// Value times the amplitude 1/R^2.
+    /// The beam's value times the amplitude `1/R^2` of a reflector of gain 1.
     pub weighted: Complex64,
-    /// Square of the amplitude.
+    /// Square of that amplitude.
     pub weight: f64,
 }
 
-/// Power of the strongest beam of every range bin at each end.
+/// Power of the strongest beam in each range bin, for each end.
 pub struct Strongest([Vec<f64>; 2]);
 
-/// The beams' power at a place, the smaller of both ends.
+/// Power of the beams at a place. Each figure is the smaller one of the two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Presence {
-    /// Power of the beam that looks there, as a part of the strongest beam's in the same range bin.
+    /// Power of the beam towards the place over that of the strongest beam in the same range bin, 0 to 1.
     pub part: f64,
-    /// Power of that strongest beam, scaled over range so that it is constant for one reflectivity.
+    /// Power of that strongest beam times `R^4`, so that it doesn't depend on the range of a reflector.
     pub even_power: f64,
 }
 
 impl Row {
-    /// Place number `i`, (x, y) in metres.
+    /// Place number `i` from 0, (x, y) in metres.
     #[inline(always)]
     pub fn place_metres(&self, i: f64) -> [f64; 2] {
         [0, 1].map(|axis| self.first_metres[axis] + i * self.step_metres[axis])
@@ -69,13 +70,13 @@ impl Row {
 }
 
 impl PhasedBeams {
-    /// Forms the beams of `residual` (all samples of both ends, not windowed).
+    /// Forms the beams of `residual`: the samples of both ends, channel by channel, without a window.
     pub fn new(radar: &Radar, residual: &[Complex64]) -> Self {
         let bins = radar.samples;
         let middle = (bins as f64 - 1.0) / 2.0;
         let shift: Vec<Complex64> =
             (0..bins).map(|bin| Complex64::cis(TAU * (bin as f64 * middle / bins as f64).fract())).collect();
-        let beams = end_beams(radar, residual, BEAMS).map(|mut beams| {
+        let beams = end_beams(radar, residual, BEAM_COUNT).map(|mut beams| {
             beams.outer_iter_mut().for_each(|mut row| row.iter_mut().zip(&shift).for_each(|(b, shift)| *b *= shift));
             beams.into_raw_vec_and_offset().0
         });
@@ -90,61 +91,62 @@ impl PhasedBeams {
         }
     }
 
-    /// The strongest beams of all range bins.
+    /// The power of the strongest beam in each range bin.
     pub fn strongest(&self) -> Strongest {
         Strongest(self.beams.each_ref().map(|beams| {
-            let mut most = vec![0.0f64; self.bins];
+            let mut peak = vec![0.0f64; self.bins];
             for beam in beams.chunks_exact(self.bins) {
-                most.iter_mut().zip(beam).for_each(|(most, v)| *most = most.max(v.norm_sqr()));
+                peak.iter_mut().zip(beam).for_each(|(peak, v)| *peak = peak.max(v.norm_sqr()));
             }
-            most
+            peak
         }))
     }
 
-    /// The beams' power at (x, y), metres.
+    /// The power of the beams at a place (x, y), metres.
     pub fn presence(&self, strongest: &Strongest, place_metres: [f64; 2]) -> Presence {
         let of_end = |end: usize| {
-            let (range, cos) = self.views[end].of_place(place_metres, NEAREST_METRES);
+            let (range, cos) = self.views[end].of_place(place_metres, MIN_RANGE_METRES);
             let bin = (range * self.bins_per_metre).round() as usize % self.bins;
-            let own = self.beams[end][beam_of_cos(cos, BEAMS) * self.bins + bin].norm_sqr();
-            let most = strongest.0[end][bin].max(f64::MIN_POSITIVE);
-            Presence { part: own / most, even_power: most * range.powi(4) }
+            let own = self.beams[end][beam_of_cos(cos, BEAM_COUNT) * self.bins + bin].norm_sqr();
+            let peak = strongest.0[end][bin].max(f64::MIN_POSITIVE);
+            Presence { part: own / peak, even_power: peak * range.powi(4) }
         };
         let (a, b) = (of_end(0), of_end(1));
         Presence { part: a.part.min(b.part), even_power: a.even_power.min(b.even_power) }
     }
 
-    /// Range from which on ranges repeat.
+    /// The unambiguous range, metres.
     pub fn max_range_metres(&self) -> f64 {
         self.bins as f64 / self.bins_per_metre
     }
 
-    /// Length of a range bin.
+    /// Length of a range bin, metres.
     pub fn bin_metres(&self) -> f64 {
         self.bins_per_metre.recip()
     }
 
-    /// Coherent part of the power at the places of each of `rows`, over `count` reflectors of one gain.
+    /// Coherent part of the beams' power at the places of each of `rows`, 0 to 1: the power that `count` reflectors of one gain explain, over the sum
+    /// of the powers. 0 for a row that ends behind the array.
     pub fn parts_adding_up(&self, rows: &[Row], count: usize) -> Vec<f64> {
-        Simd::chosen().run(PartsAddingUp { beams: self, rows, count })
+        Simd::chosen().run(CoherentParts { beams: self, rows, count })
     }
 
-    /// Coherent part of the power at the places of `row`, one for each of `heard`, under one gain for the row.
+    /// [`Self::parts_adding_up`] of one row, with a reflector for each entry of the buffer `heard`. The gain may differ between the ends.
     #[inline(always)]
-    fn part_adding_up<const FMA: bool>(&self, row: &Row, heard: &mut [Heard]) -> f64 {
+    fn coherent_part<const FMA: bool>(&self, row: &Row, heard: &mut [Heard]) -> f64 {
         if row.place_metres((heard.len() - 1) as f64)[1] <= 0.0 {
             return 0.0;
         }
-        let (mut added, mut all) = (0.0, 0.0);
+        let (mut coherent, mut total) = (0.0, 0.0);
         for end in 0..self.beams.len() {
             self.listen::<FMA>(end, row, heard);
             let AddedUp { sum, weight, power } = added_up(heard);
-            (added, all) = (added + sum.norm_sqr() / weight, all + power);
+            (coherent, total) = (coherent + sum.norm_sqr() / weight, total + power);
         }
-        added / f64::max(all, f64::MIN_POSITIVE)
+        coherent / f64::max(total, f64::MIN_POSITIVE)
     }
 
-    /// Writes the echo of each reflector of `row` at an end, one for each of `heard`.
+    /// Writes the echoes of the first reflectors of `row` at an end (0 or 1) into `heard`, one for each entry.
     #[inline(always)]
     pub fn listen<const FMA: bool>(&self, end: usize, row: &Row, heard: &mut [Heard]) {
         let PhasedBeams { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self;
@@ -156,18 +158,18 @@ impl PhasedBeams {
             let i = Lanes::<f64, W>(std::array::from_fn(|lane| (block * W + lane) as f64));
             let dx = i * Lanes::splat(step_x) + Lanes::splat(from);
             let y = i * Lanes::splat(step_y) + Lanes::splat(y);
-            let range = view.range_metres(dx, y).map(|r| if r > NEAREST_METRES { r } else { NEAREST_METRES });
+            let range = view.range_metres(dx, y).map(|r| if r > MIN_RANGE_METRES { r } else { MIN_RANGE_METRES });
             let phase = phasor::<f64, W, FMA>(range * Lanes::splat(-turns_per_metre));
             let inverse = range.map(f64::recip);
             let (cos, at, amplitude) =
                 (view.cos_theta(dx, y, inverse), range * Lanes::splat(bins_per_metre), inverse * inverse);
             for (lane, heard) in heard.iter_mut().enumerate() {
-                let beam = &self.beams[end][beam_of_cos(cos.0[lane], BEAMS) * bins..][..bins];
+                let beam = &self.beams[end][beam_of_cos(cos.0[lane], BEAM_COUNT) * bins..][..bins];
                 let low = at.0[lane] as usize;
                 let part = at.0[lane] - low as f64;
-                // Neighbouring rows differ by half a turn (the middle of the chirp), which `new` has removed.
-                let row = |k: usize| if k < bins { beam[k] } else { wrapped(beam, k, wrap_sign) };
-                let value = row(low) * (1.0 - part) + row(low + 1) * part;
+                // Linear interpolation over range. `new` has removed the half turn between neighbouring range bins.
+                let at_bin = |k: usize| if k < bins { beam[k] } else { wrapped(beam, k, wrap_sign) };
+                let value = at_bin(low) * (1.0 - part) + at_bin(low + 1) * part;
                 let amplitude = amplitude.0[lane];
                 let phase = Complex64::new(phase.re.0[lane], phase.im.0[lane]);
                 *heard = Heard { weighted: value * phase * amplitude, weight: amplitude * amplitude };
@@ -177,13 +179,13 @@ impl PhasedBeams {
 }
 
 /// Kernel of [`PhasedBeams::parts_adding_up`].
-struct PartsAddingUp<'a> {
+struct CoherentParts<'a> {
     beams: &'a PhasedBeams,
     rows: &'a [Row],
     count: usize,
 }
 
-impl Kernel for PartsAddingUp<'_> {
+impl Kernel for CoherentParts<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
@@ -191,23 +193,23 @@ impl Kernel for PartsAddingUp<'_> {
         let mut heard = vec![Heard::default(); self.count];
         let mut parts = Vec::with_capacity(self.rows.len());
         for row in self.rows {
-            parts.push(self.beams.part_adding_up::<FMA>(row, &mut heard));
+            parts.push(self.beams.coherent_part::<FMA>(row, &mut heard));
         }
         parts
     }
 }
 
-/// Echoes of a row together.
+/// Sums over the echoes of a row at an end.
 pub struct AddedUp {
     /// Sum of the weighted values.
     pub sum: Complex64,
-    /// Sum of the weights. The square of the sum over them is the power of a row of one gain.
+    /// Sum of the weights. `|sum|^2 / weight` is the power that a row of one gain explains.
     pub weight: f64,
-    /// Sum of the powers of all echoes.
+    /// Sum of the beams' powers at all reflectors.
     pub power: f64,
 }
 
-/// The sums over these echoes.
+/// The sums over the echoes of a row at an end.
 #[inline(always)]
 pub fn added_up(heard: &[Heard]) -> AddedUp {
     let mut out = AddedUp { sum: Complex64::default(), weight: 0.0, power: 0.0 };
@@ -219,7 +221,7 @@ pub fn added_up(heard: &[Heard]) -> AddedUp {
     out
 }
 
-/// Row `k` of a beam beyond its last.
+/// Range bin `k` of a beam, beyond the last one.
 #[cold]
 fn wrapped(beam: &[Complex64], k: usize, wrap_sign: f64) -> Complex64 {
     let value = beam[k % beam.len()];
