@@ -87,7 +87,6 @@ impl Default for VisiblePart {
     }
 }
 
-/// A step of a lesson.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonPlace {

@@ -44,7 +44,6 @@ pub struct Options {
     pub problems: Vec<String>,
 }
 
-/// The app.
 pub struct App {
     pub(super) state: State,
     pub jobs: Jobs,

@@ -80,7 +80,6 @@ impl<M: Default + 'static, Q: Query> Held<M, Q> {
     }
 }
 
-/// A panel of any type.
 pub trait AnyPanel: std::any::Any {
     fn wants(&self) -> &'static [Want];
 

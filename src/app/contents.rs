@@ -23,7 +23,6 @@ macro_rules! starts {
 
 every_panel!(starts);
 
-/// All panels, by [`Panel`].
 pub struct Panels(BTreeMap<Panel, Box<dyn AnyPanel>>);
 
 impl Panels {

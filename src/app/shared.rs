@@ -40,7 +40,6 @@ impl<T: ?Sized> From<&Arc<T>> for Shared<T> {
 }
 
 impl<T> Shared<T> {
-    /// Shares a value.
     pub fn new(value: T) -> Self {
         Shared(Arc::new(value))
     }

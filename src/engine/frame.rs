@@ -53,7 +53,6 @@ impl Pictured {
     }
 }
 
-/// One map, ready to be drawn.
 #[derive(Debug, Clone)]
 pub struct ReadyMap {
     /// Lambda, `[range bins, columns]`.

@@ -66,7 +66,6 @@ impl Engine {
         self.double.iter_mut().for_each(Bank::forget);
     }
 
-    /// The radar of the engine.
     pub fn radar(&self) -> &Radar {
         &self.radar
     }
@@ -79,7 +78,6 @@ impl Engine {
         }
     }
 
-    /// Size of all caches, bytes.
     pub fn cache_bytes(&self) -> usize {
         let banks = self.single.as_ref().map_or(0, Bank::bytes) + self.double.as_ref().map_or(0, Bank::bytes);
         let cells = self.radar.samples * self.radar.elements * size_of::<f32>();

@@ -37,14 +37,12 @@ impl fmt::Display for EngineStage {
     }
 }
 
-/// The outcome of a stage.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StageOutcome {
     Computed(String),
     Skipped(&'static str),
 }
 
-/// One stage of an update.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StageReport {
     pub stage: EngineStage,

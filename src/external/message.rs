@@ -81,7 +81,6 @@ pub fn hello() -> Vec<u8> {
     line_of(&Question { apertura: VERSION, ask: "hello", ..Question::default() })
 }
 
-/// The question for a map.
 pub fn question(id: u64, radar: &Radar, ends: &TwoEnds, request: &Request) -> Vec<u8> {
     let both = stack(Axis(0), &[ends.first.view(), ends.last.view()]).unwrap_or_default();
     let mut array = Vec::new();

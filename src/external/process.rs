@@ -21,7 +21,6 @@ const FAREWELL: Duration = Duration::from_millis(500);
 /// Longest array of an answer before the first question has set a limit, bytes.
 const MAX_UNASKED_BYTES: u64 = 1 << 20;
 
-/// A running process.
 pub struct Process {
     child: Child,
     questions: Option<Sender<Vec<u8>>>,

@@ -41,7 +41,6 @@ pub struct SheetChart {
     pub series: Vec<Series>,
 }
 
-/// The stroke of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
     /// A line from point to point.
@@ -89,7 +88,6 @@ pub enum Ink {
     Second,
 }
 
-/// A shape of a sketch.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SketchShape {
     Line(Vec<(f64, f64)>, Ink),

@@ -126,7 +126,6 @@ impl SceneSource {
         [vec![self.scene_panel(title, &seen.scene)], self.map_panels(seen)].concat()
     }
 
-    /// The inputs and the target.
     pub fn map_panels(&self, seen: &ScenePictures) -> Vec<SheetPanel> {
         let titled = ["Input 0", "Input 1", "Target"].into_iter().zip(&seen.lambda);
         titled.map(|(title, map)| self.lambda_panel(title, map)).collect()

@@ -7,7 +7,6 @@ use crate::scene::{Reflector, Scene};
 /// Radius around the middle of a blob within which it can be grabbed, in points of the view: blobs are wider than points of the scene.
 pub const BLOB_RADIUS_POINTS: f64 = 12.0;
 
-/// A blob that was hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlobHit {
     pub object: usize,
@@ -16,7 +15,6 @@ pub struct BlobHit {
 }
 
 impl BlobHit {
-    /// The blob as a hit of its object in the scene.
     pub fn as_hit(&self, scene: &Scene) -> Option<Hit> {
         let place = scene.objects.get(self.object)?.centre_metres().into();
         Some(Hit { object: self.object, grip: Grip::Body, place })

@@ -16,7 +16,6 @@ pub enum PasteError {
     Scene(#[from] SceneError),
 }
 
-/// Text of `objects`.
 pub fn to_text(objects: Vec<Object>) -> String {
     toml::to_string(&Scene { objects, ..Scene::default() }).unwrap_or_default()
 }

@@ -216,12 +216,10 @@ impl Document {
         self.id
     }
 
-    /// The scene.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.content.scene
     }
 
-    /// The radar that looks at it.
     pub fn radar(&self) -> &Arc<Radar> {
         &self.content.radar
     }
@@ -231,7 +229,6 @@ impl Document {
         self.path.as_deref()
     }
 
-    /// The name of its file, of the recording under it, or of the scene, or "untitled".
     pub fn name(&self) -> String {
         let name = self.path().or(self.recording_source().map(Path::new)).and_then(Path::file_name);
         let of_scene = || match self.scene().name.as_str() {

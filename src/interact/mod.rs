@@ -40,12 +40,10 @@ pub struct Place {
 }
 
 impl Place {
-    /// The place at (x, y) metres.
     pub fn new(x_metres: f64, y_metres: f64) -> Self {
         Place { x_metres, y_metres }
     }
 
-    /// Distance to another place, metres.
     pub fn distance_metres(self, other: Place) -> f64 {
         (self.x_metres - other.x_metres).hypot(self.y_metres - other.y_metres)
     }

@@ -78,7 +78,6 @@ impl Selection {
         })
     }
 
-    /// Picks `indices`.
     pub fn pick(&mut self, indices: impl IntoIterator<Item = usize>, mode: SelectionMode) {
         if mode == SelectionMode::Range {
             let Some(to) = indices.into_iter().last() else { return };

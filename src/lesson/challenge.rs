@@ -48,9 +48,15 @@ pub struct Requirement {
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Measure {
     /// Lambda of an object's blob.
-    Lambda { map: MapName, object: ObjectNumber },
+    Lambda {
+        map: MapName,
+        object: ObjectNumber,
+    },
     /// Fall of Lambda between two objects' blobs, below the weaker of the two.
-    Dip { map: MapName, objects: [ObjectNumber; 2] },
+    Dip {
+        map: MapName,
+        objects: [ObjectNumber; 2],
+    },
     /// SE of the method's output.
     SquaredError,
     /// SE of the learner's whole-array map against that of the hidden objects.
@@ -60,15 +66,24 @@ pub enum Measure {
     /// Number of the scene's objects.
     Objects,
     /// Distance between two objects, metres.
-    Distance { objects: [ObjectNumber; 2] },
+    Distance {
+        objects: [ObjectNumber; 2],
+    },
     /// The radar's bandwidth.
     BandwidthGigahertz,
     /// Range of an object from the array's centre, metres.
-    Range { object: ObjectNumber },
+    Range {
+        object: ObjectNumber,
+    },
     /// Part of a map's cells that are brighter than `above`.
-    BrightPart { map: MapName, above: f32 },
-    /// A quantity of the radar, or of one of the objects.
-    Quantity { quantity: Quantity, object: Option<ObjectNumber> },
+    BrightPart {
+        map: MapName,
+        above: f32,
+    },
+    Quantity {
+        quantity: Quantity,
+        object: Option<ObjectNumber>,
+    },
 }
 
 impl Challenge {
@@ -180,7 +195,6 @@ impl Measure {
 }
 
 impl MapName {
-    /// Its name in sentences.
     pub fn words(self) -> &'static str {
         match self {
             MapName::Input0 => "input 0",

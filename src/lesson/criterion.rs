@@ -6,7 +6,6 @@ use super::stage::Stage;
 use crate::radar::capitalised;
 use crate::scene::Scene;
 
-/// A requirement, measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// The wanted value, as a sentence without its full stop.

@@ -30,7 +30,6 @@ pub struct Lesson {
     pub steps: Vec<Step>,
 }
 
-/// One step of a lesson.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Step {

@@ -58,12 +58,10 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Its name in sentences.
     pub fn name(self) -> &'static str {
         self.words().0
     }
 
-    /// The unit of its value.
     pub fn unit(self) -> &'static str {
         self.words().1
     }

@@ -21,13 +21,29 @@ pub struct Question {
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Answer {
     /// A click at the place of a peak in a map: that of an object's blob, or without an object that of the brightest cell.
-    Click { map: MapName, object: Option<ObjectNumber>, within_columns: f64, within_bins: f64 },
-    /// The value of a quantity.
-    Number { quantity: Quantity, object: Option<ObjectNumber>, unit: String, within_percent: f64 },
+    Click {
+        map: MapName,
+        object: Option<ObjectNumber>,
+        within_columns: f64,
+        within_bins: f64,
+    },
+    Number {
+        quantity: Quantity,
+        object: Option<ObjectNumber>,
+        unit: String,
+        within_percent: f64,
+    },
     /// One of several options; the right one is counted from 1.
-    Choice { options: Vec<String>, right: usize },
+    Choice {
+        options: Vec<String>,
+        right: usize,
+    },
     /// A threshold that the blobs of the objects to keep exceed, and at most this part of the cells outside the target's.
-    Threshold { map: MapName, keep: Vec<ObjectNumber>, false_alarm_at_most: f64 },
+    Threshold {
+        map: MapName,
+        keep: Vec<ObjectNumber>,
+        false_alarm_at_most: f64,
+    },
 }
 
 /// A learner's answer.

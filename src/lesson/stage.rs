@@ -146,7 +146,6 @@ impl Stage {
         [a, b].map(|object| self.blob_within(map, object, bins, columns))
     }
 
-    /// The brightest cell of a whole map.
     pub fn brightest(&self, map: &RangeAngleMap) -> Cell {
         let (rows, columns) = map.lambda.dim();
         let middle = Cell { bin: rows as f64 / 2.0, column: columns as f64 / 2.0 };

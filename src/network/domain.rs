@@ -80,7 +80,6 @@ impl Domain {
         Err(ReconstructError::Unusable { method, reason })
     }
 
-    /// Samples and elements of the domain's radars.
     pub(super) fn shape(&self) -> [usize; 2] {
         match self {
             Domain::Radar(radar) => [radar.samples, radar.elements],

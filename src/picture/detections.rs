@@ -33,7 +33,6 @@ impl CellVerdict {
         }
     }
 
-    /// Its name in legends.
     pub fn name(self) -> &'static str {
         match self {
             CellVerdict::Nothing => "nothing",

@@ -121,7 +121,6 @@ pub fn metadata(path: &Path) -> io::Result<Metadata> {
     }
 }
 
-/// An entry of a folder.
 #[derive(Debug)]
 pub struct DirEntry(PathBuf);
 
@@ -131,7 +130,6 @@ impl DirEntry {
         self.0.clone()
     }
 
-    /// Name of the entry.
     pub fn file_name(&self) -> OsString {
         self.0.file_name().unwrap_or_default().to_owned()
     }

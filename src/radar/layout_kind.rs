@@ -13,20 +13,33 @@ use std::str::FromStr;
 pub enum LayoutKind {
     /// Every element.
     Full,
-    /// Both ends.
     TwoEnds,
     /// The first end alone.
     OneEnd,
     /// Neighbours, and as many elements as `apart` one more than the neighbours apart (Pal and Vaidyanathan 2010).
-    Nested { neighbours: usize, apart: usize },
+    Nested {
+        neighbours: usize,
+        apart: usize,
+    },
     /// `many` elements `step` apart, and twice `step` elements `many` apart (Vaidyanathan and Pal 2011).
-    Coprime { step: usize, many: usize },
+    Coprime {
+        step: usize,
+        many: usize,
+    },
     /// Every `step`-th element.
-    Thinned { step: usize },
+    Thinned {
+        step: usize,
+    },
     /// Elements at random places of the whole aperture.
-    Random { elements: usize, seed: u64 },
+    Random {
+        elements: usize,
+        seed: u64,
+    },
     /// The virtual elements of every pair of a transmitter and a receiver.
-    Mimo { transmitters: usize, receivers: usize },
+    Mimo {
+        transmitters: usize,
+        receivers: usize,
+    },
     /// The elements of these numbers.
     Listed(Vec<usize>),
 }

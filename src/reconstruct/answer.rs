@@ -49,7 +49,6 @@ impl LayoutSamples {
     }
 }
 
-/// The result of a reconstruction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reconstruction {
     /// Estimate of the whole array's Lambda, `[range bins, columns]`.

@@ -38,7 +38,6 @@ impl Tried {
     }
 }
 
-/// The verdict on an attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
     /// The attempt is part of the answer when its rung is done.

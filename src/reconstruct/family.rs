@@ -1,6 +1,5 @@
 //! Families of methods, by which lists are grouped.
 
-/// A family of methods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
     /// Programs of the user.

@@ -23,7 +23,6 @@ pub struct Hybrid {
 type LastFound = Option<(Radar, Arc<Found>)>;
 
 impl Hybrid {
-    /// The hybrid of the search and `network`.
     pub fn new(network: Arc<dyn Reconstructor>) -> Self {
         Hybrid { network, settings: Settings::default(), last: None }
     }
@@ -119,9 +118,7 @@ const WHOLE_RANGE: Decibels = Decibels(400.0);
 /// The requested dynamic range, as the upper part of a whole one.
 #[derive(Debug, Clone, Copy)]
 struct Shown {
-    /// The whole range.
     whole: Normalisation,
-    /// The part of it that is shown.
     part: f32,
 }
 

@@ -56,7 +56,6 @@ pub trait Reconstructor: Send + Sync {
     /// Name and description of the method.
     fn about(&self) -> About;
 
-    /// The family of the method.
     fn family(&self) -> Family {
         Family::Classical
     }
@@ -90,7 +89,6 @@ pub trait Reconstructor: Send + Sync {
         true
     }
 
-    /// Fewest elements of an end.
     fn fewest_end_elements(&self) -> usize {
         3
     }
@@ -241,7 +239,6 @@ pub trait Reconstructor: Send + Sync {
     }
 }
 
-/// The answer of `method` to the samples of a layout.
 fn reconstruct_layout<M: Reconstructor + ?Sized>(
     method: &M,
     radar: &Radar,

@@ -6,7 +6,6 @@ use crate::radar::Decibels;
 /// noise in some of the scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TrainedNoise {
-    /// Rounding alone.
     Rounding,
     /// Rounding, and thermal noise at signal-to-noise ratios from the first to the second, per sample over the whole array.
     RoundingAndSnr(Decibels, Decibels),

@@ -10,7 +10,6 @@ use std::time::Duration;
 /// The port that most capture cards send to.
 pub const USUAL_PORT: u16 = 4098;
 
-/// Longest packet, bytes.
 const PACKET_BYTES: usize = 1 << 16;
 /// Time between two looks for the end of a silence.
 const PATIENCE: Duration = Duration::from_millis(100);

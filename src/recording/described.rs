@@ -166,7 +166,6 @@ impl<'a> Described<'a> {
         Ok(Some([counted().map_err(|fault| fault.of(self.path))?, frame.unwrap_or(0) as u64]))
     }
 
-    /// Reads every loop of the frame.
     pub fn loops(&self) -> Result<FrameLoops, RecordingError> {
         let Described { path, profile, says_interval, .. } = self;
         let samples = self.every_loop().map_err(|fault| fault.of(path))?;

@@ -29,7 +29,6 @@ impl Numbers {
         Some("The array's integers have lost their sign: those beyond 32767 are taken less 65536, as int16 would have them.".to_owned())
     }
 
-    /// Its shape.
     pub(super) fn shape(&self) -> &[usize] {
         match self {
             Numbers::Real(values) => values.shape(),

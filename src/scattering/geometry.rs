@@ -49,7 +49,6 @@ impl V {
         self.0 * o.1 - self.1 * o.0
     }
 
-    /// Length.
     pub fn norm(self) -> f64 {
         root(self.dot(self))
     }

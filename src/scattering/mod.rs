@@ -61,7 +61,6 @@ impl From<Pair> for AntennaPlaces {
 }
 
 impl AntennaPlaces {
-    /// Both antennas at one place.
     pub fn at(place_metres: [f64; 2]) -> Self {
         AntennaPlaces { transmitter_metres: place_metres, receiver_metres: place_metres }
     }
@@ -70,7 +69,6 @@ impl AntennaPlaces {
 /// The wave in the middle of the chirp, where amplitudes are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wave {
-    /// Transmit power, watts.
     pub power_watts: f64,
     /// Phase of the whole way for each metre of range: twice the physical wave number.
     pub radians_per_metre: f64,
@@ -81,7 +79,6 @@ pub struct Wave {
 }
 
 impl Wave {
-    /// The wave of `radar`.
     pub fn of(radar: &Radar) -> Self {
         let turns = radar.middle_turns_per_metre();
         let (power_watts, pattern) = (radar.transmit_power_watts, radar.pattern());
@@ -89,7 +86,6 @@ impl Wave {
     }
 }
 
-/// The kind of an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EchoKind {
     Point,
@@ -106,7 +102,6 @@ pub enum EchoKind {
 }
 
 impl EchoKind {
-    /// Its name in sentences.
     pub fn name(self) -> &'static str {
         match self {
             EchoKind::Point => "point",

@@ -28,7 +28,6 @@ impl Outline {
         }
     }
 
-    /// Its faces.
     pub fn faces(&self) -> &[Face] {
         &self.faces
     }

@@ -10,7 +10,6 @@ const MIN_REFINED_SIZE: f64 = 5.0;
 
 const STEPS: usize = 3;
 
-/// A circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle {
     centre: V,

@@ -24,7 +24,6 @@ struct Grain {
     phase: Complex64,
 }
 
-/// A rough face.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoughFace {
     face: Face,
@@ -46,7 +45,6 @@ impl RoughFace {
         RoughFace { face, deviation_metres, share_metres, grains: (0..count).map(grain).collect() }
     }
 
-    /// Grains, each of which is one echo.
     pub fn echo_count(&self) -> usize {
         self.grains.len()
     }

@@ -78,7 +78,6 @@ body! {
 }
 
 body! {
-    /// A round post.
     pub struct Post {
         /// x of its middle, along the array's axis, metres.
         pub x_metres: f64,

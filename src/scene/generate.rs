@@ -34,7 +34,6 @@ pub enum Reading {
     /// The author's published program, which reproduces the printed tables.
     #[default]
     Program,
-    /// The thesis' text.
     Text,
 }
 

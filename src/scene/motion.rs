@@ -7,7 +7,6 @@ use super::{Object, Scene, SceneError};
 pub const MAX_SPEED_METRES_PER_SECOND: f64 = 1e4;
 
 impl Object {
-    /// Its velocity along x and y, metres a second.
     pub fn velocity_metres_per_second(&self) -> [f64; 2] {
         of_each!(self, one => [one.velocity_x_metres_per_second, one.velocity_y_metres_per_second])
     }

@@ -71,7 +71,6 @@ impl Preset {
         self.failing_method().is_some()
     }
 
-    /// The preset called `id`.
     pub fn by_id(id: &str) -> Option<&'static Preset> {
         ALL.iter().find(|p| p.id == id)
     }

@@ -31,7 +31,6 @@ impl<const W: usize> Double<Lanes<f64, W>> {
     }
 }
 
-/// `a + b` exactly.
 #[inline(always)]
 pub(super) fn sum<const W: usize>(a: Lanes<f64, W>, b: Lanes<f64, W>) -> Double<Lanes<f64, W>> {
     let hi = a + b;

@@ -49,7 +49,6 @@ impl ArrayEcho {
         ArrayEcho::heard_by(radar, &pairs, range_metres, cos_theta)
     }
 
-    /// The echo of a unit reflector at (`range_metres`, `cos_theta`), as `pairs` hear it.
     pub fn heard_by(radar: &Radar, pairs: &[Pair], range_metres: f64, cos_theta: f64) -> Self {
         let cos = cos_theta.clamp(-1.0, 1.0);
         let reflector = Reflector::at([range_metres * cos, range_metres * (1.0 - cos * cos).sqrt()], 1.0);

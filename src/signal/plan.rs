@@ -64,7 +64,6 @@ impl Plan {
         }
     }
 
-    /// The plan with another algorithm.
     pub fn with_algorithm(self, algorithm: Algorithm) -> Plan {
         Plan { algorithm, ..self }
     }
@@ -74,7 +73,6 @@ impl Plan {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sum {
     pub algorithm: Algorithm,
-    /// Reflectors.
     pub reflectors: usize,
     /// Bound of the sum of their amplitudes ([`amplitude_bound`]).
     pub amplitude: f64,

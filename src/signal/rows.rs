@@ -14,7 +14,6 @@ impl Rows {
         Rows { bins: vec![false; bins] }
     }
 
-    /// The set of all `bins` bins.
     pub fn all(bins: usize) -> Self {
         Rows { bins: vec![true; bins] }
     }
@@ -24,7 +23,6 @@ impl Rows {
         self.bins.get(bin).copied().unwrap_or(false)
     }
 
-    /// Number of its bins.
     pub fn count(&self) -> usize {
         self.bins.iter().filter(|b| **b).count()
     }
@@ -48,7 +46,6 @@ impl Rows {
         self.bins[..end.saturating_sub(len)].fill(true);
     }
 
-    /// Adds the bins of `other`.
     pub fn extend(&mut self, other: &Rows) {
         self.bins.iter_mut().zip(&other.bins).for_each(|(a, b)| *a |= *b);
     }

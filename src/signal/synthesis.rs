@@ -30,7 +30,6 @@ pub struct BlockProfiles<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> BlockProfiles<T, W> {
-    /// Silence.
     pub fn silence(radar: &Radar) -> Self {
         let bins = radar.samples;
         BlockProfiles {
@@ -200,7 +199,6 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         HeardEchoes::new(&self.model, sources, |lane| self.array.pair(&self.radar, first_element + lane))
     }
 
-    /// The plan of the synthesis.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }

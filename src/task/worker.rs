@@ -20,7 +20,6 @@ use std::time::Duration;
 /// Number of a request, one higher than the last one's.
 pub type Generation = u64;
 
-/// The reply to a request.
 #[derive(Debug)]
 pub enum Reply<T> {
     Done { generation: Generation, result: T, elapsed: Duration },
@@ -252,7 +251,6 @@ impl<Q, T> Drop for Worker<Q, T> {
     }
 }
 
-/// The message of a caught panic.
 pub fn panic_message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without a message".to_owned())
@@ -263,7 +261,6 @@ mod tests {
     use super::*;
     use std::sync::mpsc;
 
-    /// Waits for the next replies.
     fn wait<Q: Send + 'static, T: Send + 'static>(worker: &Worker<Q, T>, woken: &mpsc::Receiver<()>) -> Vec<Reply<T>> {
         woken.recv_timeout(Duration::from_secs(20)).unwrap();
         worker.replies()

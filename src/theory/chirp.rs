@@ -7,16 +7,13 @@
 use crate::radar::{Radar, SPEED_OF_LIGHT};
 use crate::scene::{Interferer, Reflector, Scene};
 
-/// A linear chirp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChirpShape {
     /// Frequency at its start, hertz.
     pub start_hz: f64,
     /// Swept bandwidth, hertz.
     pub bandwidth_hz: f64,
-    /// Its duration, seconds.
     pub duration_seconds: f64,
-    /// Samples of the beat.
     pub samples: usize,
 }
 
@@ -27,12 +24,10 @@ pub struct BeatTone {
     pub object: usize,
     /// Half the way from the transmitter to the object and on to the receiver, metres.
     pub range_metres: f64,
-    /// Amplitude of a sample.
     pub amplitude: f64,
 }
 
 impl ChirpShape {
-    /// The chirp of a radar.
     pub fn of(radar: &Radar) -> ChirpShape {
         let Radar { carrier_hz: start_hz, bandwidth_hz, chirp_seconds: duration_seconds, samples, .. } = *radar;
         ChirpShape { start_hz, bandwidth_hz, duration_seconds, samples }

@@ -106,7 +106,6 @@ mod tests {
         }
     }
 
-    /// Length of the sum over the sum of the contributions' lengths, at a cell of the map of one point.
     fn straightness(radar: &Radar, point: (f64, f64), cell: [usize; 2]) -> [f64; 2] {
         let signal = simulate(radar, &Scene::of_points([point]), Floor::Exact, 0).unwrap();
         let phasors = Phasors::of(radar, signal.samples.view(), Aperture::Full, cell, true);

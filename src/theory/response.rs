@@ -44,7 +44,6 @@ impl Response {
         Response { samples: radar.samples, columns: radar.elements, over_range, elements }
     }
 
-    /// The row at `bin`.
     pub fn row(&self, bin: f64) -> ResponseRow {
         let samples = self.samples as f64;
         let part = |(distance_bins, amplitude): &(f64, Complex64)| {
@@ -63,7 +62,6 @@ impl Response {
 }
 
 impl ResponseRow {
-    /// Magnitude at `column`.
     pub fn magnitude(&self, column: f64) -> f64 {
         let turns = (column - (self.columns / 2) as f64) / self.columns as f64;
         let sum: Complex64 =

@@ -27,7 +27,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     }
 }
 
-/// Watches the log of a training.
 pub fn watch(state: &mut State, jobs: &mut Jobs, log: PathBuf) {
     jobs.training = Some(Watched::of(log));
     state.arrangement.set_open(Panel::Training, true);

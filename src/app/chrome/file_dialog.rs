@@ -20,7 +20,6 @@ impl FileDialogMemory {
         self.dialog.is_some() || self.replace.is_some()
     }
 
-    /// Asks for a file.
     pub fn ask(&mut self, question: Question) {
         self.dialog = Some(Browser::new(&question));
     }

@@ -184,7 +184,6 @@ fn random_scenes(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     });
 }
 
-/// The presets of failures, or all others.
 fn presets_of(ui: &mut Ui, failures: bool, asked: &mut Vec<Command>) {
     let listed = PRESETS.iter().enumerate().filter(|(_, preset)| preset.is_failure == failures);
     for (index, preset) in listed {

@@ -10,7 +10,6 @@ use crate::scene::presets;
 use eframe::egui::{self, Align2, Button, Context, Event, Key, Modifiers, TextEdit, Ui};
 use std::sync::Arc;
 
-/// State of the palette.
 #[derive(Default)]
 pub struct PaletteMemory {
     open: bool,

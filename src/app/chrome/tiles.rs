@@ -20,7 +20,6 @@ pub trait Draw {
     }
 }
 
-/// Draws the panels.
 pub fn show(ui: &mut Ui, arrangement: &mut Arrangement, panels: &mut dyn Draw) -> Vec<Command> {
     let views = arrangement.views.clone();
     let mut behavior = Behavior { panels, views, shown: BTreeSet::new(), asked: Vec::new() };

@@ -13,7 +13,6 @@ use crate::task::Task;
 use eframe::egui::{Color32, ColorImage};
 use std::sync::Arc;
 
-/// A request for the bounds of one reflector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundsRequest {
     pub radar: Radar,
@@ -37,7 +36,6 @@ impl BoundsRequest {
     }
 }
 
-/// Bounds of a reflector.
 pub struct BoundsResult {
     pub request: BoundsRequest,
     pub layout: Layout,

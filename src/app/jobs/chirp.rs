@@ -16,7 +16,6 @@ pub struct ChirpQuery {
 }
 
 impl ChirpQuery {
-    /// The query of the element chosen in the settings.
     pub fn of(state: &State) -> Self {
         let element = state.settings.chirp.element.min(state.radar().elements - 1);
         ChirpQuery { source: Source::of(state), element }

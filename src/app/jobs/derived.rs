@@ -14,7 +14,6 @@ pub const STALE: Duration = Duration::from_millis(400);
 
 /// The inputs of a value, and its computation. Equal queries have equal values.
 pub trait Query: Clone + PartialEq + Send + 'static {
-    /// The computed value.
     type Value: Send + 'static;
     /// State that the thread keeps between queries.
     type State: Default + 'static;

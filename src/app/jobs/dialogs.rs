@@ -13,7 +13,6 @@ use std::time::Duration;
 /// Least time for which a dialog is on screen: no user closes one sooner.
 const NEVER_SHOWN: Duration = Duration::from_millis(250);
 
-/// A question for a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
     pub purpose: Purpose,
@@ -90,7 +89,6 @@ impl Dialogs {
         }
     }
 
-    /// Dialogs of the window only.
     pub fn of_the_window() -> Self {
         Dialogs::by(None)
     }
@@ -170,7 +168,6 @@ impl Dialogs {
     }
 }
 
-/// The command for a dropped file.
 fn command_of_dropped(path: PathBuf) -> Command {
     match crate::files::ends_in(&path, &["csv"]) {
         true => Command::Rows(RowsCommand::OpenTable(path)),

@@ -23,7 +23,6 @@ impl FrameLog {
         Ok(FrameLog { out, began, frame: 0, current: (began, None) })
     }
 
-    /// Begins a frame.
     pub fn begin_frame(&mut self) {
         self.current = (Instant::now(), processor_ms());
     }

@@ -36,7 +36,6 @@ impl Heard {
         })
     }
 
-    /// The map of the samples.
     pub fn map(&mut self, normalisation: Normalisation) -> ReadyMap {
         self.shown.of(normalisation, |normalisation| ready(&self.log, self.log.scale(*normalisation))).clone()
     }

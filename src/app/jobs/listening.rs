@@ -92,7 +92,6 @@ impl Listening {
         Ok(port)
     }
 
-    /// Stops listening.
     pub fn stop(&mut self) {
         if let Some(running) = self.running.take() {
             running.shared.end(None);

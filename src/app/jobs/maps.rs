@@ -125,7 +125,6 @@ impl MapsJob {
         }
     }
 
-    /// The latest maps.
     pub fn result(&self) -> Option<&MapsResult> {
         self.result.as_ref()
     }

@@ -120,7 +120,6 @@ pub fn largest_difference(map: &RangeAngleMap, minus: &RangeAngleMap) -> f32 {
 /// Ends of scales below 1.
 const ENDS: [f32; 9] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 
-/// The colour of every cell.
 fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<'_, f32>>, end: f32) -> Vec<Color32> {
     let cells = map.iter();
     // NaN marks cells beyond the maximum range of a Cartesian map.

@@ -10,7 +10,6 @@ use crate::signal::{self, BeatSignal, Floor};
 use crate::task::Task;
 use crate::theory::Phasors as Chain;
 
-/// A query of the phasors of one cell.
 #[derive(Clone, PartialEq)]
 pub struct PhasorsQuery {
     source: Source,

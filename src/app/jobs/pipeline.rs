@@ -195,7 +195,6 @@ impl Pipeline {
         Some((result.detected.outputs[slot as usize].as_ref().filter(|_| is_of_it)?, DETECTED))
     }
 
-    /// The maps available for cuts.
     pub fn cut_maps(&self) -> Vec<CutMap> {
         let Some(MapsResult { frame: EngineFrame { first, last, full, .. }, .. }) = self.maps.result() else {
             return Vec::new();
@@ -248,7 +247,6 @@ impl Pipeline {
 /// A value of maps and methods that panels read, besides the pictures of maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Want {
-    /// The numbers of every map.
     EveryMap,
     /// The first method's output.
     Output,

@@ -62,7 +62,6 @@ pub fn seen_by(recording: &Recording, radar: &Radar, elements: &BuiltArray) -> R
 }
 
 impl RecordedMaps {
-    /// Transforms `recording` for `radar`.
     pub fn new(recording: &Arc<Recording>, radar: &Radar, elements: &BuiltArray) -> Self {
         let start = Instant::now();
         let seen = seen_by(recording, radar, elements);
@@ -129,7 +128,6 @@ impl RecordedMaps {
     }
 }
 
-/// Lambda of a map of decades on a scale.
 pub fn ready(log: &LogMap, scale: LambdaScale) -> ReadyMap {
     let lambda = RangeAngleMap { lambda: log.decades().mapv(|v| scale.lambda(v).clamp(0.0, 1.0) as f32) };
     ReadyMap { lambda: Arc::new(lambda), scale }

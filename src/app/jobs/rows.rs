@@ -31,7 +31,6 @@ impl<R> Teller<'_, R> {
 
 /// Long work and all its inputs.
 pub trait Plan: Send + Sync + 'static {
-    /// A row of the result.
     type Row: Send + 'static;
     /// Result of the whole run.
     type End: Send + 'static;
@@ -47,7 +46,6 @@ pub trait Plan: Send + Sync + 'static {
     fn run(&self, teller: &Teller<'_, Self::Row>) -> Result<Self::End, Failure>;
 }
 
-/// A plan and the channel for its rows.
 type Asked<P> = (Arc<P>, Sender<<P as Plan>::Row>);
 
 /// The worker of one kind of plan, and the rows so far.

@@ -79,7 +79,6 @@ impl Watched {
         Watched { path, since: Instant::now() }
     }
 
-    /// The query of the log at this moment.
     pub fn query(&self) -> LogQuery {
         LogQuery { path: self.path.clone(), look: self.since.elapsed().as_secs() / LOG_INTERVAL.as_secs() }
     }

@@ -217,7 +217,6 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// The panel with the bounds of one point.
     fn panel(size: [f32; 2]) -> Harness<'static, (Texture, Vec<Command>)> {
         let state = State::of(Radar { elements: 64, samples: 32, ..Radar::default() }, Scene::of_points([(1.5, 9.0)]));
         let result = BoundsRequest::of(&state).and_then(|request| request.compute(&mut (), &Task::default()).ok());

@@ -119,7 +119,6 @@ mod tests {
         (disturbances.interferer, disturbances.mirror)
     }
 
-    /// The panel with interferer and mirror switched on.
     fn panel_of_both() -> Harness<'static, State> {
         let mut panel = panel(State::new(Vec::new()));
         panel.clicks(&["Interferer", "Mirror"]);

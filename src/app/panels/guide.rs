@@ -129,7 +129,6 @@ fn floor(floor: Floor, normalisation: Normalisation) -> Vec<Command> {
     scene("one-at-20-m", commands.to_vec())
 }
 
-/// The chapters of [`TEXT`].
 fn chapters() -> impl Iterator<Item = &'static str> {
     TEXT.split("\n## ")
 }

@@ -143,7 +143,6 @@ mod tests {
         Harness::new_ui_state(draw, (state, Vec::new()))
     }
 
-    /// The panel with one selected object.
     fn panel_of(object: Object) -> Harness<'static, Held> {
         let mut editor = Editor::new(Scene { objects: vec![object], ..Scene::default() });
         editor.select_all();

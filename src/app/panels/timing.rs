@@ -7,7 +7,6 @@ use crate::engine::{EngineReport, StageOutcome};
 use eframe::egui::{Grid, Label, RichText, Ui};
 use std::time::Duration;
 
-/// An update of the maps.
 pub struct Update<'a> {
     pub report: &'a EngineReport,
     /// Duration of the update with its pictures.

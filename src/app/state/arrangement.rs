@@ -24,7 +24,6 @@ pub struct Arrangement {
     pub tree: Tree<Panel>,
     /// The panel that fills the window, if any.
     pub maximised: Option<Panel>,
-    /// The task on screen.
     #[serde(default)]
     pub task: Task,
     /// The task before a panel switched to its own.
@@ -146,7 +145,6 @@ impl Arrangement {
         self.view(panel.tile()) == panel
     }
 
-    /// Brings a view to the front of its shared tile.
     pub fn bring_to_front(&mut self, view: Panel) {
         if view.tile() == view {
             self.views.remove(&view);

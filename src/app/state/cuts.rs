@@ -9,7 +9,6 @@ use std::sync::Arc;
 /// Most pinned cuts; a new one replaces the oldest. Each keeps its maps in memory.
 const PINS: usize = 3;
 
-/// A map available for cuts.
 #[derive(Debug, Clone)]
 pub struct CutMap {
     pub kind: MapKind,

@@ -23,7 +23,6 @@ pub struct Before {
     pub task: Task,
 }
 
-/// A lesson in progress.
 #[derive(Default)]
 pub struct LessonRun {
     /// Key under which its progress is kept.

@@ -58,7 +58,6 @@ pub const VIEW: [&[Command]; 3] = [
     ],
 ];
 
-/// Panels that *Help* lists.
 pub const HELP: [Panel; 2] = [Panel::Guide, Panel::Lesson];
 
 /// Path of menus to a command, from the bar on; empty for a command in no menu.

@@ -16,12 +16,10 @@ pub struct Methods {
 }
 
 impl Methods {
-    /// The methods `all`, with the crate's preferred one.
     pub fn new(all: Vec<Arc<dyn Reconstructor>>) -> Self {
         Methods { all, preferred: crate::methods::preferred().name() }
     }
 
-    /// Adds `method`, or replaces the one of its name.
     #[cfg(feature = "live")]
     pub fn add(&mut self, method: Arc<dyn Reconstructor>) {
         self.all.retain(|other| other.name() != method.name());
@@ -33,7 +31,6 @@ impl Methods {
         self.all.iter().find(|method| method.name() == name)
     }
 
-    /// The method called `name`, or else the preferred one, or else the first.
     pub fn named(&self, name: &str) -> Option<&Arc<dyn Reconstructor>> {
         self.called(name).or_else(|| self.called(self.preferred)).or_else(|| self.all.first())
     }

@@ -76,7 +76,6 @@ pub struct State {
     pub editor: Editor,
     pub settings: Settings,
     pub methods: Methods,
-    /// Times of each method on this machine.
     pub method_times: MethodTimes,
     pub arrangement: Arrangement,
     pub notices: Notices,
@@ -286,12 +285,10 @@ impl State {
         self.recent.truncate(RECENT);
     }
 
-    /// Title of the window.
     pub fn title(&self) -> String {
         format!("{} — apertura", self.editor.document().title())
     }
 
-    /// The method in use.
     pub fn method(&self) -> Option<&Arc<dyn Reconstructor>> {
         self.methods.named(&self.settings.method)
     }
@@ -301,7 +298,6 @@ impl State {
         self.method().is_some_and(|method| method.finds_reflectors())
     }
 
-    /// The method of a slot.
     pub fn method_in(&self, slot: MethodSlot) -> Option<&Arc<dyn Reconstructor>> {
         match slot {
             MethodSlot::First => self.method(),

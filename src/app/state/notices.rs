@@ -3,7 +3,6 @@
 /// Most messages on screen; a new one replaces the oldest.
 const MAX_NOTICES: usize = 5;
 
-/// One message.
 pub struct Notice {
     pub number: u64,
     pub is_error: bool,

@@ -55,7 +55,6 @@ macro_rules! ids {
         /// A panel, in a tile of its own or as one of several views of a tile.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         pub enum Panel {
-            /// A map.
             Map(MapKind),
             $(#[doc = $help] $(#[$meta])* $name,)*
         }
@@ -153,7 +152,6 @@ impl Panel {
         }
     }
 
-    /// Title of the panel.
     pub fn title(self) -> &'static str {
         self.texts()[0]
     }
@@ -167,7 +165,6 @@ impl Panel {
 /// The enum of maps, with the title and the content of each: first those with a panel of their own, in reading order.
 macro_rules! map_kinds {
     ($($kind:ident, $title:literal, $help:literal;)*) => {
-        /// One of the maps on screen.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         pub enum MapKind {
             $(#[doc = $help] $kind,)*
@@ -214,10 +211,8 @@ pub enum MethodSlot {
 }
 
 impl MethodSlot {
-    /// Both slots.
     pub const BOTH: [MethodSlot; 2] = [MethodSlot::First, MethodSlot::Second];
 
-    /// The map of the slot's output.
     pub fn map(self) -> MapKind {
         match self {
             MethodSlot::First => MapKind::Output,

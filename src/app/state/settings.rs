@@ -58,7 +58,6 @@ impl DerefMut for Settings {
     }
 }
 
-/// The elements that listen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Elements {
     /// Both ends of the array.
@@ -73,7 +72,6 @@ pub enum Elements {
 }
 
 impl Elements {
-    /// Name of the choice.
     pub fn name(self) -> &'static str {
         match self {
             Elements::TwoEnds => "the two ends",
@@ -130,7 +128,6 @@ named! {
 }
 
 impl PhasorMap {
-    /// The elements of the map.
     pub fn aperture(self) -> Aperture {
         match self {
             PhasorMap::Target => Aperture::Full,
@@ -193,7 +190,6 @@ impl Default for Compare {
 }
 
 impl Compare {
-    /// The maps offered for flipping.
     pub const OFFERED: [MapKind; 9] = {
         use MapKind::*;
         [Input0, Input1, Target, Output, Second, OutputAbove, SecondAbove, Difference, SecondDifference]

@@ -3,7 +3,6 @@
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// End of the timeline, seconds.
 pub const TIMELINE_SECONDS: f64 = 5.0;
 
 /// Time and motion of the scene on screen.

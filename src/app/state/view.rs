@@ -102,7 +102,6 @@ impl SceneView {
         rect.center() + vec2(dx as f32, -dy as f32)
     }
 
-    /// The place of the scene at a place on screen.
     pub fn to_scene(self, rect: Rect, pos: Pos2) -> Place {
         let d = pos - rect.center();
         Place::new(
@@ -165,7 +164,6 @@ impl MapViews {
         }
     }
 
-    /// A copy of it.
     pub fn seen(mut self, projection: Projection) -> MapView {
         *self.of(projection)
     }

@@ -13,7 +13,6 @@ pub const RIGHT: f32 = 62.0;
 /// Gap between a side of the plot and its labels, points.
 const GAP: f32 = 5.0;
 
-/// Font of tick labels.
 pub fn tick_font() -> FontId {
     FontId::proportional(12.0)
 }
@@ -44,7 +43,6 @@ pub struct Tick {
     pub text: String,
 }
 
-/// [`ticks`] with their texts.
 pub fn round_ticks(low: f64, high: f64, count: f32) -> Vec<Tick> {
     let values = ticks(low, high, count);
     let step = values.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(1.0);

@@ -71,7 +71,6 @@ impl<'a> Chart<'a> {
         self.add(VLine::new("", x).stroke(stroke));
     }
 
-    /// Adds a dot.
     pub fn dot(&mut self, at: [f64; 2], radius: f32, colour: Color32) {
         self.add(Points::new("", vec![at]).radius(radius).color(colour));
     }

@@ -48,7 +48,6 @@ impl Bar {
         Axis::new(self.low, self.high, self.title)
     }
 
-    /// Draws the bar right of a map.
     pub fn draw(&self, ui: &Ui, painter: &Painter, map: Rect) {
         let left = map.right() + GAPS[0];
         let rect = Rect::from_x_y_ranges(left..=left + COLOURS, map.y_range());

@@ -109,12 +109,10 @@ pub fn choices<'a, T: PartialEq + Copy, C: Into<Command>>(
     }
 }
 
-/// The response with a tooltip, unless that is empty.
 pub fn tipped(response: Response, tooltip: &str) -> Response {
     if tooltip.is_empty() { response } else { response.on_hover_text(tooltip) }
 }
 
-/// Tooltip of a command, with its key.
 pub fn tooltip(ui: &Ui, command: &Command) -> String {
     let Some(listed) = command.entry() else { return String::new() };
     let key = listed.key.map(|key| format!(" ({})", ui.ctx().format_shortcut(&key))).unwrap_or_default();

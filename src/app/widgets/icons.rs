@@ -26,7 +26,6 @@ pub fn icon(ui: &mut Ui, icon: Icon, name: &str) -> egui::Response {
     response.on_hover_text(name)
 }
 
-/// A drawn button over a picture, in `rect`.
 pub fn over_picture(ui: &mut Ui, rect: Rect, icon: Icon, name: &str) -> Response {
     let response = ui.interact(rect, ui.scope_id().with(name), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));

@@ -46,7 +46,6 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    /// A number in metres with this name and tooltip.
     pub const fn metres(name: &'static str, tooltip: &'static str) -> Self {
         Quantity { name, tooltip, unit: " m", range: [-1e4, 1e4], speed: 0.02, decimals: 3 }
     }

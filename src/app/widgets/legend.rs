@@ -6,7 +6,6 @@ use eframe::egui::{Color32, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui
 const SIGN: f32 = 14.0;
 const GAP: f32 = 4.0;
 
-/// The sign of an entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
     Line,

@@ -159,7 +159,6 @@ pub fn ticking_menu(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) ->
     MenuButton::from_button(button).config(config).ui(ui, contents).0
 }
 
-/// A box that is ticked while `value` is in `chosen`.
 pub fn member_box<T: Ord>(ui: &mut Ui, name: impl Into<String>, value: T, chosen: &mut BTreeSet<T>) -> Response {
     let mut ticked = chosen.contains(&value);
     let response = ui.checkbox(&mut ticked, name.into());

@@ -22,7 +22,6 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// Any number.
     pub fn any() -> Self {
         Wanted { range: f64::NEG_INFINITY..=f64::INFINITY, is_whole: false, unit: String::new() }
     }
@@ -129,7 +128,6 @@ pub struct NumberField<'a> {
 }
 
 impl<'a> NumberField<'a> {
-    /// A field for `value`.
     pub fn new<Num: emath::Numeric>(value: &'a mut Num) -> Self {
         let field = Self::from_get_set(move |new| {
             if let Some(new) = new {

@@ -11,7 +11,6 @@ pub fn padded(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> 
     within(ui, Margin::symmetric(10, 6), content)
 }
 
-/// The same with vertical scrolling.
 pub fn scrolled(ui: &mut Ui, content: impl FnOnce(&mut Ui, &mut Vec<Command>)) -> Vec<Command> {
     scrolled_by(ScrollArea::vertical(), ui, content)
 }

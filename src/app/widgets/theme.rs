@@ -28,7 +28,6 @@ pub struct Inks {
 }
 
 impl Inks {
-    /// The inks of the light or dark theme.
     pub fn of(visuals: &Visuals) -> Self {
         let ink = |dark, light| ink(visuals.dark_mode, dark, light);
         Inks {

@@ -5,7 +5,6 @@ use crate::reconstruct::ReconstructError;
 use crate::scene::file::SceneFileError;
 use crate::scene::generate::NoRoom;
 
-/// The error that stopped a campaign.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
 pub enum CampaignError {

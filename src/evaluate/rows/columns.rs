@@ -14,7 +14,6 @@ macro_rules! columns {
             $($(#[$of_origin])* pub $origin: $origin_type,)+
         }
 
-        /// A column of the table.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[expect(missing_docs, reason = "the fields of `Row` say what they are")]
         pub enum Column {

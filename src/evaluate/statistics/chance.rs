@@ -4,7 +4,6 @@
 pub struct Factorials(Vec<f64>);
 
 impl Factorials {
-    /// Logarithms of the factorials up to that of `most`.
     pub fn up_to(most: usize) -> Factorials {
         let mut logs = Vec::with_capacity(most + 1);
         let mut sum = 0.0;

@@ -15,7 +15,6 @@ impl Editor {
         field::shared(self.selected(), coordinates)
     }
 
-    /// Reflectors of the selected objects.
     pub fn selected_reflectors(&self) -> usize {
         self.selected().fold(0, |n, o| n.saturating_add(o.reflector_count()))
     }

@@ -43,22 +43,18 @@ impl Editor {
         Editor::of(Document::shipped(SceneFile { scene, ..SceneFile::default() }))
     }
 
-    /// Starts from a document.
     pub fn of(document: Document) -> Self {
         Editor { document, ..Editor::default() }
     }
 
-    /// The document as it is now.
     pub fn document(&self) -> &Document {
         &self.document
     }
 
-    /// The scene as it is now.
     pub fn scene(&self) -> &Arc<Scene> {
         self.document.scene()
     }
 
-    /// The radar that looks at it.
     pub fn radar(&self) -> &Arc<Radar> {
         self.document.radar()
     }
@@ -123,7 +119,6 @@ impl Editor {
         Ok(true)
     }
 
-    /// Adds an object and selects it.
     pub fn add(&mut self, object: Object) {
         self.edit(None, |scene, selection| {
             *selection = Selection::of([scene.objects.len()]);
@@ -131,7 +126,6 @@ impl Editor {
         });
     }
 
-    /// Deletes the selected objects.
     pub fn delete_selected(&mut self) {
         self.edit(None, |scene, selection| {
             for index in std::mem::take(selection).iter().rev() {
@@ -203,7 +197,6 @@ impl Editor {
         self.select(next, SelectionMode::Replace);
     }
 
-    /// Selects every object.
     pub fn select_all(&mut self) {
         self.select(0..self.scene().objects.len(), SelectionMode::Replace);
     }

@@ -42,7 +42,6 @@ impl Statistic {
     /// Both estimates.
     pub const ALL: [Statistic; 2] = [Statistic::CellAveraging, Statistic::OrderedStatistics];
 
-    /// Name in sentences.
     pub fn name(self) -> &'static str {
         self.names()[0]
     }
@@ -108,7 +107,6 @@ pub struct Level {
     pub noise: f64,
     /// The noise times the factor: the cell is a detection above it.
     pub threshold: f64,
-    /// Power of the cell.
     pub power: f64,
 }
 

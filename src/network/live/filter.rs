@@ -24,7 +24,6 @@ pub(super) const OF_BIAS: usize = 1;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Groups {
     pub many: usize,
-    /// Vectors of a group.
     pub vectors: usize,
     /// Distance from one group to the next in the source, and in the destination.
     pub steps: [usize; 2],

@@ -22,10 +22,8 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for Pictu
     }
 }
 
-/// The result of drawing.
 pub type Painted = Result<(), PictureError>;
 
-/// A part of a drawing.
 pub type PanelArea<B> = DrawingArea<B, Shift>;
 
 pub(super) const INK: RGBColor = RGBColor(28, 32, 38);

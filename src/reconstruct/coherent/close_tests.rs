@@ -30,7 +30,6 @@ fn found(method: CoherentMethod, places: &[Place], floor: Floor) -> Vec<Detectio
     answer.detections(&radar())
 }
 
-/// Degrees and metres from `place` to an echo.
 fn apart(echo: &Detection, (degrees, range): &Place) -> (f64, f64) {
     ((echo.cos_theta.asin().to_degrees() - degrees).abs(), (echo.range_metres - range).abs())
 }

@@ -18,7 +18,6 @@ const W: usize = LANES_F64;
 
 /// Elements with samples, those of the first end first, one that is in both ends once; dead elements are missing samples.
 pub(super) struct Ends {
-    /// Positions, metres.
     pub x_metres: Vec<f64>,
     /// Number of the first end's elements.
     pub first_count: usize,

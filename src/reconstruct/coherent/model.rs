@@ -30,7 +30,6 @@ pub(super) struct Model {
     steering: Steering,
     /// The profile of each element at the place.
     heard: Vec<Complex64>,
-    /// Directions of the sector.
     directions: usize,
     /// Power of the noise in an element.
     noise: f64,
@@ -47,7 +46,6 @@ pub(super) struct Share {
     pub held: f32,
 }
 
-/// The update of powers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Update {
     /// The next power of a vector.

@@ -31,7 +31,6 @@ pub(in crate::reconstruct) struct Peak {
     pub range_metres: f64,
     /// Cosine of the angle to the array's axis.
     pub cos_theta: f64,
-    /// Power of its samples.
     pub power: f64,
 }
 

@@ -37,7 +37,6 @@ const MOST_PLACES: usize = 512;
 pub(super) struct Place {
     /// Range of the strongest echo, metres.
     pub range_metres: f64,
-    /// The sector.
     pub sector: Sector,
     /// Power at the weaker end.
     pub power: f64,

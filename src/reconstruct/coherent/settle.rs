@@ -83,7 +83,6 @@ impl<'a> Settled<'a> {
         Search { radar, bench, detector, samples, in_noise: false, settings, task, trace }
     }
 
-    /// The residual of the reflectors.
     pub fn left(&self) -> TwoEnds {
         TwoEnds::of_flat(self.radar, &self.fit.residual.flat(&self.bench.sensor))
     }

@@ -5,7 +5,6 @@ use crate::scene::Reflector;
 /// One object without its gain. Distances in metres; y and -y have the same echoes at a line array, so that y is kept at 0 or above.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Atom {
-    /// One reflector.
     Point {
         /// Position along the array.
         x_metres: f64,
@@ -55,7 +54,6 @@ impl Atom {
         }
     }
 
-    /// Number of reflectors.
     pub fn reflector_count(&self) -> usize {
         match self {
             Atom::Point { .. } => 1,
@@ -86,7 +84,6 @@ impl Atom {
         }
     }
 
-    /// The reflectors of the atom.
     pub fn reflectors(&self, reflectivity: f64) -> impl Iterator<Item = Reflector> + use<> {
         let atom = *self;
         (0..self.reflector_count()).map(move |i| {

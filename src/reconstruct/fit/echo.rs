@@ -29,7 +29,6 @@ pub struct Echo {
 }
 
 impl Echo {
-    /// The parts of one end.
     #[inline(always)]
     pub fn end(&self, end: usize) -> &[Part] {
         let each = self.parts.len() / 2;
@@ -39,9 +38,7 @@ impl Echo {
 
 /// The echoes of some reflectors.
 pub struct Echoes<'a> {
-    /// The channels.
     pub sensor: &'a Sensor,
-    /// The reflectors.
     pub reflectors: &'a [Reflector],
 }
 
@@ -66,7 +63,6 @@ impl Kernel for Echoes<'_> {
     }
 }
 
-/// The echo of `r` at the channels from `first` of an end on.
 #[inline(always)]
 fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usize) -> Part {
     let of = |v: f64| Lanes::<f64, W>::splat(v);

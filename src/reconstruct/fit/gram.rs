@@ -18,12 +18,10 @@ use rayon::prelude::*;
 pub struct Dictionary<'a> {
     sensor: &'a Sensor,
     moments: &'a Moments,
-    /// The atoms.
     pub atoms: &'a [Atom],
     echoes: Vec<Vec<Echo>>,
     /// Column of each atom's value; its derivatives follow, where there are any.
     pub first_column: Vec<usize>,
-    /// Number of columns.
     pub columns: usize,
     derivatives: bool,
 }
@@ -167,7 +165,6 @@ impl<'a> Dictionary<'a> {
     }
 }
 
-/// The sum of all lanes.
 #[inline(always)]
 fn total(v: ComplexLanes<f64, W>) -> Complex64 {
     Complex64::new(v.re.total(), v.im.total())
@@ -275,7 +272,6 @@ mod tests {
         remainder(sensor, &vec![1.0; sensor.samples], &silence, &echoes, Asked::Nothing).residual.flat(sensor)
     }
 
-    /// Columns of all atoms by differences, windowed.
     fn columns(sensor: &Sensor, window: &[f64], atoms: &[Atom]) -> Vec<Vec<Complex64>> {
         let mut out = Vec::new();
         for atom in atoms {

@@ -6,7 +6,6 @@ use crate::radar::{End, Radar};
 /// Range bins that an atom fills at each end: (first, last), not wrapped.
 pub type Rows = [(f64, f64); 2];
 
-/// The range bins of `atom`.
 pub fn rows_of(radar: &Radar, atom: &Atom) -> Rows {
     End::BOTH.map(|end| {
         let centre = radar.end_centre_metres(end);

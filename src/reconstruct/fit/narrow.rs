@@ -32,7 +32,6 @@ pub struct Spectra<'a> {
 pub struct Narrow<'a> {
     /// The bench of the radar with fewer samples.
     pub bench: Workbench<'a>,
-    /// Samples of this radar.
     pub samples: Samples,
     /// Energy of the windowed samples at both ends.
     pub energy: f64,

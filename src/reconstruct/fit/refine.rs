@@ -75,9 +75,7 @@ const PRODUCTS_AN_ECHO: usize = 64;
 /// Atoms with their gains, and their residual.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// The atoms.
     pub atoms: Vec<Atom>,
-    /// Their gains.
     pub gains: Vec<Gains>,
     /// Samples minus atoms, not windowed.
     pub residual: Samples,
@@ -92,7 +90,6 @@ impl Fit {
     }
 }
 
-/// The terms of a state.
 #[derive(Debug, Clone, Copy)]
 struct Terms {
     tie: Tie,
@@ -148,12 +145,10 @@ impl<'a> Workbench<'a> {
         remainder(&self.sensor, &self.squared, samples, &reflectors, Asked::Nothing)
     }
 
-    /// Energy of the windowed `samples`.
     pub fn energy(&self, samples: &Samples) -> f64 {
         self.without(samples, &[], &[]).energy.iter().sum()
     }
 
-    /// The fit of `atoms` at their places.
     pub fn solve(&self, samples: &Samples, atoms: Vec<Atom>, tie: Tie, ridge: f64) -> Fit {
         let gains = vec![Gains::default(); atoms.len()];
         self.settled(self.state(samples, atoms, gains, Terms { tie, ridge, derivatives: false }), samples)
@@ -335,7 +330,6 @@ impl<'a> Workbench<'a> {
     }
 }
 
-/// The reflectors of `atoms` with their gains.
 fn reflectors(atoms: &[Atom], gains: &[Gains]) -> Vec<(Reflector, Gains)> {
     atoms.iter().zip(gains).flat_map(|(atom, gains)| atom.reflectors(1.0).map(move |r| (r, *gains))).collect()
 }

@@ -16,7 +16,6 @@ pub const W: usize = LANES_F64;
 /// Geometry and constants of both ends. A vector over all samples of both ends is laid out channel by channel, first end first.
 #[derive(Debug, Clone)]
 pub struct Sensor {
-    /// Phases of echoes.
     pub model: EchoModel,
     /// x of every channel's element, metres, first end first.
     pub element_x: Vec<f64>,
@@ -24,9 +23,7 @@ pub struct Sensor {
     pub pairs: Vec<Pair>,
     /// Whether each element transmits and receives by itself.
     pub is_monostatic: bool,
-    /// Samples a channel.
     pub samples: usize,
-    /// Channels an end.
     pub end_elements: usize,
     /// Whether each channel has samples: a silent one has no echoes.
     pub hears: Vec<bool>,
@@ -35,7 +32,6 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// The two ends of `radar`.
     pub fn new(radar: &Radar) -> Self {
         let elements = || End::BOTH.iter().flat_map(|&e| radar.end_range(e));
         Sensor {
@@ -59,7 +55,6 @@ impl Sensor {
         self
     }
 
-    /// The sensor for chirps with the samples of `radar`.
     pub fn sampled_as(&self, radar: &Radar) -> Self {
         Sensor { hears: self.hears.clone(), ..Sensor::new(radar) }
     }

@@ -10,7 +10,6 @@ use num_complex::Complex64;
 pub struct RowSnapshot<'a> {
     /// Range profiles of the elements at the rows before, at and after this one; the middle is the row itself.
     pub snapshots: [&'a [Complex64]; 3],
-    /// Variance of the noise of each value.
     pub noise_variance: f64,
     /// Part of the power of one echo that no plane wave describes: its range, and so its amplitude in a range row, changes over the end.
     pub not_plane: f64,

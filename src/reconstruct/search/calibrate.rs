@@ -74,11 +74,9 @@ pub type SearchEnds<'a> = &'a dyn Fn(Option<&Found>, &TwoEnds, &Request, &Settin
 pub(super) struct Calibration<'a> {
     /// Searches without gains.
     pub search: SearchEnds<'a>,
-    /// The radar.
     pub radar: &'a Radar,
     /// Samples of a peak between 1 and 2.
     pub ends: &'a TwoEnds,
-    /// The request.
     pub request: &'a Request,
     /// Limits of a search.
     pub settings: &'a Settings,
@@ -128,7 +126,6 @@ impl Calibration<'_> {
         Ok(Some(Found { element_gains: Some(gains), trace, ..found }))
     }
 
-    /// The request with white noise of this part of the samples' power.
     fn over_noise(&self, part: f64) -> Request {
         let sigma = Some((part * self.plain.sample_power).sqrt());
         Request { noise: NoisePrior::White { sigma }, ..self.request.clone() }

@@ -10,7 +10,6 @@ use num_complex::Complex64;
 pub struct ElementGains(pub(super) Vec<Complex64>);
 
 impl ElementGains {
-    /// The gains of equal elements.
     pub fn ones(radar: &Radar) -> Self {
         ElementGains(vec![Complex64::ONE; 2 * radar.end_elements])
     }

@@ -25,7 +25,6 @@ const MAX_UNWINDOWED_REFLECTORS: usize = 40;
 /// Work granted to the refinement without a window.
 const UNWINDOWED_WORK: usize = 50_000;
 
-/// Limits of the refinement with tied gains.
 const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
 
 /// Largest reflectivity over the largest that any of the objects has when it is fitted alone, as a ratio: beyond, neighbours cancel each other.
@@ -43,7 +42,6 @@ const TIED_COST_RATIO: f64 = 4.0;
 /// The objects found in the samples.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Found {
-    /// The objects.
     pub atoms: Vec<Atom>,
     /// Their reflectivities for samples times `scale`.
     pub reflectivities: Vec<f64>,

@@ -30,25 +30,20 @@ pub struct State {
 }
 
 impl State {
-    /// The state with the objects of `fit`.
     pub fn of(fit: Fit) -> Self {
         State { fit, is_sure: false, pairs: None }
     }
 }
 
-/// One search.
 pub struct Search<'a> {
-    /// The radar.
     pub radar: &'a Radar,
     /// Fits under the search's window, and the work that is left.
     pub bench: &'a Workbench<'a>,
     /// Looks for places.
     pub detector: &'a Detector,
-    /// The samples to explain.
     pub samples: &'a Samples,
     /// Whether white noise lies beneath the samples.
     pub in_noise: bool,
-    /// Limits.
     pub settings: &'a Settings,
     /// The task, which may be cancelled.
     pub task: &'a Task,

@@ -54,7 +54,6 @@ impl Trace {
         self.kept().attempts.len()
     }
 
-    /// All attempts, in their order.
     pub fn into_attempts(self) -> Vec<Attempt> {
         self.0.into_inner().unwrap_or_else(PoisonError::into_inner).attempts
     }

@@ -48,7 +48,6 @@ impl Frame {
         Ok(Frame { samples: all, quality })
     }
 
-    /// Number of loops.
     pub fn loops(&self) -> usize {
         self.samples.dim().0
     }

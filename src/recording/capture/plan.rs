@@ -170,7 +170,6 @@ fn layout(capture: &Capture) -> Result<Layout, Fault> {
     Ok(Layout { words, parts, q_first, receivers, header_bytes, packets: false })
 }
 
-/// Samples, receivers, chirps and loops.
 fn counts(capture: &Capture, profile: Option<&RadarProfile>) -> Result<[usize; 4], Fault> {
     let Capture { samples, receiver_count, loop_chirps, loops, .. } = *capture;
     let said =

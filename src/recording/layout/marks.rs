@@ -6,7 +6,6 @@ use std::io::{self, Read, Seek};
 /// First bytes of a chirp's header: 0x0CDA0ADC twice, high half word first.
 pub(super) const MAGIC: [u8; 8] = [0xdc, 0x0a, 0xda, 0x0c, 0xdc, 0x0a, 0xda, 0x0c];
 
-/// Bytes of such a header.
 pub const HEADER_BYTES: usize = 64;
 
 /// Length of the beginning of a file in which headers are looked for, bytes.

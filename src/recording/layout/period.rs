@@ -7,7 +7,6 @@ use num_complex::Complex64;
 /// Periods that are tried, in rows: receivers of one, two or three transmitters in turn; and in chirps for receivers that stand sample by sample.
 const PERIODS: [usize; 9] = [1, 2, 3, 4, 6, 8, 9, 12, 16];
 const CHIRPS: [usize; 7] = [1, 2, 3, 4, 6, 9, 12];
-/// Rows that are compared.
 const MOST_ROWS: usize = 512;
 /// Least steadiness of a period, as a part of the steadiest's; least likeness, as a part of the most alike's; and least likeness of any. Of 335
 /// captures made at random the period was right in 295, by the likeness alone in 244.

@@ -7,7 +7,6 @@ pub const PACKET_BYTES: u64 = HEADER_BYTES + DATA_BYTES;
 
 /// Bytes before the data of a packet.
 const HEADER_BYTES: u64 = 10;
-/// Bytes of data in a packet.
 const DATA_BYTES: u64 = 1456;
 
 /// Packets at the beginning that must follow each other for a file to hold packets.
@@ -21,7 +20,6 @@ pub struct Stream<R> {
     packets: Option<Packets>,
 }
 
-/// A file of packets.
 #[derive(Debug, Clone, Copy)]
 struct Packets {
     /// The count of the first packet.

@@ -6,11 +6,9 @@ use super::lines::{Line, MOST_CHIRPS, MOST_LOOPS, lines, missing};
 use crate::recording::Fault;
 use std::collections::BTreeMap;
 
-/// A chirp of a `chirpCfg`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ChirpLine {
     pub profile: usize,
-    /// Its transmitters, as bits.
     pub transmitters: u32,
     /// Line of the file that defines the chirp.
     pub line: usize,

@@ -12,7 +12,6 @@ pub(super) const MOST_LOOPS: usize = 65536;
 pub(super) struct Line<'a> {
     /// Number of the line in the text, from 1.
     pub number: usize,
-    /// Its name.
     pub command: &'a str,
     /// The numbers behind the command, up to the first word that is no number.
     pub values: Vec<f64>,
@@ -21,12 +20,10 @@ pub(super) struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// The error of this line.
     pub fn fault(&self, message: impl Display) -> Fault {
         at_line(self.number, &format!("{}: {message}", self.command))
     }
 
-    /// Number `index` of the command.
     pub fn real(&self, index: usize, name: &str) -> Result<f64, Fault> {
         let missing = || match self.bad {
             Some(word) => self.fault(format!("\"{word}\" is no number; expected {name} as number {}", index + 1)),

@@ -126,7 +126,6 @@ fn put(out: &mut String, key: &str, value: &str) {
     let _written = writeln!(out, "{key} = {value}");
 }
 
-/// A text as TOML has it.
 fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }

@@ -13,7 +13,6 @@ pub struct Mixture {
 }
 
 impl Mixture {
-    /// Scenes of one kind.
     pub fn of(kind: Kind) -> Mixture {
         Mixture { shares: vec![(kind, 1.0)] }
     }

@@ -16,7 +16,6 @@ pub enum By {
 /// Derivative of an echo's range and amplitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathChange {
-    /// Change of the range, metres.
     pub range_metres: f64,
     /// Relative change of the amplitude.
     pub amplitude: f64,

@@ -157,7 +157,6 @@ impl Simd {
 /// Functions that it calls must be `#[inline(always)]`, and its loops plain ones: a closure handed to `map`, `for_each` or `array::from_fn` may be
 /// compiled apart, without the instructions, where every fused multiply-add is a call.
 pub trait Kernel {
-    /// The result.
     type Output;
 
     /// Does the work; `FMA` says whether fused multiply-add is an instruction (elsewhere it is a slow call).

@@ -22,9 +22,7 @@ pub trait Real: FftNum + Copy + Default + PartialOrd + Sub<Output = Self> + Add<
     const COS: &'static [f64];
     /// Distance from 1 to the next value.
     const EPSILON: f64;
-    /// Name in reports.
     const NAME: &'static str;
-    /// Rounds to this precision.
     fn of(v: f64) -> Self;
     /// The number as f64.
     fn wide(self) -> f64;
@@ -227,13 +225,11 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
         ComplexLanes { re: Lanes::splat(v.re), im: Lanes::splat(v.im) }
     }
 
-    /// The complex conjugate.
     #[inline(always)]
     pub fn conj(self) -> Self {
         ComplexLanes { re: self.re, im: -self.im }
     }
 
-    /// `self * b`.
     #[inline(always)]
     pub fn times<const FMA: bool>(self, b: Self) -> Self {
         ComplexLanes {
@@ -242,7 +238,6 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
         }
     }
 
-    /// `self + a * b`.
     #[inline(always)]
     pub fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
         let re = a.re.mul_add::<FMA>(b.re, self.re);

@@ -116,11 +116,9 @@ fn read_conditions(bytes: &[u8]) -> Result<Conditions, String> {
 pub enum Done {
     /// The rows of a file that was opened, or of the last session (`own`).
     Read {
-        /// The file.
         path: PathBuf,
         /// Whether it is the app's own.
         own: bool,
-        /// The rows.
         kept: Result<KeptRows, String>,
     },
     /// The app's own file holds the rows of this version.

@@ -15,7 +15,6 @@ pub struct RowKey {
 }
 
 impl RowKey {
-    /// The key of a row.
     pub fn of(row: &Row) -> RowKey {
         RowKey { set: row.set.clone(), seed: row.seed, index: row.index, method: row.method.clone() }
     }
@@ -105,7 +104,6 @@ pub mod tests {
     use crate::reconstruct::{Baseline, Reconstructor};
     use crate::scene::generate::Kind;
 
-    /// A row for tests.
     pub fn some_row(index: u32, method: &str) -> Row {
         let methods: [&dyn Reconstructor; 1] = [&Baseline];
         let empty = Campaign::default().empty_rows(&[SceneSet::Generated(Kind::Set1)], &methods);

@@ -151,7 +151,6 @@ fn what_a_lesson_does_not_use_is_not_shown() {
     }
 }
 
-/// The panel with a detector in use.
 fn detecting(cfar: Option<Cfar>, error: Option<&'static str>) -> Harness<'static, Vec<Command>> {
     let settings = Settings { view: View { cfar, ..View::default() }, ..Settings::default() };
     panel_of([300.0, 900.0], settings, move |input| Input {

@@ -32,7 +32,6 @@ fn lobe(kind: MapKind, radar: &Radar) -> CutMap {
     CutMap { kind, map: Arc::new(RangeAngleMap { lambda }), scale: Some(LambdaScale { peak: 0.0, floor: -5.0 }) }
 }
 
-/// An input and the target, and an output of another radar.
 fn maps(radar: &Radar) -> [CutMap; 3] {
     let small =
         CutMap { kind: MapKind::Output, map: Arc::new(RangeAngleMap { lambda: Array2::zeros((8, 8)) }), scale: None };

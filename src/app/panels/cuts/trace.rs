@@ -7,7 +7,6 @@ use crate::picture::finer;
 use crate::radar::Radar;
 use ndarray::s;
 
-/// Direction of a cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Cut {
     /// All directions at one range.
@@ -35,7 +34,6 @@ impl Cut {
         }
     }
 
-    /// Span of the whole axis.
     pub fn whole(self, radar: &Radar) -> Span {
         match self {
             Cut::Angle => {

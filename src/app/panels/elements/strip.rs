@@ -110,7 +110,6 @@ impl Strip<'_> {
         }
     }
 
-    /// The element that a click switched off or on, with its errors.
     fn switched(&self, response: &Response, chosen: &mut usize) -> Option<(usize, ElementError)> {
         if !response.clicked() {
             return None;

@@ -4,7 +4,6 @@ use crate::evaluate::eta_text;
 use crate::evaluate::rows::{Column, Row, Value};
 use crate::radar::capitalised;
 
-/// Text of a cell.
 pub fn text(row: &Row, column: Column) -> String {
     match column.of(row) {
         Value::Missing => "–".to_owned(),

@@ -29,7 +29,6 @@ impl Sort {
     }
 }
 
-/// Rows in a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boxed {
     /// Generation of the table that they belong to.
@@ -126,7 +125,6 @@ mod tests {
         }
     }
 
-    /// Six rows with a filter and a box, and their order.
     fn asked() -> (Asked, Order) {
         let table = table(6);
         let filter = Filter::parse("index >= 2", &["live"]).unwrap();

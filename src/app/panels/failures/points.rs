@@ -21,7 +21,6 @@ pub enum Subject {
 /// Columns whose text may decide a row's colour.
 pub const GROUPINGS: [Column; 2] = [Column::Method, Column::Set];
 
-/// A dot of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
     pub at: [f64; 2],

@@ -13,7 +13,6 @@ const BAR: f32 = 120.0;
 /// Room for "0 of 5 steps", points.
 const MIN_BAR: f32 = 84.0;
 
-/// Draws the list.
 pub fn list(ui: &mut Ui, progress: &Progress, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
     ui.label(
         "Each step asks a question before it shows the maps. Guess: a wrong guess teaches as much as a right one.",

@@ -16,7 +16,6 @@ pub struct Caption<'a> {
     pub verdict: Option<String>,
     /// Figures of the output that is shown, against the target of the same scene.
     pub metrics: Option<Metrics>,
-    /// Threshold of the output.
     pub output_eta: f32,
     /// Part of a recording's power that the reflectors laid over it explain.
     pub explained: Option<f64>,

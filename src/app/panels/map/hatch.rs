@@ -45,7 +45,6 @@ impl ToldApart<'_> {
         }
     }
 
-    /// Fills the cells of ghosts with the colour of false alarms.
     fn fill(&self, painter: &Painter, frame: Frame<'_>, dark: bool) {
         let [r, g, b] = CellVerdict::FalseAlarm.fill(dark);
         let mut mesh = Mesh::default();

@@ -149,7 +149,6 @@ impl Kinds<'_> {
         sign.draw(painter, at, if way == Vec2::ZERO { vec2(1.0, 0.0) } else { way }, self.current);
     }
 
-    /// The middle of an object, as a reflector.
     fn centre(&self, object: usize) -> Option<Reflector> {
         let [x_metres, y_metres] = self.fates.scene.objects.get(object)?.centre_metres();
         Some(Reflector { x_metres, y_metres, reflectivity: 1.0 })

@@ -49,7 +49,6 @@ use plot::{draw_axes, is_wide, navigate, rect_of};
 /// Text over a map of an earlier scene.
 pub const EARLIER_SCENE: &str = "Previous scene; updating…";
 
-/// Draws a map.
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut HandMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     let (kind, state, radar) = (input.kind, input.state, input.state.radar());

@@ -5,7 +5,6 @@ use crate::app::state::{MapKind, Units};
 use crate::app::widgets::{Bar, colour_table, lowest_db};
 use crate::picture::ColourMap;
 
-/// The colour bar of a map.
 pub fn bar(input: &Input<'_>) -> Bar {
     let (kind, look) = (input.kind, &input.state.settings.view);
     let lambda = input.cells.as_ref().and_then(|cells| cells.scale);

@@ -52,7 +52,6 @@ fn draw(ui: &mut Ui, error: Option<Problem<'_>>, asked: &mut Vec<Command>) {
     asked.extend(show(ui, input(&state, error), &mut MapView::default(), &mut HandMemory::default()));
 }
 
-/// A map of this state with its input changed by `change`.
 fn drawn(size: [f32; 2], state: State, change: impl for<'a> Fn(Input<'a>) -> Input<'a> + 'static) -> Harness<'static> {
     Harness::builder().with_size(size).build_ui(move |ui| {
         _ = show(ui, change(input(&state, None)), &mut MapView::default(), &mut HandMemory::default());

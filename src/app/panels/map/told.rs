@@ -31,7 +31,6 @@ impl MapMemory {
     }
 }
 
-/// Panel of one map.
 pub const PANEL: Content<MapMemory> = Content { marks_age: true, caption: caption_in, ..Content::drawn(draw) };
 
 fn caption_in(state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
@@ -74,7 +73,6 @@ pub fn marks_of(ui: &Ui, state: &State) -> Arc<[Marked]> {
     })
 }
 
-/// Input of a map.
 pub fn map_input<'a>(
     state: &'a State,
     jobs: &'a Jobs,

@@ -4,7 +4,6 @@ use crate::app::widgets::NumberField;
 use crate::radar::{Antennas, Radar, counted};
 use eframe::egui::{Id, Ui};
 
-/// Name of the row.
 pub(super) const NAME: &str = "antennas";
 
 /// Most transmitters, and most receivers, that the panel offers.
@@ -13,11 +12,9 @@ const MAX_ANTENNAS: usize = 64;
 /// Range for which the panel states the path error of the pairs' midpoints, metres.
 const NEAR_METRES: f64 = 2.0;
 
-/// Tooltip of the row.
 pub(super) const TOOLTIP: &str = "Whether every element sends and hears by itself, or each pair of a transmitter and a receiver is an element \
                                   halfway between both. A place of the line that no pair makes is a gap and hears nothing";
 
-/// Consequence of the antennas.
 pub(super) fn follows(radar: &Radar) -> String {
     match &radar.antennas {
         None => "every element sends and hears by itself".to_owned(),

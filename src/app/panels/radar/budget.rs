@@ -20,7 +20,6 @@ const CAR_DBSM: f64 = 10.0;
 /// Least SNR that is drawn, dB.
 const LEAST_DB: f64 = -30.0;
 
-/// Points of a curve.
 const POINTS: u32 = 120;
 
 /// Width of an element's pattern when one is switched on, degrees.

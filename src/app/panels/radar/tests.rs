@@ -33,7 +33,6 @@ fn panel(radar: Radar) -> Harness<'static, Drawn> {
     panel_of([640.0, 420.0], State::of(radar, Scene::default()))
 }
 
-/// The panel of a recording by all elements.
 fn measured(radar: Radar) -> Harness<'static, Drawn> {
     let signal = BeatSignal::silence(&radar);
     panel_of([640.0, 420.0], State::recorded(Recording::of_signal(radar, signal)))
@@ -183,7 +182,6 @@ fn a_snapshot_has_no_ranges_and_no_bandwidth() {
 /// The heading of the group.
 const BUDGET: &str = "Link budget";
 
-/// The panel with a selected point.
 fn with_budget(size: [f32; 2]) -> Harness<'static, Drawn> {
     let mut state = State::of(Radar::default(), Scene::of_points([(0.0, 10.0)]));
     state.editor.select_all();

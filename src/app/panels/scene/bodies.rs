@@ -10,7 +10,6 @@ use std::f64::consts::TAU;
 /// Most bodies whose shadows and glints are drawn.
 const MAX_BODIES: usize = 60;
 
-/// Corners that a circle is drawn with.
 const CIRCLE_CORNERS: usize = 40;
 
 /// Draws the outline of a body, filled.

@@ -33,7 +33,6 @@ pub struct Canvas<'a> {
 }
 
 impl Canvas<'_> {
-    /// Place on screen of a place of the scene.
     pub fn at(&self, place: Place) -> Pos2 {
         self.view.to_screen(self.rect, place)
     }

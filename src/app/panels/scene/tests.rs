@@ -105,7 +105,6 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
     );
 }
 
-/// The panel with one object, which is selected.
 fn selected(object: Object) -> Harness<'static, Held> {
     let mut scene = panel(Scene { objects: vec![object], ..Scene::default() });
     scene.state_mut().state.editor.select_all();

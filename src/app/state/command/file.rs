@@ -6,9 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Texts of a purpose, as its line of the list has them.
 pub struct PurposeFacts {
-    /// Title of the dialog.
     pub title: &'static str,
-    /// Kind of the files.
     pub kind: &'static str,
     pub endings: &'static [&'static str],
     /// Name of the file where no other is chosen; empty for a file that is read.

@@ -27,7 +27,6 @@ use std::sync::Arc;
 /// Defines [`Command`] and the conversion of each group's commands to it.
 macro_rules! groups {
     ($($(#[$meta:meta])* $group:ident($commands:ty),)*) => {
-        /// A command to the app.
         #[derive(Debug, Clone, PartialEq)]
         pub enum Command {
             $($(#[$meta])* $group($commands),)*
@@ -193,7 +192,6 @@ pub enum ViewCommand {
     Colours(ColourMap),
     Normalise(Normalisation),
     SetFloor(Floor),
-    /// Set eta', the threshold of the target.
     SetTargetEta(f32),
     /// Set the detector in place of the thresholds; `None` for thresholds.
     SetCfar(Option<Cfar>),
@@ -321,7 +319,6 @@ pub enum ExportCommand {
     CopyLink,
 }
 
-/// A command that arranges the window.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WindowCommand {
     /// End a drag, a maximised panel or a presentation, or select nothing.

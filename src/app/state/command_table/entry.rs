@@ -10,7 +10,6 @@ pub struct Entry {
     pub command: Command,
     /// Name in menus and the palette.
     pub name: Cow<'static, str>,
-    /// One sentence for tooltips.
     pub tooltip: &'static str,
     pub key: Option<KeyboardShortcut>,
 }

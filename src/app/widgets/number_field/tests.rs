@@ -164,7 +164,6 @@ fn a_count_takes_whole_numbers_only() {
     assert_eq!(panel.state().count, 7);
 }
 
-/// The sources below a folder.
 fn sources(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let mut found = Vec::new();

@@ -37,7 +37,6 @@ pub struct Manifest {
     pub splits: BTreeMap<String, Vec<ShardEntry>>,
 }
 
-/// An array of a shard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ArrayEntry {
     /// NumPy's name of the array's type.
@@ -48,10 +47,8 @@ pub struct ArrayEntry {
     pub shape: Vec<usize>,
 }
 
-/// A shard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShardEntry {
-    /// Number of examples.
     pub examples: u32,
     /// Kind of each example.
     pub kinds: Vec<String>,
@@ -62,7 +59,6 @@ pub struct ShardEntry {
     pub files: BTreeMap<String, FileEntry>,
 }
 
-/// A file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FileEntry {
     /// The file's path from the dataset's folder.

@@ -49,7 +49,6 @@ struct Heard {
 /// A point with a tone at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paired {
-    /// The point.
     pub atom: Atom,
     /// Disagreement of the ends, as a part of the tolerance: directions and gains together.
     pub apart: f64,

@@ -50,7 +50,6 @@ impl Detector {
         detector
     }
 
-    /// The detector for the ends of `radar`.
     fn new(radar: &Radar) -> Self {
         let (beams, columns) = (BEAMS_PER_ELEMENT * radar.end_elements, COLUMNS_PER_ELEMENT * radar.end_elements);
         let (bins, bin_metres) = (radar.samples, radar.range_resolution_metres());
@@ -72,7 +71,6 @@ impl Detector {
         Detector { places_metres, cells, beams, bins }
     }
 
-    /// The range bin of cell `i` at an end.
     fn bin(&self, end: usize, i: u32) -> usize {
         self.cells[end][i as usize] as usize % self.bins
     }
@@ -119,7 +117,6 @@ impl Detector {
         (0..self.places_metres.len() as u32).into_par_iter().with_min_len(LEAST_CELLS)
     }
 
-    /// The powers of `residual` in the cells.
     fn powers(&self, radar: &Radar, residual: &[Complex64]) -> Powers<'_> {
         let magnitudes = end_beams(radar, residual, self.beams)
             .map(|beams| beams.into_par_iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
@@ -145,7 +142,6 @@ struct Powers<'a> {
 }
 
 impl Powers<'_> {
-    /// Product of the ends' magnitudes in cell `i`.
     fn of(&self, i: u32) -> f32 {
         let [first, last] = [0, 1].map(|end| self.magnitudes[end][self.cells[end][i as usize] as usize]);
         first * last

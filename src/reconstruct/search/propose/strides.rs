@@ -82,7 +82,6 @@ pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
 pub struct Start {
     /// Number of the point that it begins at.
     pub first: usize,
-    /// The row.
     pub row: Row,
 }
 

@@ -25,7 +25,6 @@ struct ViewOfPairs {
 }
 
 impl View {
-    /// The view of an end of `radar`.
     pub fn of(radar: &Radar, end: End) -> View {
         let centre_metres = radar.end_centre_metres(end);
         if radar.is_monostatic() {
@@ -93,7 +92,6 @@ impl View {
     }
 }
 
-/// Ranges of places for a pair.
 #[inline(always)]
 fn range_for<const W: usize>(pair: &Pair, dx: Lanes<f64, W>, y: Lanes<f64, W>) -> Lanes<f64, W> {
     PairBlocks::new(|_| *pair).ranges_metres(dx, y)
