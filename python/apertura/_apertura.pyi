@@ -19,7 +19,6 @@ from .objects import (
     Polygon,
     PositionBound,
     Post,
-    Rule,
     Threshold,
     Wall,
 )
@@ -68,7 +67,6 @@ __all__ = [
     "read_rows",
     "robustness",
     "roc",
-    "rules",
     "set_threads",
     "threads",
     "threshold",
@@ -510,7 +508,6 @@ def threshold(
 ) -> Threshold: ...
 def read_rows(path: _Path) -> list[dict[str, Any]]: ...
 def paired(rows: Sequence[dict[str, Any]], first: str, second: str) -> Paired: ...
-def rules(rows: Sequence[dict[str, Any]], bad: str = ...) -> list[Rule]: ...
 def write_rows(path: _Path, rows: Sequence[dict[str, Any]]) -> None: ...
 def layout(name: str, radar: Radar | None = None) -> list[int]: ...
 def cramer_rao(

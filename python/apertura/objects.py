@@ -201,17 +201,6 @@ class Paired(NamedTuple):
     p_value: float
 
 
-class Rule(NamedTuple):
-    """What bad rows have in common, with the counts of the half of the scenes that tests it."""
-
-    text: str
-    rows: int
-    bad: int
-    other_rows: int
-    other_bad: int
-    p_value: float
-
-
 class Threshold(NamedTuple):
     """A threshold that keeps a rate of false alarms, and means over the scenes that chose it; rates are fractions.
 

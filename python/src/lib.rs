@@ -44,7 +44,7 @@ mod _apertura {
         robustness::robustness,
         rows::{read_rows, write_rows_to},
         scene::{Scene, kinds},
-        statistics::{paired, rules_of},
+        statistics::paired,
         threshold::threshold,
     };
     use pyo3::prelude::*;

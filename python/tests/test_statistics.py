@@ -1,4 +1,4 @@
-"""Whether one method is better than another, and what bad rows share."""
+"""Whether one method is better than another, and how sure a method is."""
 
 import math
 
@@ -17,16 +17,6 @@ def test_two_methods_are_compared_scene_by_scene():
     assert min(differences) <= low <= paired.difference <= high <= max(differences)
     with pytest.raises(ValueError, match='both "baseline" and "omp"'):
         ap.paired(rows, "baseline", "omp")
-
-
-def test_what_is_made_bad_by_a_column_is_found():
-    row = ap.evaluate(["baseline"], ["2"], count=1)[0]
-    rows = [{**row, "index": i, "min_range_metres": i % 7 + 1.0, "missed": int(i % 7 < 2)} for i in range(140)]
-    found = ap.rules(rows, bad="missed > 0")
-    assert found[0].text == "min_range_metres < 3" and (found[0].bad, found[0].rows, found[0].other_bad) == (20, 20, 0)
-    assert ap.rules(rows, bad="missed > 5") == []
-    with pytest.raises(ValueError, match="bad: "):
-        ap.rules(rows, bad="missed >")
 
 
 def test_rows_say_the_doubt_of_a_method(tmp_path):

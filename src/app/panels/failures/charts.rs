@@ -21,21 +21,14 @@ pub enum View {
     Histogram,
     Columns,
     Methods,
-    /// Rules that separate the bad rows from the others, in place of a chart.
-    Shared,
 }
 
 impl View {
-    const ALL: [(View, &'static str, &'static str); 5] = [
+    const ALL: [(View, &'static str, &'static str); 4] = [
         (View::None, "Table", "The table alone"),
         (View::Histogram, "Histogram", "Rows counted by their figure in a column"),
         (View::Columns, "Scatter", "One column against another"),
         (View::Methods, "A against B", "One column for one method against the same for another, scene by scene"),
-        (
-            View::Shared,
-            "Conditions that the bad rows share",
-            "Rules that tell bad rows from others, tested on scenes that did not suggest them",
-        ),
     ];
 }
 
@@ -79,7 +72,7 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
         choice(ui, "Colour", "", &mut memory.grouping, GROUPINGS, |column| (column.name().to_owned(), ""));
     }
     match memory.view {
-        View::None | View::Shared => {}
+        View::None => {}
         View::Histogram => column(ui, "of", &mut memory.y),
         View::Columns => {
             column(ui, "of", &mut memory.y);
@@ -167,7 +160,7 @@ fn subject(memory: &ChartsMemory) -> Option<(Subject, [String; 2])> {
     let (x, y) = (memory.x, memory.y);
     let [a, b] = &memory.methods;
     Some(match memory.view {
-        View::None | View::Shared => return None,
+        View::None => return None,
         View::Histogram => (Subject::Histogram(y), [y.name().to_owned(), "rows".to_owned()]),
         View::Columns => (Subject::Columns(x, y), [x.name().to_owned(), y.name().to_owned()]),
         View::Methods => {

@@ -8,7 +8,6 @@ mod input;
 mod opened;
 mod order;
 mod points;
-mod shared;
 mod table;
 
 use crate::app::content::{Content, Cx};
@@ -31,7 +30,6 @@ pub struct FailuresMemory {
     order: Order,
     boxed: Option<Boxed>,
     charts: charts::ChartsMemory,
-    shared: shared::SharedRulesMemory,
     table: table::TableMemory,
     opened: opened::OpenedMemory,
 }
@@ -130,13 +128,6 @@ fn head(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) {
 }
 
 fn chart(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory, asked: &mut Vec<Command>) {
-    if memory.charts.view == View::Shared {
-        if let Some(rule) = shared::show(ui, &input.job.table, &mut memory.shared) {
-            memory.filter.text = rule;
-            ui.request_repaint();
-        }
-        return;
-    }
     let (open, boxed) = charts::show(ui, input, &memory.order, memory.boxed.as_ref(), &mut memory.charts);
     asked.extend(open.map(|v| Command::Rows(RowsCommand::Show(v))));
     if let Some(boxed) = boxed {

@@ -174,15 +174,6 @@ fn two_methods_are_compared_in_a_sentence() {
 }
 
 #[test]
-fn a_rule_of_the_bad_rows_is_applied_by_a_click() {
-    let mut panel = panel_of(by_two_methods(), vec2(900.0, 700.0));
-    panel.clicks(&["Conditions that the bad rows share"]);
-    let _said = panel.get_by_label_contains("24 of 160 rows are bad.");
-    panel.clicks(&["nearest_pair_columns < 3"]);
-    assert_eq!(panel.state().memory.order.shown.len(), 48);
-}
-
-#[test]
 fn rows_are_sorted_and_filtered_and_drawn_by_doubt() {
     // Six scenes by a method without doubt and by one with it.
     let rows = (0..6).flat_map(|i| ["capon", "live"].map(|method| some_row(i, method))).collect();
