@@ -140,8 +140,7 @@ impl App {
     /// Whether a job started in a tool's panel runs.
     pub fn is_at_work(&self) -> bool {
         let jobs = &self.jobs;
-        jobs.thresholds.progress().is_some()
-            || jobs.failures.run.progress().is_some()
+        jobs.failures.run.progress().is_some()
             || jobs.failures.search.job.progress().is_some()
             || jobs.run_time.progress().is_some()
     }

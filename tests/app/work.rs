@@ -1,11 +1,8 @@
 //! Long work beside the window: evaluations, training logs, methods that fail.
 
 use crate::session::*;
-use apertura::app::WorkCommand;
 use apertura::engine::{StageOutcome, StageReport};
-use apertura::evaluate::threshold::ThresholdSearch;
 use apertura::files::npz::Npz;
-use apertura::task::Task;
 use ndarray::IxDyn;
 use std::cell::Cell;
 
@@ -21,31 +18,6 @@ fn an_evaluation_runs_beside_the_app() {
     step_until(&mut s, "it ends", |s| !s.state().is_at_work());
     s.settle();
     assert!(s.shows("cancelled"));
-}
-
-#[test]
-fn a_false_alarm_rate_sets_the_threshold() {
-    let mut s = Session::start();
-    let kinds = vec![Kind::Set1, Kind::Set2];
-    let asked = ThresholdSearch { kinds, count: 2, false_alarm_percent: 40.0, ..ThresholdSearch::default() };
-    s.ask_and_wait(WorkCommand::FindThreshold(Box::new(asked.clone())));
-    let search = ThresholdSearch {
-        radar: s.state().radar().clone(),
-        floor: s.state().settings.floor,
-        normalisation: s.state().settings.normalisation,
-        ..asked.clone()
-    };
-    let exact = search.run(&Baseline, &Task::default(), |_| ()).unwrap().eta;
-    let expected = (exact * 1000.0).ceil() / 1000.0;
-    let set = |s: &Session| s.state().settings.method_eta.get("baseline").copied();
-    assert_eq!(set(&s), Some(expected), "rounded up to three decimals");
-    assert!(s.shows("at most 40 % false alarms on average"));
-    s.app.state_mut().ask(WorkCommand::FindThreshold(Box::new(ThresholdSearch { count: 100_000, ..asked })));
-    step_until(&mut s, "it starts", |s| s.state().is_at_work());
-    s.app.state_mut().ask(WorkCommand::CancelThreshold);
-    step_until(&mut s, "it ends", |s| !s.state().is_at_work());
-    s.settle();
-    assert_eq!(set(&s), Some(expected), "a search that was stopped sets nothing");
 }
 
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! Commands that start or stop long work.
 
-use crate::app::jobs::{Jobs, RunTimePlan, ThresholdPlan, Watched, tell};
+use crate::app::jobs::{Jobs, RunTimePlan, Watched, tell};
 use crate::app::state::{MethodSlot, Panel, State, WorkCommand};
 use std::path::PathBuf;
 
@@ -8,10 +8,6 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: WorkCommand) {
     match command {
         WorkCommand::CancelMethod => jobs.pipeline.method_mut(MethodSlot::First).cancel(),
         WorkCommand::CancelSecond => jobs.pipeline.method_mut(MethodSlot::Second).cancel(),
-        WorkCommand::FindThreshold(search) => {
-            ThresholdPlan::of(state, *search).into_iter().for_each(|plan| jobs.thresholds.begin(plan));
-        }
-        WorkCommand::CancelThreshold => jobs.thresholds.cancel(),
         WorkCommand::Measure { thorough } => {
             jobs.run_time.begin(RunTimePlan { radar: state.radar().clone(), thorough });
         }

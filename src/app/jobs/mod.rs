@@ -33,7 +33,6 @@ mod several;
 mod source;
 mod subject;
 mod theory;
-mod thresholds;
 mod training;
 
 use background::Background;
@@ -65,10 +64,9 @@ pub use scene_maps::Scores;
 pub use several::{SeveralMaps, Small};
 use theory::TheoryRequest;
 pub use theory::TheoryResult;
-pub use thresholds::ThresholdPlan;
 pub use training::{LOG_INTERVAL, Log, LogQuery, Watched};
 
-use crate::app::state::{Command, DocumentCommand, Panel, Purpose, RowsCommand, State, ViewCommand};
+use crate::app::state::{Command, DocumentCommand, Panel, Purpose, RowsCommand, State};
 use crate::interact::Autosave;
 use crate::platform;
 use eframe::egui::{Context, DroppedFile};
@@ -83,8 +81,6 @@ const BAR: Duration = Duration::from_millis(100);
 /// All work of the app.
 pub struct Jobs {
     pub pipeline: Pipeline,
-    /// Searches for thresholds at a given rate of false alarms.
-    pub thresholds: RowJob<ThresholdPlan>,
     pub failures: Failures,
     pub run_time: RowJob<RunTimePlan>,
     pub training: Option<Watched>,
@@ -111,7 +107,6 @@ impl Jobs {
         let wake = platform::waker(ctx);
         Jobs {
             pipeline: Pipeline::start(wake.clone()),
-            thresholds: RowJob::start(wake.clone()),
             failures: Failures::start(folder, ctx),
             run_time: RowJob::start(wake.clone()),
             training: None,
@@ -128,7 +123,7 @@ impl Jobs {
         }
     }
 
-    /// Takes in work finished since the last frame. Returns the commands of chosen files, lessons, frames, thresholds and searches.
+    /// Takes in work finished since the last frame. Returns the commands of chosen files, lessons, frames and searches.
     pub fn poll(&mut self, state: &mut State) -> Vec<Command> {
         let mut errors = platform::problems();
         errors.extend(self.pipeline.poll(&mut state.method_times));
@@ -137,7 +132,6 @@ impl Jobs {
         errors.extend(self.failures.poll());
         let (found, failed) = self.failures.search.poll();
         errors.extend(failed);
-        errors.extend(self.thresholds.poll());
         errors.extend(self.run_time.poll());
         errors.extend(self.several.poll());
         errors.extend(self.lessons.poll(state));
@@ -152,10 +146,6 @@ impl Jobs {
         let (frame, failed) = self.listening.poll();
         failed.into_iter().for_each(|e| state.notices.error(e));
         chosen.extend(frame.map(|frame| DocumentCommand::ShowFrame(frame).into()));
-        for kept in self.thresholds.take_rows() {
-            state.notices.info(kept.told);
-            chosen.push(ViewCommand::SetMethodEta(kept.method, Some(kept.eta)).into());
-        }
         // The search's result replaces the scene that the search began at, but not one edited since.
         if found && self.failures.search.is_about(state.editor.scene()) {
             chosen.push(RowsCommand::TakeFinding.into());

@@ -1,11 +1,8 @@
 //! The settings panel: reconstruction with its current figures, maps, and display.
 
-mod false_alarms;
 mod settings;
 
 use crate::app::content::{Content, Cx};
-pub use false_alarms::Search;
-
 use crate::app::jobs::{Refusal, Scores};
 use crate::app::panels::map;
 use crate::app::state::{Command, MethodSlot, State, Units, ViewCommand, WorkCommand};
@@ -13,7 +10,6 @@ use crate::app::widgets::{
     LIST_HEIGHT, NumberField, group, level, method_list, percent, progress, row, scrolled, with_unit,
 };
 use crate::evaluate::eta_text;
-use crate::evaluate::threshold::ThresholdSearch;
 use crate::lesson::Uses;
 use crate::reconstruct::Reconstructor;
 use eframe::egui::{self, ComboBox, Grid, Slider, SliderClamping, Ui};
@@ -33,7 +29,7 @@ pub struct Input<'a> {
     pub uses: Uses,
 }
 
-/// State of the reconstruction and of the threshold search.
+/// State of the reconstruction.
 #[derive(Default)]
 pub struct Run<'a> {
     /// Completed part of the reconstruction, 0 to 1, while it runs.
@@ -49,12 +45,11 @@ pub struct Run<'a> {
     /// Whether a visible panel needs an output.
     pub wanted: bool,
     pub detector_error: Option<&'a str>,
-    pub search: Search<'a>,
 }
 
-pub const PANEL: Content<ThresholdSearch> = Content::drawn(draw);
+pub const PANEL: Content = Content::drawn(draw);
 
-fn draw(ui: &mut Ui, cx: Cx<'_, ThresholdSearch>) -> Vec<Command> {
+fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
     let (state, jobs) = (&*cx.state, cx.jobs);
     let pipeline = &jobs.pipeline;
     let run = Run {
@@ -67,7 +62,6 @@ fn draw(ui: &mut Ui, cx: Cx<'_, ThresholdSearch>) -> Vec<Command> {
         outdated: pipeline.output_is_outdated(),
         wanted: pipeline.maps.wants_ends(),
         detector_error: pipeline.detector_error(),
-        search: Search { progress: jobs.thresholds.progress(), note: jobs.thresholds.note() },
     };
     let input = Input {
         state,
@@ -76,22 +70,22 @@ fn draw(ui: &mut Ui, cx: Cx<'_, ThresholdSearch>) -> Vec<Command> {
         run,
         uses: state.uses(),
     };
-    show(ui, input, cx.memory)
+    show(ui, &input)
 }
 
-pub fn show(ui: &mut Ui, input: Input<'_>, memory: &mut ThresholdSearch) -> Vec<Command> {
+pub fn show(ui: &mut Ui, input: &Input<'_>) -> Vec<Command> {
     scrolled(ui, |ui, asked| {
         if input.uses.output {
-            group(ui, "Reconstruction", |ui| reconstruction(ui, &input, memory, asked));
+            group(ui, "Reconstruction", |ui| reconstruction(ui, input, asked));
         } else if input.uses.threshold {
-            group(ui, "Threshold", |ui| thresholds(ui, &input, None, memory, asked));
+            group(ui, "Threshold", |ui| thresholds(ui, input, None, asked));
         }
         group(ui, "Maps", |ui| settings::maps(ui, input.state, asked));
         group(ui, "Display", |ui| settings::display(ui, &input.state.settings, asked));
     })
 }
 
-fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut ThresholdSearch, asked: &mut Vec<Command>) {
+fn reconstruction(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
     let Some(method) = input.state.method().map(AsRef::as_ref) else {
         ui.weak("This build has no reconstruction method.");
         return;
@@ -104,19 +98,13 @@ fn reconstruction(ui: &mut Ui, input: &Input<'_>, memory: &mut ThresholdSearch, 
         listed.response
     });
     if input.uses.threshold {
-        thresholds(ui, input, Some(method), memory, asked);
+        thresholds(ui, input, Some(method), asked);
     }
     figures(ui, method, &input.run, asked);
 }
 
 /// Draws the choice between thresholds for the whole map and a detector, with their fields.
-fn thresholds(
-    ui: &mut Ui,
-    input: &Input<'_>,
-    method: Option<&dyn Reconstructor>,
-    memory: &mut ThresholdSearch,
-    asked: &mut Vec<Command>,
-) {
+fn thresholds(ui: &mut Ui, input: &Input<'_>, method: Option<&dyn Reconstructor>, asked: &mut Vec<Command>) {
     settings::detector(ui, &input.state.settings, asked);
     match &input.state.settings.cfar {
         Some(cfar) => settings::detector_cells(ui, cfar, input.run.detector_error, asked),
@@ -125,9 +113,6 @@ fn thresholds(
                 output_eta(ui, input, method, asked);
             }
             target_eta(ui, input, asked);
-            if let Some(method) = method {
-                false_alarms::show(ui, method.name(), &input.run.search, memory, asked);
-            }
         }
     }
 }

@@ -30,7 +30,7 @@ fn panel_of(
     state.settings.method = Baseline.name().to_owned();
     let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
         let input = Input { state: &state, eta: Baseline.eta(), range_db: None, run: Run::default(), uses: Uses::ALL };
-        asked.extend(show(ui, change(input), &mut ThresholdSearch::default()));
+        asked.extend(show(ui, &change(input)));
     };
     Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
 }
@@ -106,7 +106,7 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
 
 /// Opens the folded groups.
 fn unfold<State>(controls: &mut Harness<'_, State>) {
-    controls.clicks(&["η by false alarms", "Seed of the noise"]);
+    controls.clicks(&["Seed of the noise"]);
 }
 
 #[test]

@@ -9,7 +9,6 @@ use super::{
     BoundsSettings, CardPlan, ChirpSettings, Compare, Cursor, Directions, FailureChoice, HelpPage, LiveFrame, MapKind,
     Panel, PhasorSettings, Projection, SaveAnswer, Several, Task, Units,
 };
-use crate::evaluate::threshold::ThresholdSearch;
 use crate::evaluate::worsen::WorseningSearch;
 use crate::interact::blob::BlobHit;
 use crate::interact::{Coordinates, Field, FieldChange, Place, SelectionMode, Snap};
@@ -291,10 +290,6 @@ pub enum LessonCommand {
 pub enum WorkCommand {
     CancelMethod,
     CancelSecond,
-    /// Search for the threshold at which the method in use has a given rate of false alarms, and set it.
-    FindThreshold(Box<ThresholdSearch>),
-    /// Cancel the search; the threshold stays.
-    CancelThreshold,
     /// Measure run time against error; `thorough` takes every algorithm with more reflectors, for about a minute.
     Measure {
         thorough: bool,
