@@ -163,10 +163,6 @@ impl MapViews {
             Projection::Cartesian => &mut self.cartesian,
         }
     }
-
-    pub fn seen(mut self, projection: Projection) -> MapView {
-        *self.of(projection)
-    }
 }
 
 /// The pointer's place in this frame and earlier ones.

@@ -21,27 +21,12 @@ pub struct Frame<'a> {
     pub projection: Projection,
     /// Middle of the map's elements, metres along the array.
     pub centre_x_metres: f64,
-    /// The start of the animation, while the map changes from another projection.
-    pub morph: Option<Morph>,
-}
-
-/// Start of the animation from another projection.
-#[derive(Clone, Copy)]
-pub struct Morph {
-    /// Rectangle of the map in that projection.
-    pub rect: Rect,
-    /// Visible part of the map in that projection.
-    pub view: MapView,
-    /// The projection that the map comes from.
-    pub projection: Projection,
-    /// Remaining part of the animation, 1 to 0.
-    pub left: f32,
 }
 
 impl<'a> Frame<'a> {
-    /// Frame of a part of a map, at rest.
+    /// Frame of a part of a map.
     pub fn of(rect: Rect, view: MapView, radar: &'a Radar, projection: Projection, centre_x_metres: f64) -> Self {
-        Frame { rect, view, radar, projection, centre_x_metres, morph: None }
+        Frame { rect, view, radar, projection, centre_x_metres }
     }
 
     /// Height of a range bin on screen, points; in a Cartesian map that of a bin straight ahead.
@@ -78,36 +63,19 @@ impl<'a> Frame<'a> {
 
     /// Place on screen of a range and a direction of the map; ranges wrap around as in the map.
     fn at(&self, blob: Polar) -> Pos2 {
-        self.on_screen(|projection| fraction(self.radar, projection, blob))
+        self.view.to_screen(self.rect, fraction(self.radar, self.projection, blob))
     }
 
-    /// Place on screen of a place whose fraction of a map in either projection is `fraction`.
-    fn on_screen(&self, fraction: impl Fn(Projection) -> Pos2) -> Pos2 {
-        let to = self.view.to_screen(self.rect, fraction(self.projection));
-        match &self.morph {
-            Some(from) => to.lerp(from.view.to_screen(from.rect, fraction(from.projection)), from.left),
-            None => to,
-        }
-    }
-
-    /// The range and the direction of a place of the range-angle map, given as a fraction of it.
-    pub fn polar_of_cell(&self, fraction: Pos2) -> Polar {
-        let polar = polar_of(self.radar, Projection::RangeAngle, fraction);
-        Polar { range_metres: polar.range_metres.max(0.0), ..polar }
-    }
-
-    /// The fraction of a map in `projection` at a place whose fraction of the range-angle map is known: a fraction computed again would wrap
-    /// around at the map's far edges.
-    pub fn fraction_in(&self, projection: Projection, polar: Polar, range_angle: Pos2) -> Pos2 {
-        match projection {
+    /// Place on screen of a place of the range-angle map, given as a fraction of it: a fraction computed again would wrap around at the map's far edges.
+    pub fn at_fraction(&self, range_angle: Pos2) -> Pos2 {
+        let of_map = match self.projection {
             Projection::RangeAngle => range_angle,
-            Projection::Cartesian => fraction(self.radar, projection, polar),
-        }
-    }
-
-    /// Place on screen of a place whose fraction of the range-angle map is known.
-    pub fn at_fraction(&self, polar: Polar, range_angle: Pos2) -> Pos2 {
-        self.on_screen(|projection| self.fraction_in(projection, polar, range_angle))
+            Projection::Cartesian => {
+                let polar = polar_of(self.radar, Projection::RangeAngle, range_angle);
+                fraction(self.radar, self.projection, Polar { range_metres: polar.range_metres.max(0.0), ..polar })
+            }
+        };
+        self.view.to_screen(self.rect, of_map)
     }
 
     /// The upper corner away from a place, `below` points beneath the map's top, and the alignment of a text there.
@@ -116,12 +84,6 @@ impl<'a> Frame<'a> {
             true => (self.rect.left_top() + vec2(10.0, below), Align2::LEFT_TOP),
             false => (self.rect.right_top() + vec2(-10.0, below), Align2::RIGHT_TOP),
         }
-    }
-
-    /// Rectangle on screen that the map takes, during the animation too.
-    pub fn shown(&self) -> Rect {
-        let Some(from) = &self.morph else { return self.rect };
-        self.rect.lerp_towards(&from.rect, from.left)
     }
 }
 
@@ -235,6 +197,9 @@ mod tests {
                 (frame.cursor(&cursor) - blob).length() < 1e-2,
                 "the pointer over it in the scene is over its blob"
             );
+            let polar = radar.blob_of(0.0, reflector.x_metres, reflector.y_metres);
+            let of_cell = frame.at_fraction(fraction(&radar, Projection::RangeAngle, polar));
+            assert!((of_cell - blob).length() < 1e-2, "{of_cell:?}, not {blob:?}");
             let back = cursor_at(&radar, projection, pos2(blob.x / 1024.0, 1.0 - blob.y / 512.0)).unwrap();
             assert!(back.place.distance_metres(cursor.place) < 1e-2, "and back: {back:?}");
         }

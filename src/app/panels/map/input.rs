@@ -15,7 +15,7 @@ pub struct Input<'a> {
     pub state: &'a State,
     /// Texture of the picture, if there is one.
     pub texture: Option<TextureId>,
-    /// Projection of the picture; for a moment after a change it is still the former one.
+    /// Projection of the picture; for a moment after a change it is still the former one, and no picture is drawn.
     pub pictured: Projection,
     /// Lambda at the end of the picture's colour scale.
     pub end: f32,

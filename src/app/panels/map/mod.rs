@@ -10,7 +10,6 @@ mod hatch;
 mod input;
 mod kinds;
 mod legend;
-mod morph;
 mod outline;
 mod overlay;
 mod plot;
@@ -71,31 +70,25 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     if response.has_focus() && !is_free {
         asked.extend(nudge(ui.ctx(), radar.range_resolution_metres()));
     }
-    let morph = morph::morph(ui, area, projection, state.map_views.seen(projection.other()), above);
-    // Clicks and drags refer to the places at the end of the animation.
     let frame = Frame { view: *view, ..frame };
     point(&input, frame, &response, &mut asked);
-    let frame = Frame { morph, ..frame };
-    let rest = 1.0 - morph.map_or(0.0, |m| m.left);
     let painter = ui.painter().with_clip_rect(area);
-    let inner = ui.painter().with_clip_rect(frame.shown().intersect(area));
+    let inner = ui.painter().with_clip_rect(rect.intersect(area));
     let is_drawn = picture(ui, &inner, frame, &input, &mut asked);
     if state.shows_axes() {
         let free = bar.as_ref().map_or(0.0, |bar| bar.overhang(&painter, rect.width()));
-        let mut appearing = painter.clone();
-        appearing.multiply_opacity(rest);
-        draw_axes(ui, &appearing, frame, state.settings.directions, (free, line_of(&input).is_some()));
+        draw_axes(ui, &painter, frame, state.settings.directions, (free, line_of(&input).is_some()));
     }
     if is_bare {
-        draw_legend(ui, &painter, &input, area, frame.shown());
+        draw_legend(ui, &painter, &input, area, rect);
     }
     draw_over(&inner, frame, &input, response.hover_pos(), is_drawn);
     if let Some(bar) = bar {
-        bar.draw(ui, &painter, frame.shown());
+        bar.draw(ui, &painter, rect);
     }
     response.context_menu(|ui| menu(ui, state, kind, &mut asked));
     if is_bare {
-        morph::button(ui, rect, kind, projection, &mut asked);
+        plot::projection_button(ui, rect, kind, projection, &mut asked);
     }
     asked
 }
@@ -150,19 +143,18 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, pointer: Opti
         // The text in the place of the map stays readable.
         return;
     }
-    let at_rest = is_bare && frame.morph.is_none();
-    if let Some(told_apart) = input.told_apart.as_ref().filter(|_| at_rest) {
+    if let Some(told_apart) = input.told_apart.as_ref().filter(|_| is_bare) {
         told_apart.draw(inner, frame, inner.ctx().theme() == egui::Theme::Dark);
     }
     // Beneath all texts.
     if let Some(cursor) = &state.shown_cursor() {
         let cells = input.cells.as_ref();
         overlay::cursor(inner, frame, cursor, cells.filter(|_| is_bare), state.settings.units);
-        if let Some(cfar) = state.settings.cfar.as_ref().filter(|_| at_rest && kind.is_above()) {
+        if let Some(cfar) = state.settings.cfar.as_ref().filter(|_| is_bare && kind.is_above()) {
             window::draw(inner, frame, cursor, cells, cfar);
         }
     }
-    if let Some(aperture) = aperture(input).filter(|_| at_rest) {
+    if let Some(aperture) = aperture(input).filter(|_| is_bare) {
         overlay::beam(inner, frame, beam_columns(state.radar(), aperture));
     }
     let line = captions::of_map(state, kind).filter(|_| is_bare);
@@ -231,14 +223,13 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
         Some(texture) => {
             let uv = Rect::from_min_max(pos2(view.low.x, view.high.y), pos2(view.high.x, view.low.y));
             let tint = if input.stale { Color32::from_gray(120) } else { Color32::WHITE };
-            inner.rect_filled(frame.shown(), 0.0, Inks::of(ui.visuals()).beyond);
-            if let Some(map) = line_of(input).filter(|_| frame.morph.is_none()) {
+            inner.rect_filled(rect, 0.0, Inks::of(ui.visuals()).beyond);
+            if let Some(map) = line_of(input) {
                 overlay::line(inner, frame, map, ui.visuals().strong_text_color());
                 return true;
             }
-            match frame.morph.is_none() && input.pictured == input.state.settings.projection {
-                true => _ = inner.image(texture, rect, uv, tint),
-                false => morph::picture(inner, frame, texture, input.pictured, tint),
+            if input.pictured == frame.projection {
+                _ = inner.image(texture, rect, uv, tint);
             }
         }
         None if input.is_veiled() => blank::veil(inner, rect, input.awaits_click(), ui.visuals()),

@@ -1,8 +1,8 @@
 //! A map within its panel: its rectangle, its axes, zoom and pan.
 
 use super::frame::Frame;
-use crate::app::state::{Directions, MapView, Projection};
-use crate::app::widgets::{Axis, Tick, axes, pan_keys, zoom_keys};
+use crate::app::state::{Command, Directions, MapKind, MapView, Projection, ViewCommand};
+use crate::app::widgets::{Axis, Icon, Tick, axes, icons, pan_keys, zoom_keys};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
 
@@ -158,6 +158,21 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Direc
         }
     };
     axes::draw(ui, painter, rect, x, y);
+}
+
+/// Draws the button in a map's corner that changes the projection of all maps.
+pub fn projection_button(ui: &mut Ui, rect: Rect, kind: MapKind, projection: Projection, asked: &mut Vec<Command>) {
+    if rect.width() < 120.0 || rect.height() < 60.0 {
+        return;
+    }
+    let (icon, name) = match projection {
+        Projection::RangeAngle => (Icon::Fan, "bend into x and y"),
+        Projection::Cartesian => (Icon::Grid, "straighten into cos θ and range"),
+    };
+    let corner = Rect::from_min_size(rect.right_bottom() - vec2(28.0, 24.0), vec2(24.0, 20.0));
+    if icons::over_picture(ui, corner, icon, &format!("{}: {name}", kind.title())).clicked() {
+        asked.push(ViewCommand::SetProjection(projection.other()).into());
+    }
 }
 
 #[cfg(test)]

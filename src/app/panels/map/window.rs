@@ -67,11 +67,10 @@ fn outlines(frame: Frame<'_>, [bin, column]: [usize; 2], sides: [usize; 2]) -> V
     if right > 1.0 + MIN_PIECE_RATIO {
         pieces.push([0.0, right - 1.0]);
     }
-    let at = |fraction: Pos2| frame.at_fraction(frame.polar_of_cell(fraction), fraction);
     let outline = |[left, right]: [f32; 2]| {
         let corners = [pos2(left, bottom), pos2(right, bottom), pos2(right, top), pos2(left, top)];
         let sides = (0..4).flat_map(move |i| (0..ALONG).map(move |k| (corners[i], corners[(i + 1) % 4], k)));
-        sides.map(|(from, to, k)| at(from + (k as f32 / ALONG as f32) * (to - from))).collect()
+        sides.map(|(from, to, k)| frame.at_fraction(from + (k as f32 / ALONG as f32) * (to - from))).collect()
     };
     pieces.into_iter().map(outline).collect()
 }
