@@ -1,12 +1,11 @@
 //! `apertura evaluate`: tables 4.1 to 4.3 for any method, beside the printed values. Also writes rows, runs shards, and takes your own scenes.
 
-mod by_doubt;
 mod by_echo;
 mod percent;
 mod progress;
 mod report;
 
-use super::arguments::{self, FloorArgs, real, seed, whole};
+use super::arguments::{self, FloorArgs, seed, whole};
 use super::layout_arg::LayoutArg;
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
@@ -46,11 +45,9 @@ use std::time::Duration;
 /// With --cfar a further table gives P_D and P_FA where each cell is held against the cells around it in place of the threshold; rows have it
 /// in the columns cfar_detection, cfar_false_alarm and cfar. The output is brought to power on the target's scale.
 ///
-/// For a method that says its doubt a line tells whether doubt finds its failures: the rows of the worst tenth by squared error, or those from
-/// --failures-from on. The area under the ROC curve is the probability that a failure has more doubt than another row; 0.5 tells nothing. It is
-/// given for each set of ten rows or more and for all sets together, whose worst tenth may be of few sets. Doubt (column doubt of --rows) is the
-/// squared error if every cell were off by as much as the method says that nine of ten cells stay below, on scenes and over noise like those it
-/// was trained on.
+/// For a method that says its doubt a line has the part of the cells whose error is at most their doubt (column within_doubt of --rows). Doubt
+/// (column doubt) is the squared error if every cell were off by as much as the method says that nine of ten cells stay below, on scenes and over
+/// noise like those it was trained on.
 ///
 /// With --rows each row is appended as soon as it is found. The same command resumes a stopped run. Rows of another run are
 /// refused. --merge joins the rows of the parts of one run, and fails where scenes are missing.
@@ -65,8 +62,7 @@ use std::time::Duration;
 /// scenes, squared_error, detection, false_alarm, missed and ghosts (mean, standard_error and median; rates at the method's threshold),
 /// detection_at_printed_false_alarm (false_alarm, detection, standard_error, median; threshold says that each scene has its own), echoes
 /// (null without bodies; below_db: where each class begins, there and found: echoes of each class, detection: the part of all that are found),
-/// doubt (null where no row says it: method, rows, failures, least_squared_error, area and standard_error; the object has the same of all sets
-/// in the list doubt, one a method), cfar (null without --cfar: detector, and detection and false_alarm by it),
+/// within_doubt (null where no row says it: mean, standard_error and median of the part of the cells), cfar (null without --cfar: detector, and detection and false_alarm by it),
 /// median_milliseconds and near_best (null with one method). Each set also has against: the first method beside each other one on the scenes
 /// of both (first, second, scenes, squared_error_difference and its interval_95 by the paired bootstrap, first_alone and second_alone: scenes
 /// in which that one alone finds every object, mcnemar_p). Rates are fractions, not percent.
@@ -142,10 +138,6 @@ pub struct Args {
     #[arg(long, value_name = "ca|os[:..]", conflicts_with = "merge")]
     cfar: Option<Cfar>,
 
-    /// Least squared error of a row that counts as a failure which doubt is to find [default: that of the worst tenth]
-    #[arg(long, value_name = "SE", value_parser = real(0.0..=1e9))]
-    failures_from: Option<f64>,
-
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
@@ -154,7 +146,7 @@ pub struct Args {
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let (rows, missing) = if self.merge.is_empty() { (self.measure()?, Vec::new()) } else { self.merged()? };
-        let report = EvaluationReport::of(&rows, missing, self.failures_from);
+        let report = EvaluationReport::of(&rows, missing);
         if self.json { print_json(&report) } else { print(&report.to_text()) }
     }
 

@@ -1,6 +1,5 @@
 //! The tables of an evaluation, from its rows.
 
-use super::by_doubt::{self, DoubtReport};
 use super::by_echo::{self, EchoReport};
 use super::percent::{percent, percent_of};
 use crate::evaluate::Estimate;
@@ -28,7 +27,6 @@ pub struct EvaluationReport {
     layout: String,
     missing: Vec<Lack>,
     sets: Vec<SetReport>,
-    doubt: Vec<DoubtReport>,
 }
 
 #[derive(Debug, Serialize)]
@@ -85,8 +83,6 @@ struct MethodReport {
     ghosts: Estimate,
     /// `None` where no scene has a body, and in older rows.
     echoes: Option<EchoReport>,
-    /// `None` where the rows say no doubt, and where they are too few.
-    doubt: Option<DoubtReport>,
     /// Part of the cells whose error is at most their doubt; `None` without doubt.
     within_doubt: Option<Estimate>,
     /// `None` where no detector of constant false-alarm rate was tried.
@@ -156,18 +152,13 @@ fn names<'a>(rows: &[&'a Row], name: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str
     seen
 }
 
-fn of_methods(rows: &[&Row], limit: Option<f64>) -> Vec<DoubtReport> {
-    names(rows, |row| &row.method).into_iter().filter_map(|name| DoubtReport::of(name, rows, limit)).collect()
-}
-
 impl EvaluationReport {
-    /// The tables of `rows`; `missing` are the scenes that lack in the whole run. `limit` is the least squared error of a failure for the figures on
-    /// doubt; without it the worst tenth are failures.
-    pub fn of(rows: &[Row], missing: Vec<Lack>, limit: Option<f64>) -> EvaluationReport {
+    /// The tables of `rows`; `missing` are the scenes that lack in the whole run.
+    pub fn of(rows: &[Row], missing: Vec<Lack>) -> EvaluationReport {
         let all: Vec<&Row> = rows.iter().collect();
         let sets: Vec<SetReport> = names(&all, |row| &row.set)
             .into_iter()
-            .map(|set| SetReport::of(set, &all.iter().copied().filter(|r| r.set == set).collect::<Vec<_>>(), limit))
+            .map(|set| SetReport::of(set, &all.iter().copied().filter(|r| r.set == set).collect::<Vec<_>>()))
             .collect();
         let seed = rows.first().map(|row| row.seed).filter(|seed| rows.iter().all(|row| row.seed == *seed));
         let generated = rows.iter().find(|row| row.carrier.is_some());
@@ -183,7 +174,6 @@ impl EvaluationReport {
             radar: generated.map(|row| row.radar.to_string()),
             layout: rows.first().map(|row| row.layout.to_string()).unwrap_or_default(),
             missing,
-            doubt: if sets.len() > 1 { of_methods(&all, limit) } else { Vec::new() },
             sets,
         }
     }
@@ -210,17 +200,13 @@ impl EvaluationReport {
         for set in &self.sets {
             set.write(self.count, &mut text);
         }
-        if !self.doubt.is_empty() {
-            text.push_str("\nAll sets together\n");
-            by_doubt::write(&self.doubt, &mut text);
-        }
         text.truncate(text.trim_end().len());
         text
     }
 }
 
 impl SetReport {
-    fn of(set: &str, rows: &[&Row], limit: Option<f64>) -> SetReport {
+    fn of(set: &str, rows: &[&Row]) -> SetReport {
         let kind = set.parse::<Kind>().ok();
         let (test_set, description) = (kind.and_then(Kind::test_set), kind.map_or(OF_A_FOLDER, Kind::description));
         let is_of_table = rows.iter().all(|row| row.radar.is_empty());
@@ -230,7 +216,7 @@ impl SetReport {
             experiment_2: PRINTED_EXPERIMENT_2[number - 1],
         });
         let false_alarm = false_alarm(test_set);
-        let method = |name: &&str| MethodReport::of(name, rows, false_alarm, limit);
+        let method = |name: &&str| MethodReport::of(name, rows, false_alarm);
         let names = names(rows, |row| &row.method);
         let (methods, against) = (names.iter().map(method).collect(), Against::of(&names, rows));
         SetReport { set: set.to_owned(), description, printed, false_alarm, methods, against }
@@ -267,9 +253,13 @@ impl SetReport {
         }
         let counted = self.methods.iter().filter_map(|m| Some((m.name.as_str(), m.echoes.as_ref()?)));
         by_echo::write(&counted.collect::<Vec<_>>(), width, text);
-        let within = self.methods.iter().filter_map(|m| Some((&m.name, m.within_doubt.as_ref()?)));
-        by_doubt::write_within(within, text);
-        by_doubt::write(self.methods.iter().filter_map(|m| m.doubt.as_ref()), text);
+        for (name, part) in self.methods.iter().filter_map(|m| Some((&m.name, m.within_doubt.as_ref()?))) {
+            let _ = writeln!(
+                text,
+                "doubt of {name}: the error of {} % of the cells is at most their doubt; 90 % is the aim over noise that it was trained on",
+                percent_of(part)
+            );
+        }
         self.write_cfar(width, text);
         for Against { first, second, paired } in &self.against {
             let _ = writeln!(text, "{}", paired.told(first, second));
@@ -300,7 +290,7 @@ impl PrintedColumns {
 }
 
 impl MethodReport {
-    fn of(name: &str, rows: &[&Row], false_alarm: f64, limit: Option<f64>) -> Self {
+    fn of(name: &str, rows: &[&Row], false_alarm: f64) -> Self {
         let tally = Tally::of(rows.iter().copied().filter(|row| row.method == name));
         let at = tally.estimate(Column::DetectionAtPrinted);
         MethodReport {
@@ -324,7 +314,6 @@ impl MethodReport {
             ghosts: tally.estimate(Column::Ghosts),
             cfar: CfarReport::of(rows, &tally),
             echoes: tally.echoes().map(EchoReport::of),
-            doubt: DoubtReport::of(name, rows, limit),
             within_doubt: Some(tally.estimate(Column::WithinDoubt)).filter(|part| !part.mean.is_nan()),
             median_milliseconds: tally.median_milliseconds(),
             near_best: part_near_best(rows, name),
