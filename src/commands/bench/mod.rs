@@ -21,9 +21,8 @@ use std::path::PathBuf;
 ///
 /// Times end when three Lambda maps are ready. All threads are used. The bare two-dimensional transform that they are compared with runs on one.
 ///
-/// methods.json, and --methods --json, are one object: threads, scenes (of each set), methods, each with method (its name), squared_error
-/// (mean and standard_error) and median_milliseconds, both by set; and crowds, each with method, reflectors, what, scenes, median_milliseconds,
-/// worst_milliseconds, squared_error.
+/// methods.json, and --methods --json, are one object: threads, scenes (of each set), and methods, each with method (its name), squared_error
+/// (mean and standard_error) and median_milliseconds, both by set.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Print one JSON object instead of a table
@@ -57,8 +56,7 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["reflectors", "algorithms", "others", "methods"])]
     bodies: bool,
 
-    /// Measure every reconstruction method instead, run time against squared error, and hybrid, iaa and sbl on 10 and on 300 reflectors;
-    /// -o draws methods.svg and methods.png and writes methods.json
+    /// Measure every reconstruction method instead, run time against squared error; -o draws methods.svg and methods.png and writes methods.json
     #[arg(long, conflicts_with_all = ["reflectors", "repeats", "others"])]
     methods: bool,
 
