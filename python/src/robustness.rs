@@ -20,7 +20,7 @@ const MAX_TOLERANCE: f64 = 180.0;
 /// Factors on the tolerances where none are given.
 const USUAL_SCALES: [f64; 5] = [0.0, 0.5, 1.0, 2.0, 4.0];
 
-/// Tries methods on arrays with element errors: gain, phase and place drawn for each antenna. `apertura robustness` prints the same.
+/// Tries methods on arrays with element errors: gain, phase and place drawn for each antenna. `apertura robustness` prints the same but for `calibrate`.
 ///
 /// Maps are held against that of the array without errors over the same noise. Every scale has the same scenes, and the same draw of errors times the
 /// scale.

@@ -80,35 +80,21 @@ fn what_is_wrong_is_named() {
 
 #[test]
 fn robustness_prints_a_line_for_each_case() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = apertura(&["robustness", "--method", "bartlett,baseline", "--count", "1", "--scale", "0,2", "--output"])
-        .arg(folder.path())
-        .assert()
-        .success();
+    let arguments = ["robustness", "--method", "bartlett,baseline", "--count", "1", "--scale", "0,2"];
+    let run = apertura(&arguments).assert().success();
     let text = String::from_utf8(run.get_output().stdout.clone()).unwrap();
-    let lines: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
-    assert_eq!((lines.len(), lines[0].len(), lines[0][0]), (5, 9, "method"));
-    assert_eq!((lines[2][0], lines[2][1], lines[2][3]), ("bartlett", "2", "20"));
-    assert_ne!(lines[3][5], lines[4][5], "elements that are off change the map");
-    assert_eq!(std::fs::read_to_string(folder.path().join("robustness.csv")).unwrap().trim_end(), text.trim_end());
-    assert!(std::fs::read_to_string(folder.path().join("robustness.svg")).unwrap().contains("baseline"));
+    let lines: Vec<Vec<&str>> = text.lines().skip(1).map(|l| l.split_whitespace().collect()).collect();
+    assert_eq!((lines.len(), lines[1][..4].to_vec()), (4, vec!["bartlett", "2", "1", "20"]));
+    assert_ne!(lines[2][5], lines[3][5], "elements that are off change the map");
     apertura(&["robustness", "--phase-degrees", "200"]).assert().failure().stderr(contains("number from 0 to 180"));
 }
 
 #[test]
 fn robustness_prints_one_object_on_request() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().to_str().unwrap();
-    let arguments = "robustness --method baseline --count 2 --scale 0,2 --json --output";
-    let arguments: Vec<&str> = arguments.split(' ').chain([path]).collect();
-    let report = json(&arguments);
-    let said = ["count", "floor", "calibrated"].map(|key| &report[key]);
-    assert_eq!(said, [&2.into(), &"thesis".into(), &Value::from(false)]);
+    let report = json(&["robustness", "--method", "baseline", "--count", "2", "--scale", "0,2", "--json"]);
+    assert_eq!(["count", "floor"].map(|key| &report[key]), [&Value::from(2), &Value::from("thesis")]);
     let rows = report["rows"].as_array().unwrap();
     assert_eq!((rows.len(), &rows[1]["scale"], &rows[1]["phase_degrees"]), (2, &2.0.into(), &20.0.into()));
     let error = &rows[1]["squared_error"];
     assert!(error["mean"].as_f64().unwrap() > error["standard_error"].as_f64().unwrap());
-    let written: Value =
-        serde_json::from_slice(&std::fs::read(folder.path().join("robustness.json")).unwrap()).unwrap();
-    assert_eq!(written, report);
 }
