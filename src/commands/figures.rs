@@ -13,10 +13,10 @@ use std::sync::Arc;
 /// Draw the thesis' figures and tables from this program's own data
 ///
 /// Writes figures/NUMBER.png and .svg into DIR, and figures.md, the page that shows them all with what differs from the printed
-/// ones.
+/// ones. Figures without simulated data are kept as drawn in docs/figures: they are named, and not written.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Draw these figures alone, as 4-7 or 2-1,2-2; leaves figures.md as it is
+    /// Draw these figures alone, as 4-7 or 2-2,2-6; leaves figures.md as it is
     #[arg(long, value_delimiter = ',', value_name = "NUMBERS")]
     only: Vec<String>,
 
@@ -34,16 +34,22 @@ impl Args {
         let chosen = self.chosen()?;
         let folder = self.output.join("figures");
         let source = SceneSource::default();
+        let mut drawn = 0;
         for figure in &chosen {
+            let Some(sheet) = figure.sheet else {
+                print(&format!("figure {}: kept as drawn", figure.number))?;
+                continue;
+            };
             let failed = |e| CommandError(format!("figure {}: {e}", figure.number));
-            let sheet = (figure.sheet)(&source).map_err(failed)?;
+            let sheet = sheet(&source).map_err(failed)?;
             save(&sheet, &folder, figure.number)?;
             print(&format!("figure {}", figure.number))?;
+            drawn += 1;
         }
         if self.only.is_empty() {
             write_file(&self.output.join("figures.md"), self.page()?.as_bytes())?;
         }
-        print(&format!("wrote {} figures into {}", chosen.len(), folder.display()))
+        print(&format!("wrote {drawn} figures into {}", folder.display()))
     }
 
     fn chosen(&self) -> Result<Vec<&'static Figure>, CommandError> {
@@ -62,7 +68,7 @@ impl Args {
         let methods: Vec<Arc<dyn Reconstructor>> = named.collect::<Result<_, _>>()?;
         let methods: Vec<&dyn Reconstructor> = methods.iter().map(AsRef::as_ref).collect();
         let mut page = String::from(
-            "# The thesis' figures\n\nDrawn by `apertura figures`, which also writes this page and an SVG beside every PNG.\n",
+            "# The thesis' figures\n\nDrawn by `apertura figures`, which also writes this page and an SVG beside every PNG that it draws. Figures *kept as drawn*\nshow no simulated data and are not drawn again.\n",
         );
         let _ = writeln!(page, "\n<!-- table figures: apertura figures --scenes {} -->", self.scenes);
         page.push_str(&pages::tables(&methods, self.scenes)?);

@@ -1,11 +1,11 @@
 //! Sheets as PNG and SVG.
 
 use super::sheet::{PanelContent, Series, Sheet, SheetAxis, SheetCells, SheetChart, SheetPanel, Stroke};
-use super::sketch::{self, SheetDrawn, words};
 use crate::picture::{ColourMap, Drawing, Painted, PanelArea, painted};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
+type SheetDrawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 type Axes<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 const PAPER: RGBColor = RGBColor(252, 252, 250);
@@ -14,6 +14,10 @@ const HUES: [RGBColor; 5] =
     [RGBColor(200, 70, 10), RGBColor(20, 90, 180), RGBColor(30, 30, 34), RGBColor(120, 60, 150), RGBColor(0, 120, 100)];
 const TITLE_PIXELS: i32 = 34;
 const BAR_PIXELS: i32 = 58;
+
+fn words(size: f64, colour: &RGBColor) -> TextStyle<'static> {
+    FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal).color(colour)
+}
 
 impl Drawing for Sheet {
     fn size(&self) -> (u32, u32) {
@@ -38,7 +42,6 @@ fn draw_panel<B: DrawingBackend>(panel: &SheetPanel, area: &PanelArea<B>) -> She
     match &panel.content {
         PanelContent::Chart(chart) => draw_chart(chart, &below),
         PanelContent::Cells(cells) => draw_cells(cells, &below),
-        PanelContent::Sketch(plane) => sketch::draw(plane, &below),
     }
 }
 
@@ -103,10 +106,6 @@ fn draw_series<B: DrawingBackend>(on: &mut Axes<'_, B>, series: &Series, hue: RG
         Stroke::Solid => on.draw_series(LineSeries::new(points, style))?,
         Stroke::Dashed => on.draw_series(DashedLineSeries::new(points, 7, 5, style))?,
         Stroke::Dots => on.draw_series(points.map(|p| Circle::new(p, 4, hue.filled())))?,
-        Stroke::Stems => {
-            on.draw_series(series.points.iter().map(|p| PathElement::new([(p.0, 0.0), *p], style)))?;
-            on.draw_series(points.map(|p| Circle::new(p, 4, hue.filled())))?
-        }
     };
     if !series.name.is_empty() {
         drawn.label(series.name).legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));

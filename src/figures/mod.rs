@@ -1,17 +1,13 @@
-//! Every figure of the thesis, drawn from this program's data.
+//! Every figure of the thesis that shows data, drawn from this program's; the others are kept as drawn.
 //!
 //! A figure is a function from a [`SceneSource`] of simulated data to a [`Sheet`](sheet::Sheet) of panels; `draw` draws sheets, [`pages`]
 //! the page of all figures. [`ALL`] lists the figures with their subjects and their differences from the printed ones.
 
-mod diagrams;
 mod draw;
-mod introduction;
-mod measures;
 mod outputs;
 pub mod pages;
 mod range_angle;
 pub mod sheet;
-mod sketch;
 mod source;
 mod waves;
 
@@ -28,11 +24,16 @@ pub struct Figure {
     pub shows: &'static str,
     /// The differences from the printed figure, and their reasons.
     pub differs: &'static str,
-    pub sheet: SheetOf,
+    /// `None` for a picture without simulated data, which is kept as drawn in `docs/figures`.
+    pub sheet: Option<SheetOf>,
 }
 
 const fn figure((number, sheet): (&'static str, SheetOf), shows: &'static str, differs: &'static str) -> Figure {
-    Figure { number, shows, differs, sheet }
+    Figure { number, shows, differs, sheet: Some(sheet) }
+}
+
+const fn kept(number: &'static str, shows: &'static str, differs: &'static str) -> Figure {
+    Figure { number, shows, differs, sheet: None }
 }
 
 const SCENE_OPEN: &str = "The printed scene's places are not given; these are the preset \"four-reflectors\".";
@@ -42,22 +43,22 @@ const MAP_SCENE: &str = "The printed scene is not given; this is test scene 1 of
 
 pub const ALL: &[Figure] = &[
     figure(
-        ("1-2", introduction::band_sparsity),
+        ("1-2", waves::band_sparsity),
         "A signal that is non-zero in a few bands only: the prior of multi-coset imaging.",
         "A beat signal of three groups of points stands for the printed drawing; reflectivities rise with range squared so that all bands are equally high.",
     ),
-    figure(
-        ("1-3", introduction::random_elements),
+    kept(
+        "1-3",
         "Nearly random element placement on the aperture, as that prior needs.",
         "Elements keep to the half-wavelength grid; the two ends and the whole array stand beside them.",
     ),
-    figure(
-        ("1-4", introduction::virtual_elements),
+    kept(
+        "1-4",
         "A 3 × 4 MIMO array and its 12 virtual elements.",
         "The pair that each virtual element stands for is written beneath it.",
     ),
-    figure(
-        ("2-1", waves::chirps),
+    kept(
+        "2-1",
         "Transmitted and received chirp over time, and the mixer's constant difference frequency.",
         "The chirp's duration is not given; 1 µs is chosen, far shorter than a real one, so that the delay of 21 m can be seen.",
     ),
@@ -66,8 +67,8 @@ pub const ALL: &[Figure] = &[
         "Range profile, the transform of one element's samples, of a point at 21 m.",
         "In decibels, over no floor, so that the side lobes show.",
     ),
-    figure(
-        ("2-3", waves::plane_wave),
+    kept(
+        "2-3",
         "A plane wave on a uniform array: the path differs by d cos θ from element to element.",
         "Drawn for θ = 60 degrees.",
     ),
@@ -101,8 +102,8 @@ pub const ALL: &[Figure] = &[
         "The same with 12 elements.",
         SCENE_OPEN,
     ),
-    figure(
-        ("2-10", waves::near_paths),
+    kept(
+        "2-10",
         "The plane-wave assumption against true paths for a near reflector.",
         "Nine elements stand for the array; the place is chosen.",
     ),
@@ -116,18 +117,14 @@ pub const ALL: &[Figure] = &[
         "Figure 2-8 projected into Cartesian coordinates: resolution falls towards the edge of the field of view.",
         SCENE_OPEN,
     ),
-    figure(
-        ("3-1", diagrams::unet),
-        "The U-Net.",
-        "The shipped U-Net's own sizes; the printed one's are not all given.",
-    ),
+    kept("3-1", "The U-Net.", "The shipped U-Net's own sizes; the printed one's are not all given."),
     figure(
         ("3-2", outputs::unet_on_training),
         "The U-Net on a training sample, thresholded and Cartesian: its output is near zero.",
         "The shipped U-Net was trained here, at a size two processor cores can train, and fails alike.",
     ),
-    figure(
-        ("3-3", diagrams::encoder_decoder),
+    kept(
+        "3-3",
         "The encoder-decoder.",
         "Sizes are those of the author's program (128 × 16 × 32 in the middle); the text's 64 × 16 × 32 does not follow from its own layers.",
     ),
@@ -145,11 +142,7 @@ pub const ALL: &[Figure] = &[
     ),
     figure(("3-6", range_angle::magnitude_and_phase), "Magnitude and phase of the first end's map.", MAP_SCENE),
     figure(("3-7", range_angle::cosine_sine_lambda), "Cosine and sine of that phase, and Λ'0.", MAP_SCENE),
-    figure(
-        ("3-8", diagrams::flow),
-        "Flow chart: scene, simulation, ends and whole, transforms, network, loss.",
-        "Redrawn.",
-    ),
+    kept("3-8", "Flow chart: scene, simulation, ends and whole, transforms, network, loss.", "Redrawn."),
     figure(
         ("4-1", |source| outputs::beside(source, &source.test_scene(Kind::Set2, 0)?, outputs::EXPERIMENT_1)),
         "Experiment 1's network on set 2: inputs, target, output.",
@@ -190,13 +183,13 @@ pub const ALL: &[Figure] = &[
         "The baseline: Λ0 above 0.9 beside the target above 0.9.",
         "The printed scene is not given; this is test scene 0 of set 3, seed 0.",
     ),
-    figure(
-        ("5-1", measures::equal_errors),
+    kept(
+        "5-1",
         "Two deltas; an estimate shifted by one sample and a flat one have the same squared error of 4.",
         "The flat estimate's level follows from 512 samples.",
     ),
-    figure(
-        ("5-2", measures::denser_costs_more),
+    kept(
+        "5-2",
         "A sparse and a denser signal, each estimated 1.2 times too large: the denser one's squared error is larger.",
         "Two and ten points are chosen.",
     ),
@@ -215,8 +208,8 @@ pub const ALL: &[Figure] = &[
         "Experiment 2's network on Gaussian clusters: detected, drawn as vertical lines.",
         "The preset \"gaussian-clusters\"; `live` and `hybrid` are added.",
     ),
-    figure(
-        ("5-6", diagrams::fields_of_view),
+    kept(
+        "5-6",
         "Fields of view of the two ends, and where they overlap.",
         "The ends are drawn far apart, and 50 degrees are chosen for half the angle.",
     ),
@@ -257,7 +250,12 @@ mod tests {
         const SLOW: [&str; 10] = ["3-2", "4-1", "4-2", "4-3", "4-4", "4-5", "4-6", "4-7", "5-3", "5-5"];
         let source = SceneSource::default();
         for figure in ALL.iter().filter(|f| !SLOW.contains(&f.number)) {
-            let sheet = (figure.sheet)(&source).unwrap_or_else(|e| panic!("figure {}: {e}", figure.number));
+            let Some(sheet) = figure.sheet else {
+                let picture = format!("{}/docs/figures/{}.png", env!("CARGO_MANIFEST_DIR"), figure.number);
+                assert!(std::path::Path::new(&picture).exists(), "{picture}");
+                continue;
+            };
+            let sheet = sheet(&source).unwrap_or_else(|e| panic!("figure {}: {e}", figure.number));
             assert!(!sheet.panels.is_empty());
             let png = crate::picture::PictureFormat::Png
                 .bytes_of(&sheet)

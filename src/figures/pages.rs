@@ -21,9 +21,10 @@ pub const TABLE_METHODS: [(&str, Option<[Printed; 3]>); 5] = [
 
 /// Markdown for one figure; its picture is expected at `folder/NUMBER.png`.
 pub fn entry(figure: &Figure, folder: &str) -> String {
-    let Figure { number, shows, differs, .. } = figure;
+    let Figure { number, shows, differs, sheet } = figure;
+    let kept = if sheet.is_none() { " Kept as drawn." } else { "" };
     format!(
-        "### Figure {number}\n\n![{shows}]({folder}/{number}.png)\n\n{shows}\n\n*Beside the printed one:* {differs}\n\n"
+        "### Figure {number}\n\n![{shows}]({folder}/{number}.png)\n\n{shows}\n\n*Beside the printed one:* {differs}{kept}\n\n"
     )
 }
 
@@ -76,7 +77,11 @@ mod tests {
     #[test]
     fn an_entry_shows_its_picture() {
         let text = entry(by_number("5-1").unwrap(), "figures");
-        assert!(text.starts_with("### Figure 5-1") && text.contains("(figures/5-1.png)"));
+        assert!(
+            text.starts_with("### Figure 5-1")
+                && text.contains("(figures/5-1.png)")
+                && text.contains(" Kept as drawn.")
+        );
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The content of a figure: panels side by side, each a chart, a map or a sketch.
+//! The content of a figure: panels side by side, each a chart or a map.
 
 use crate::picture::ColourMap;
 use ndarray::Array2;
@@ -22,8 +22,6 @@ pub struct SheetPanel {
 pub enum PanelContent {
     Chart(SheetChart),
     Cells(SheetCells),
-    /// Lines, circles and words in a plane without axes.
-    Sketch(Sketch),
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -46,7 +44,6 @@ pub enum Stroke {
     /// A line from point to point.
     Solid,
     Dashed,
-    Stems,
     /// Points alone.
     Dots,
 }
@@ -71,38 +68,6 @@ pub struct SheetCells {
     pub rings: Vec<(f64, f64)>,
 }
 
-/// Shapes in a plane of any unit, x to the right and y up.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sketch {
-    pub x: Range<f64>,
-    pub y: Range<f64>,
-    pub shapes: Vec<SketchShape>,
-}
-
-/// Ink of a shape.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ink {
-    Dark,
-    Pale,
-    Accent,
-    Second,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-pub enum SketchShape {
-    Line(Vec<(f64, f64)>, Ink),
-    /// A line from the first place to an arrow head at the second.
-    Arrow((f64, f64), (f64, f64), Ink),
-    /// A filled dot, its radius in pixels.
-    Dot((f64, f64), i32, Ink),
-    /// An area within corners, its ink thinned.
-    Area(Vec<(f64, f64)>, Ink),
-    /// A box from the lower left to the upper right corner, with its text in the middle.
-    Block((f64, f64), (f64, f64), String),
-    /// Words, their middle at a place.
-    Words((f64, f64), String, Ink),
-}
-
 impl SheetAxis {
     pub fn new(label: &'static str, from: f64, to: f64) -> Self {
         SheetAxis { label, span: from..to }
@@ -122,10 +87,6 @@ impl Series {
 impl SheetPanel {
     pub fn chart(title: impl Into<String>, x: SheetAxis, y: SheetAxis, series: Vec<Series>) -> Self {
         SheetPanel { title: title.into(), content: PanelContent::Chart(SheetChart { x, y, series }) }
-    }
-
-    pub fn sketch(title: impl Into<String>, x: Range<f64>, y: Range<f64>, shapes: Vec<SketchShape>) -> Self {
-        SheetPanel { title: title.into(), content: PanelContent::Sketch(Sketch { x, y, shapes }) }
     }
 
     pub fn cells(title: impl Into<String>, cells: SheetCells) -> Self {

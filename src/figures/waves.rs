@@ -1,10 +1,10 @@
-//! Figures 2-1 to 2-3, 2-6, 2-7 and 2-10: chirps, windows, plane waves and the angle spectrum.
+//! Figures 1-2, 2-2, 2-6 and 2-7: sparse bands, a range profile, windows and the angle spectrum.
 
-use super::sheet::{Ink, Series, Sheet, SheetAxis, SheetPanel, SketchShape, Stroke};
+use super::sheet::{Series, Sheet, SheetAxis, SheetPanel, Stroke};
 use super::source::{FigureError, SceneSource};
 use crate::maps::{Aperture, Spectrum, angle_transform, range_transform};
-use crate::radar::{End, SPEED_OF_LIGHT, WindowFunction};
-use crate::scene::Scene;
+use crate::radar::{End, WindowFunction};
+use crate::scene::{Object, Point, Scene};
 use crate::signal::Floor;
 use num_complex::Complex64;
 
@@ -14,22 +14,24 @@ fn decibels(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     values.into_iter().map(|v| 20.0 * (v.max(1e-18 * peak) / peak).log10()).collect()
 }
 
-/// Transmitted and received chirp, and the difference frequency at the mixer's output.
-pub fn chirps(source: &SceneSource) -> Result<Sheet, FigureError> {
-    let (range, bandwidth, carrier) = (21.0, source.radar.bandwidth_hz / 1e9, source.radar.carrier_hz / 1e9);
-    // A chirp of 1 microsecond, so that the delay is wider than the line.
-    let (chirp, delay) = (1.0, 2.0 * range / SPEED_OF_LIGHT * 1e6);
-    let ramp = |start: f64| [(start, carrier), (start + chirp, carrier + bandwidth)];
-    let sent = Series::line("transmitted", ramp(0.0));
-    let received = Series::line("received", ramp(delay)).with(Stroke::Dashed);
-    let time = || SheetAxis::new("time (µs)", 0.0, chirp + delay);
-    let sweep = SheetAxis::new("frequency (GHz)", carrier - 0.1, carrier + bandwidth + 0.4);
-    let top = SheetPanel::chart("Chirp and its echo from 21 m", time(), sweep, vec![sent, received]);
-    let beat = bandwidth * 1e3 * delay / chirp;
-    let mixer = Series::line("", [(delay, beat), (chirp, beat)]);
-    let bottom =
-        SheetPanel::chart("Mixer output", time(), SheetAxis::new("frequency (MHz)", 0.0, 1.5 * beat), vec![mixer]);
-    Ok(Sheet::of(1, (760, 300), vec![top, bottom]))
+/// A signal that is non-zero in a few bands: one element's beat signal of three groups of points.
+pub fn band_sparsity(source: &SceneSource) -> Result<Sheet, FigureError> {
+    let groups = [(7.0, 3), (18.0, 6), (31.0, 4)];
+    let points = groups.iter().flat_map(|(start, count)| (0..*count).map(move |i| start + 0.4 * f64::from(i)));
+    // Reflectivities undo the fall of 1/R^2, so that all bands are equally high.
+    let object = |range: f64| Object::Point(Point { reflectivity: range * range / 100.0, ..Point::new(0.0, range) });
+    let scene = Scene { objects: points.map(object).collect(), ..Scene::default() };
+    let seen = source.see_over(scene, Floor::Exact)?;
+    let profiles = range_transform(&source.radar, &seen.signal).profiles;
+    let middle = source.radar.elements / 2;
+    let peak = profiles.row(middle).iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let samples = source.radar.samples as f64;
+    let spectrum =
+        profiles.row(middle).iter().enumerate().map(|(k, v)| (k as f64 / samples, v.norm() / peak)).collect::<Vec<_>>();
+    let x = SheetAxis::new("frequency, in parts of the sampling rate", 0.0, 1.0);
+    let y = SheetAxis::new("magnitude", 0.0, 1.1);
+    let title = "Beat signal of three groups of points: three bands";
+    Ok(Sheet::of(1, (760, 380), vec![SheetPanel::chart(title, x, y, vec![Series::line("", spectrum)])]))
 }
 
 pub fn range_profile(source: &SceneSource) -> Result<Sheet, FigureError> {
@@ -41,27 +43,6 @@ pub fn range_profile(source: &SceneSource) -> Result<Sheet, FigureError> {
     let series = vec![Series::line("", points)];
     let panel = SheetPanel::chart("One element, Hann window, 512 samples", source.range_axis(), y, series);
     Ok(Sheet::of(1, (760, 380), vec![panel]))
-}
-
-pub fn plane_wave(_: &SceneSource) -> Result<Sheet, FigureError> {
-    let angle = 60f64.to_radians();
-    let (ux, uy) = (angle.cos(), angle.sin());
-    let mut shapes = vec![SketchShape::Line(vec![(-0.6, 0.0), (5.6, 0.0)], Ink::Pale)];
-    for n in 0..6 {
-        let x = f64::from(n);
-        shapes.push(SketchShape::Arrow((x + 3.0 * ux, 3.0 * uy), (x + 0.06 * ux, 0.06 * uy), Ink::Second));
-        shapes.push(SketchShape::Dot((x, 0.0), 7, Ink::Dark));
-    }
-    // The wavefront through element 1 meets element 0's ray d cos(theta) before that element.
-    shapes.push(SketchShape::Line(vec![(0.0, 0.0), (ux * ux, ux * uy)], Ink::Accent));
-    shapes.push(SketchShape::Line(vec![(1.0, 0.0), (ux * ux, ux * uy)], Ink::Pale));
-    shapes.push(SketchShape::Words((-0.35, 0.42), "d cos θ".to_owned(), Ink::Accent));
-    shapes.push(SketchShape::Words((0.5, -0.22), "d".to_owned(), Ink::Dark));
-    let arc = (0..=20).map(|i| f64::from(i) / 20.0 * angle).map(|a| (5.0 + 0.6 * a.cos(), 0.6 * a.sin()));
-    shapes.push(SketchShape::Line(arc.collect(), Ink::Dark));
-    shapes.push(SketchShape::Words((5.75, 0.45), "θ".to_owned(), Ink::Dark));
-    let panel = SheetPanel::sketch("A plane wave reaches one element after the other", -1.0..7.2, -0.5..3.0, shapes);
-    Ok(Sheet::of(1, (760, 360), vec![panel]))
 }
 
 pub fn windows(_: &SceneSource) -> Result<Sheet, FigureError> {
@@ -102,23 +83,4 @@ pub fn angle_spectra(source: &SceneSource) -> Result<Sheet, FigureError> {
     };
     let panels = vec![panel("12 elements", Aperture::End(End::First)), panel("1024 elements", Aperture::Full)];
     Ok(Sheet::of(2, (560, 360), panels))
-}
-
-pub fn near_paths(source: &SceneSource) -> Result<Sheet, FigureError> {
-    let half = source.radar.aperture_metres() / 2.0;
-    let at = (0.9, 2.2);
-    let elements: Vec<f64> = (0..9).map(|i| half * (f64::from(i) / 4.0 - 1.0)).collect();
-    let array = || elements.iter().map(|x| SketchShape::Dot((*x, 0.0), 6, Ink::Dark));
-    let mut assumed: Vec<SketchShape> =
-        elements.iter().map(|x| SketchShape::Line(vec![(*x, 0.0), (x + at.0, at.1)], Ink::Second)).collect();
-    assumed.extend(array());
-    let mut true_paths: Vec<SketchShape> =
-        elements.iter().map(|x| SketchShape::Line(vec![(*x, 0.0), at], Ink::Accent)).collect();
-    true_paths.extend(array());
-    true_paths.push(SketchShape::Dot(at, 8, Ink::Accent));
-    let panels = vec![
-        SheetPanel::sketch("Assumed: one direction for all elements", -1.3..2.1, -0.2..2.5, assumed),
-        SheetPanel::sketch("True: a reflector at (0.9, 2.2) m before a 2 m array", -1.3..2.1, -0.2..2.5, true_paths),
-    ];
-    Ok(Sheet::of(2, (560, 400), panels))
 }
