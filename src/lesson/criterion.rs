@@ -56,6 +56,7 @@ fn wanted(requirement: &Requirement, scene: &Scene) -> String {
         Measure::Distance { objects } => format!("{bound} between {}", both(objects)),
         Measure::BandwidthGigahertz => format!("a bandwidth of {bound}"),
         Measure::Range { object: number } => format!("a range of {bound} for {}", object(number)),
+        Measure::Reflectivity { object: number } => format!("a reflectivity of {bound} for {}", object(number)),
         Measure::BrightPart { map, above } => format!("{bound} of the cells of {} above Λ {above}", map.words()),
         Measure::Quantity { quantity, object: None } => format!("{} of {bound}", quantity.name()),
         Measure::Quantity { quantity, object: Some(number) } => {
@@ -70,7 +71,8 @@ fn found(requirement: &Requirement, value: f64, holds: bool) -> String {
     let (times, unit) = requirement.measure.unit();
     let bounds = || requirement.at_least.into_iter().chain(requirement.at_most).map(|bound| times * bound);
     let told = |more: usize| digits(times * value, more);
-    let is_apart = |more: &usize| holds || bounds().all(|bound| with_decimals(bound, times * value, *more) != told(*more));
+    let is_apart =
+        |more: &usize| holds || bounds().all(|bound| with_decimals(bound, times * value, *more) != told(*more));
     let more = (0..=MAX_MORE_DECIMALS).find(is_apart).unwrap_or(MAX_MORE_DECIMALS);
     with_unit(&told(more), unit)
 }
@@ -160,6 +162,7 @@ mod tests {
         );
         assert_eq!(of("folding-and-wrapping")[1], "An apparent range of 9.5 to 10.5 m for point 1");
         assert_eq!(of("two-ends-and-the-comb")[1], "Exactly 1 object");
+        assert_eq!(of("the-floor")[1], "A reflectivity of at least 0.05 for point 2");
     }
 
     #[test]
