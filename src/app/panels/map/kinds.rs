@@ -179,7 +179,10 @@ impl Kinds<'_> {
         let eta = eta_text(*eta);
         let cells = verdict.cells;
         let Some(index) = verdict.object else {
-            return format!("false alarm: {} above η = {eta}\nwhere the scene has nothing", counted(cells, "cell", "cells"));
+            return format!(
+                "false alarm: {} above η = {eta}\nwhere the scene has nothing",
+                counted(cells, "cell", "cells")
+            );
         };
         let unknown = |index: usize| format!("object {}", index + 1);
         let named = |index: usize| scene.objects.get(index).map_or_else(|| unknown(index), |o| o.called(index));
