@@ -162,3 +162,30 @@ fn leave(state: &mut State) {
         state.arrangement = Arrangement::of_a_lesson();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_step_opened_is_closed_by_a_step_without_it() {
+        let mut state = State::new(Vec::new());
+        let index = |id: &str| shipped::ALL.iter().position(|file| file.id == id).unwrap();
+        let place = |state: &State, panel: Panel| state.arrangement.tree.tiles.find_pane(&panel.tile());
+        begin_shipped(&mut state, index("range-and-velocity")).unwrap();
+        let largest = place(&state, Panel::RangeDoppler);
+        go_to(&mut state, 3);
+        assert!(state.arrangement.is_open(Panel::RangeDoppler) && place(&state, Panel::RangeDoppler) == largest);
+        begin_shipped(&mut state, index("range-and-bandwidth")).unwrap();
+        assert!(!state.arrangement.is_open(Panel::RangeDoppler));
+        assert_eq!(place(&state, Panel::Map(MapKind::Target)), largest);
+        for (step, is_open) in [(3, false), (4, true), (4, true), (3, false)] {
+            go_to(&mut state, step);
+            assert_eq!(state.arrangement.is_open(Panel::Radar), is_open, "step {}", step + 1);
+        }
+        state.arrangement.set_open(Panel::Radar, true);
+        go_to(&mut state, 4);
+        go_to(&mut state, 3);
+        assert!(state.arrangement.is_open(Panel::Radar), "the learner's own stays");
+    }
+}
