@@ -193,6 +193,7 @@ impl Kinds<'_> {
         };
         let detected = format!("{:.0} % of its {of_what} exceed η = {eta}", 100.0 * part);
         let reason = match failures.objects.get(index).copied().unwrap_or(Fate::Hidden) {
+            Fate::Found if cells == 0 => "the target itself does not show it, but the output does".to_owned(),
             Fate::Found => detected,
             Fate::Missed => format!("{detected}: less than half"),
             Fate::Merged { with } => format!("one blob covers it and {};\nthe target shows two", named(with)),
