@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 ///
 /// Objects move by at most --within, and bodies turn by up to 45 degrees. Their echoes change by up to 6 dB against each other, and new noise is drawn. The same seed gives the same
 /// scene if --tries ends the search, and not --minutes. With --repair only objects move. An output is right if it misses no object
-/// (--measure missed), has no ghost (ghosts), or has a fifth of the squared error. Prints figures before and after. Writes OUT.toml if the search
+/// (--measure missed), has no false alarm (ghosts), or has a fifth of the squared error. Prints figures before and after. Writes OUT.toml if the search
 /// succeeds.
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -4,7 +4,8 @@
 //! An object's *footprint* is the set of cells where the whole array's map of the object alone, without noise, exceeds the target's threshold. The
 //! footprint of a body also contains the cells of its ends, corners and glints that are 10 dB above their surroundings in the target: the end of a
 //! wall is 30 to 60 dB weaker than its glint, but belongs to the wall. All verdicts compare footprints with the output above the method's threshold,
-//! so that they hold for methods with and without reflectors.
+//! so that they hold for methods with and without reflectors. What lies at the *place* of an object, a reflector, end, corner or glint of it, is no
+//! ghost, however weak the object is in the target.
 
 use super::TARGET_ETA;
 use super::blobs::Blobs;
@@ -13,7 +14,7 @@ use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::{Echoing, SeenObject};
-use crate::scene::Scene;
+use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan::amplitude_bound;
 use crate::signal::{Plan, beat_signal};
 use ndarray::Axis;
@@ -26,7 +27,7 @@ const SIMULATION_TOLERANCE: f64 = 1e-6;
 const MAX_TOOTH_COLUMNS: i32 = 8;
 /// Largest squared error of the output against the shifted target, over that against the target, for which an object is on another tooth.
 const MAX_TOOTH_ERROR_RATIO: f64 = 0.5;
-/// Largest distance of a blob from a footprint at which it is no ghost, rows and columns: side lobes and smeared edges.
+/// Largest distance of a blob from a footprint or a place at which it is no ghost, rows and columns: side lobes and smeared edges.
 const GHOST_MARGIN_CELLS: usize = 3;
 /// Least number of cells of a ghost.
 const MIN_GHOST_CELLS: usize = 8;
@@ -37,7 +38,8 @@ pub type CellIndex = [usize; 2];
 /// Verdict on an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fate {
-    /// Half of its footprint or more is detected. Of a body, its strongest echo or half of its echoes that stand out. No other verdict applies.
+    /// Half of its footprint or more is detected. Of a body, its strongest echo or half of its echoes that stand out. Of an object that the target
+    /// does not show, one of its places, in a blob of nothing else. No other verdict applies.
     Found,
     /// Less of its footprint, or of its echoes, is detected.
     Missed,
@@ -51,7 +53,7 @@ pub enum Fate {
         /// The shift, columns; positive to the right.
         columns: i32,
     },
-    /// The object is too weak beside the others: no cell of the target exceeds the threshold for it.
+    /// The object is too weak beside the others: no cell of the target exceeds the threshold for it, and the output doesn't show it either.
     Hidden,
 }
 
@@ -67,7 +69,7 @@ impl Fate {
         }
     }
 
-    /// Whether the object is found, or too weak in the target to be found.
+    /// Whether the object is found, or too weak to be missed.
     pub fn is_right(self) -> bool {
         matches!(self, Fate::Found | Fate::Hidden)
     }
@@ -85,8 +87,8 @@ pub struct Ghost {
 pub struct Failures {
     /// The verdict on every object, in the scene's order.
     pub objects: Vec<Fate>,
-    /// Detected part of each object's footprint, 0 to 1, without a shift. For a body, the detected part of its echoes that stand out. 0 for an object
-    /// without a footprint.
+    /// Detected part of each object's footprint, 0 to 1, without a shift. For a body, the detected part of its echoes that stand out. For an object
+    /// without a footprint that is found, the detected part of its places; else 0.
     pub covered: Vec<f64>,
     /// Blobs far from every object and from every blob of the target.
     pub ghosts: Vec<Ghost>,
@@ -103,7 +105,7 @@ impl Failures {
         self.objects.iter().filter(|fate| is(**fate)).count()
     }
 
-    /// One line for the user: the numbers of objects found, of objects that the target shows, and of ghosts.
+    /// One line for the user: the numbers of objects found, of objects that the target or the output shows, and of ghosts.
     pub fn verdict(&self) -> String {
         let shown = self.objects.len() - self.count(|fate| fate == Fate::Hidden);
         format!("{} of {shown} found, {} false", self.count(|fate| fate == Fate::Found), self.ghosts.len())
@@ -115,6 +117,8 @@ impl Failures {
 pub struct Footprints {
     /// The footprint of each object.
     objects: Vec<Vec<CellIndex>>,
+    /// The cells of each object's reflectors, or of its ends, corners and glints.
+    places: Vec<Vec<CellIndex>>,
     /// For each object, the cells of each of its echoes that stand out, the strongest first. Empty for an object that is no body.
     echoes: Vec<Vec<Vec<CellIndex>>>,
     /// Blobs of the target.
@@ -136,7 +140,8 @@ impl Footprints {
             cells.dedup();
         }
         let shown = target.above(if scene.is_silent() { 1.0 } else { TARGET_ETA });
-        Footprints { objects, echoes, target: Blobs::of(&shown) }
+        let places = scene.objects.iter().map(|object| places(radar, object)).collect();
+        Footprints { objects, places, echoes, target: Blobs::of(&shown) }
     }
 
     /// The footprint of every object, in the scene's order; empty for one that the target doesn't show.
@@ -160,7 +165,7 @@ impl Footprints {
                 verdict_on_body(echoes, &found)
             }
         });
-        let (mut objects, covered): (Vec<Fate>, Vec<f64>) = verdicts.unzip();
+        let (mut objects, mut covered): (Vec<Fate>, Vec<f64>) = verdicts.unzip();
         for i in 0..objects.len() {
             if objects[i] == Fate::Found
                 && let Some(with) = self.merged_with(i, &objects, &found)
@@ -168,8 +173,22 @@ impl Footprints {
                 objects[i] = Fate::Merged { with };
             }
         }
-        let ghosts = self.ghosts(&found, &objects);
-        Failures { objects, covered, ghosts }
+        let mut explained = self.explained(&found, &objects);
+        let hidden: Vec<usize> = (0..objects.len()).filter(|&i| objects[i] == Fate::Hidden).collect();
+        for &i in &hidden {
+            let is_at = |is: &dyn Fn(usize) -> bool| {
+                let seen = self.places[i].iter().filter(|place| near(&found, **place, 0).any(is)).count();
+                seen as f64 / self.places[i].len().max(1) as f64
+            };
+            if is_at(&|label| !explained[label]) > 0.0 {
+                (objects[i], covered[i]) = (Fate::Found, is_at(&|label| label != 0));
+            }
+        }
+        let of_hidden = hidden.iter().flat_map(|&i| &self.places[i]);
+        of_hidden.flat_map(|&place| near(&found, place, 0)).for_each(|label| explained[label] = true);
+        let blobs = found.cells.iter().zip(&explained[1..]);
+        let ghosts = blobs.filter(|(cells, explained)| !**explained && cells.len() >= MIN_GHOST_CELLS);
+        Failures { objects, covered, ghosts: ghosts.map(|(cells, _)| Ghost { cells: cells.clone() }).collect() }
     }
 
     /// Index of an object that the output shows in one blob with object `i`, but the target doesn't.
@@ -181,30 +200,40 @@ impl Footprints {
             .find(|&o| blob(found, o) == Some(seen) && blob(&self.target, o).is_some_and(|other| other != shown))
     }
 
-    /// Blobs of the output that are near no footprint and no blob of the target.
-    fn ghosts(&self, found: &Blobs, fates: &[Fate]) -> Vec<Ghost> {
-        let (rows, columns) = found.labels.dim();
+    /// For each label of `found`, whether its blob is near an object that the target shows, or near a blob of the target; true for the ground.
+    fn explained(&self, found: &Blobs, fates: &[Fate]) -> Vec<bool> {
         let mut explained = vec![false; found.cells.len() + 1];
-        let mut explain = |[row, column]: CellIndex, shift: i32| {
-            let near = GHOST_MARGIN_CELLS as i32;
-            for r in row.saturating_sub(GHOST_MARGIN_CELLS)..(row + GHOST_MARGIN_CELLS + 1).min(rows) {
-                for c in -near..=near {
-                    explained[found.labels[[r, shifted_column(column, c + shift, columns)]] as usize] = true;
-                }
-            }
-        };
+        explained[0] = true;
+        let mut explain =
+            |cell: CellIndex, shift: i32| near(found, cell, shift).for_each(|label| explained[label] = true);
         // Blobs of the target away from the objects, of side lobes and noise, explain blobs of the output too.
         self.target.cells.iter().flatten().for_each(|&cell| explain(cell, 0));
-        for (cells, fate) in self.objects.iter().zip(fates) {
+        for ((cells, places), fate) in self.objects.iter().zip(&self.places).zip(fates) {
             let shift = if let Fate::WrongTooth { columns } = fate { *columns } else { 0 };
-            cells.iter().for_each(|&cell| explain(cell, shift));
+            if *fate != Fate::Hidden {
+                cells.iter().chain(places).for_each(|&cell| explain(cell, shift));
+            }
         }
-        let blobs = found.cells.iter().zip(&explained[1..]);
-        blobs
-            .filter(|(cells, explained)| !**explained && cells.len() >= MIN_GHOST_CELLS)
-            .map(|(cells, _)| Ghost { cells: cells.clone() })
-            .collect()
+        explained
     }
+}
+
+/// Labels of the cells near a cell that is moved by `shift` columns; 0 is the ground.
+fn near(found: &Blobs, [row, column]: CellIndex, shift: i32) -> impl Iterator<Item = usize> {
+    let ((rows, columns), margin) = (found.labels.dim(), GHOST_MARGIN_CELLS as i32);
+    let rows = row.saturating_sub(GHOST_MARGIN_CELLS)..(row + GHOST_MARGIN_CELLS + 1).min(rows);
+    let across = (-margin..=margin).map(move |c| shifted_column(column, c + shift, columns));
+    rows.flat_map(move |row| across.clone().map(move |column| found.labels[[row, column]] as usize))
+}
+
+/// The cells of an object's reflectors, or of a body's echoes at the array's middle; a range beyond the maximum wraps.
+fn places(radar: &Radar, object: &Object) -> Vec<CellIndex> {
+    let cell = |reflector: &Reflector| {
+        let blob = radar.blob_of(0.0, reflector.x_metres, reflector.y_metres);
+        let bin = radar.bin_of_range(blob.range_metres).round().rem_euclid(radar.samples as f64);
+        [bin as usize, radar.column_of_cos(blob.cos_theta).round() as usize % radar.elements]
+    };
+    object.marks().iter().map(cell).collect()
 }
 
 /// Verdict on an object by its footprint `cells`, without regard to the other objects, and the detected part of the footprint.
@@ -280,114 +309,4 @@ fn footprint(radar: &Radar, seen: &SeenObject, level: f64) -> Vec<CellIndex> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::maps::{LogMaps, Normalisation};
-    use crate::scene::{Object, Point, Wall};
-    use crate::signal::{Floor, simulate};
-    use ndarray::Array2;
-
-    fn seen(objects: Vec<Object>) -> (RangeAngleMap, Footprints) {
-        let (radar, scene) = (Radar::default(), Scene { objects, ..Scene::default() });
-        let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
-        let target = full.normalise(Normalisation::MinMax);
-        let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
-        (target, footprints)
-    }
-
-    fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
-        seen(Scene::of_points(points.iter().copied()).objects)
-    }
-
-    fn shifted(map: &RangeAngleMap, by: i32) -> RangeAngleMap {
-        let columns = map.lambda.ncols();
-        let lambda =
-            ndarray::Array2::from_shape_fn(map.lambda.dim(), |(r, c)| map.lambda[[r, shifted_column(c, -by, columns)]]);
-        RangeAngleMap { lambda }
-    }
-
-    fn without(map: &RangeAngleMap, cells: &[CellIndex]) -> RangeAngleMap {
-        let mut map = map.clone();
-        for &[r, c] in cells {
-            for c in c.saturating_sub(60)..(c + 60).min(1024) {
-                map.lambda[[r, c]] = 0.0;
-            }
-        }
-        map
-    }
-
-    const TWO: [(f64, f64); 2] = [(-4.0, 12.0), (5.0, 20.0)];
-
-    #[test]
-    fn an_object_that_the_output_lacks_is_missed() {
-        let (target, footprints) = scene(&TWO);
-        let output = without(&target, &footprints.cells()[1]);
-        let found = footprints.judge(&target, &output, TARGET_ETA);
-        assert_eq!((&found.objects[..], found.missed()), (&[Fate::Found, Fate::Missed][..], 1));
-        assert!(found.ghosts.is_empty());
-        assert!(found.covered[0] == 1.0 && found.covered[1] == 0.0, "{:?}", found.covered);
-    }
-
-    #[test]
-    fn a_shift_by_a_few_columns_is_the_wrong_tooth() {
-        let (target, footprints) = scene(&[(5.0, 20.0)]);
-        for by in [-3, 1, 6] {
-            let found = footprints.judge(&target, &shifted(&target, by), TARGET_ETA);
-            assert_eq!(found.objects, [Fate::WrongTooth { columns: by }]);
-            assert!(found.ghosts.is_empty());
-        }
-    }
-
-    #[test]
-    fn a_blob_elsewhere_is_a_ghost() {
-        let (target, footprints) = scene(&[(5.0, 20.0)]);
-        let mut output = target.clone();
-        output.lambda.slice_mut(ndarray::s![100..104, 200..206]).fill(1.0);
-        output.lambda[[50, 50]] = 1.0;
-        let found = footprints.judge(&target, &output, TARGET_ETA);
-        assert_eq!((found.objects[0], found.ghosts.len()), (Fate::Found, 1), "one cell is no ghost");
-        assert_eq!(found.ghosts[0].cells.len(), 24);
-    }
-
-    #[test]
-    fn one_blob_over_two_objects_is_a_merger() {
-        let (target, footprints) = scene(&[(-2.0, 20.0), (2.0, 20.0)]);
-        assert_eq!(footprints.judge(&target, &target, TARGET_ETA).objects, [Fate::Found; 2]);
-        let row = footprints.cells()[0][0][0];
-        let mut output = target.clone();
-        output.lambda.slice_mut(ndarray::s![row..row + 2, 400..620]).fill(1.0);
-        let found = footprints.judge(&target, &output, TARGET_ETA);
-        assert_eq!(found.objects, [Fate::Merged { with: 1 }, Fate::Merged { with: 0 }]);
-    }
-
-    #[test]
-    fn the_ends_of_a_wall_are_the_wall_and_no_ghosts() {
-        let objects = vec![Object::Wall(Wall::new(0.0, 10.0, 5.0, 0.0)), Object::Point(Point::new(-6.0, 20.0))];
-        let (target, footprints) = seen(objects);
-        assert_eq!(footprints.echoes.iter().map(Vec::len).collect::<Vec<_>>(), [3, 0], "a glint and two ends");
-        let mut output = RangeAngleMap { lambda: Array2::zeros(target.lambda.raw_dim()) };
-        let draw = |output: &mut RangeAngleMap, [row, column]: CellIndex| {
-            output.lambda.slice_mut(ndarray::s![row - 1..row + 2, column - 2..column + 3]).fill(1.0);
-        };
-        let middle = |cells: &[CellIndex]| cells[cells.len() / 2];
-        for end in &footprints.echoes[0][1..] {
-            draw(&mut output, middle(end));
-        }
-        draw(&mut output, middle(&footprints.cells()[1]));
-        let judged = footprints.judge(&target, &output, 0.5);
-        assert_eq!((judged.objects[0], judged.ghosts.len()), (Fate::Found, 0), "two of its three echoes");
-        output.lambda.fill(0.0);
-        draw(&mut output, [300, 100]);
-        let judged = footprints.judge(&target, &output, 0.5);
-        assert_eq!((judged.objects[0], judged.ghosts.len()), (Fate::Missed, 1));
-        assert_eq!(judged.verdict(), "0 of 2 found, 1 false");
-    }
-
-    #[test]
-    fn an_object_that_the_target_hides_is_no_failure() {
-        let point = |x_metres, reflectivity| Object::Point(Point { reflectivity, ..Point::new(x_metres, 15.0) });
-        let (target, footprints) = seen(vec![point(-5.0, 1.0), point(5.0, 1e-6)]);
-        let found = footprints.judge(&target, &target, TARGET_ETA);
-        assert_eq!(found.objects, [Fate::Found, Fate::Hidden]);
-    }
-}
+mod tests;

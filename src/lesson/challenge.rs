@@ -75,6 +75,9 @@ pub enum Measure {
     Range {
         object: ObjectNumber,
     },
+    Reflectivity {
+        object: ObjectNumber,
+    },
     /// Part of a map's cells that are brighter than `above`.
     BrightPart {
         map: MapName,
@@ -136,7 +139,9 @@ impl Requirement {
             _ => {}
         }
         match &self.measure {
-            Measure::Lambda { object, .. } | Measure::Range { object } => object.index(objects).map(drop),
+            Measure::Lambda { object, .. } | Measure::Range { object } | Measure::Reflectivity { object } => {
+                object.index(objects).map(drop)
+            }
             Measure::Dip { objects: pair, .. } | Measure::Distance { objects: pair } => {
                 pair.iter().try_for_each(|o| o.index(objects).map(drop))
             }
@@ -185,6 +190,7 @@ impl Measure {
                 let [x, y] = object(number)?.centre_metres();
                 x.hypot(y)
             }
+            Measure::Reflectivity { object: number } => object(number)?.reflectivity().abs(),
             Measure::BrightPart { map, above } => {
                 let shown = stage.map(*map)?;
                 shown.above(*above).count() as f64 / shown.lambda.len() as f64

@@ -6,6 +6,9 @@ use super::stage::Stage;
 use crate::radar::capitalised;
 use crate::scene::Scene;
 
+/// Most decimals that tell a value from a bound that it misses, beyond the usual ones.
+const MAX_MORE_DECIMALS: usize = 9;
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// The wanted value, as a sentence without its full stop.
@@ -28,7 +31,7 @@ impl Requirement {
     fn measure(&self, stage: &Stage, hidden: Option<&Stage>) -> Result<Measured, String> {
         let value = self.measure.value(stage, hidden)?;
         let holds = self.at_least.is_none_or(|b| value >= b) && self.at_most.is_none_or(|b| value <= b);
-        let (wanted, found) = (wanted(self, &stage.scene), found(&self.measure, value));
+        let (wanted, found) = (wanted(self, &stage.scene), found(self, value, holds));
         Ok(Measured { wanted, found, holds })
     }
 }
@@ -53,6 +56,7 @@ fn wanted(requirement: &Requirement, scene: &Scene) -> String {
         Measure::Distance { objects } => format!("{bound} between {}", both(objects)),
         Measure::BandwidthGigahertz => format!("a bandwidth of {bound}"),
         Measure::Range { object: number } => format!("a range of {bound} for {}", object(number)),
+        Measure::Reflectivity { object: number } => format!("a reflectivity of {bound} for {}", object(number)),
         Measure::BrightPart { map, above } => format!("{bound} of the cells of {} above Λ {above}", map.words()),
         Measure::Quantity { quantity, object: None } => format!("{} of {bound}", quantity.name()),
         Measure::Quantity { quantity, object: Some(number) } => {
@@ -62,9 +66,15 @@ fn wanted(requirement: &Requirement, scene: &Scene) -> String {
     capitalised(&text)
 }
 
-fn found(measure: &Measure, value: f64) -> String {
-    let (times, unit) = measure.unit();
-    with_unit(&digits(times * value), unit)
+/// A measured value with its unit. Where it doesn't hold, it has as many digits as tell it from its bounds.
+fn found(requirement: &Requirement, value: f64, holds: bool) -> String {
+    let (times, unit) = requirement.measure.unit();
+    let bounds = || requirement.at_least.into_iter().chain(requirement.at_most).map(|bound| times * bound);
+    let told = |more: usize| digits(times * value, more);
+    let is_apart =
+        |more: &usize| holds || bounds().all(|bound| with_decimals(bound, times * value, *more) != told(*more));
+    let more = (0..=MAX_MORE_DECIMALS).find(is_apart).unwrap_or(MAX_MORE_DECIMALS);
+    with_unit(&told(more), unit)
 }
 
 impl Measure {
@@ -102,15 +112,21 @@ fn plain(value: f64) -> String {
     format!("{}", (value * 1e9).round() / 1e9)
 }
 
-/// A number to three digits, with at most four decimals.
-fn digits(value: f64) -> String {
-    let decimals = match value.abs() {
-        v if v >= 100.0 || v == v.trunc() => 0,
-        v if v >= 10.0 => 1,
-        v if v >= 1.0 => 2,
-        v if v >= 0.1 => 3,
-        _ => 4,
-    };
+/// A number to three digits, with at most four decimals and `more`.
+fn digits(value: f64, more: usize) -> String {
+    with_decimals(value, value, more)
+}
+
+/// A number with the decimals that [`digits`] gives `like`.
+fn with_decimals(value: f64, like: f64, more: usize) -> String {
+    let decimals = more
+        + match like.abs() {
+            v if v >= 100.0 || v == v.trunc() => 0,
+            v if v >= 10.0 => 1,
+            v if v >= 1.0 => 2,
+            v if v >= 0.1 => 3,
+            _ => 4,
+        };
     format!("{value:.decimals$}").replace('-', "−")
 }
 
@@ -123,6 +139,7 @@ fn named(number: ObjectNumber, scene: &Scene) -> String {
 mod tests {
     use super::*;
     use crate::lesson::shipped;
+    use crate::radar::Radar;
 
     /// The criteria of a shipped lesson's last step.
     fn of(id: &str) -> Vec<String> {
@@ -145,12 +162,29 @@ mod tests {
         );
         assert_eq!(of("folding-and-wrapping")[1], "An apparent range of 9.5 to 10.5 m for point 1");
         assert_eq!(of("two-ends-and-the-comb")[1], "Exactly 1 object");
+        assert_eq!(of("the-floor")[1], "A reflectivity of at least 0.05 for point 2");
     }
 
     #[test]
     fn what_was_measured_has_its_unit() {
-        assert_eq!(found(&Measure::BrightPart { map: crate::lesson::MapName::Target, above: 0.5 }, 0.00213), "0.213 %");
-        assert_eq!(found(&Measure::BandwidthGigahertz, 0.2), "0.200 GHz");
-        assert_eq!(found(&Measure::Objects, 2.0), "2");
+        let of = |measure, at_least, value: f64| {
+            found(&Requirement { measure, at_least: Some(at_least), at_most: None }, value, value >= at_least)
+        };
+        let bright = Measure::BrightPart { map: crate::lesson::MapName::Target, above: 0.5 };
+        assert_eq!(of(bright, 0.1, 0.00213), "0.213 %");
+        assert_eq!(of(Measure::BandwidthGigahertz, 0.5, 0.2), "0.200 GHz");
+        assert_eq!(of(Measure::Objects, 3.0, 2.0), "2");
+        assert_eq!(of(Measure::BandwidthGigahertz, 2.0, 1.99994), "1.9999 GHz", "2.00 would look met");
+        assert_eq!(of(Measure::BandwidthGigahertz, 2.0, 2.00001), "2.00 GHz", "it is met");
+    }
+
+    #[test]
+    fn half_of_the_shown_spacing_leaves_no_grating_lobe() {
+        let lesson = shipped::ALL.iter().find(|file| file.id == "grating-lobes").unwrap().load().unwrap();
+        let step = lesson.steps.last().unwrap();
+        let radar = Radar { element_spacing_metres: 0.961e-3, elements: 1024, ..step.radar.clone() };
+        let stage = Stage::new(&radar, &step.scene(), &step.view, false).unwrap();
+        let measured = step.challenge.as_ref().unwrap().measure(&stage, None).unwrap();
+        assert!(measured.iter().all(|measured| measured.holds), "{measured:?}");
     }
 }

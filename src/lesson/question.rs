@@ -200,5 +200,5 @@ pub fn number_text(value: f64, unit: &str) -> String {
         v if v >= 1.0 => 2,
         _ => 3,
     };
-    format!("{value:.decimals$} {unit}").trim_end().to_owned()
+    format!("{value:.decimals$} {unit}").replace('-', "−").trim_end().to_owned()
 }

@@ -208,7 +208,7 @@ fn a_grating_lobe_is_as_far_away_as_the_lesson_says() {
     let radar = &lesson.steps[2].radar;
     let (_, column) = peak(&maps_of_step("grating-lobes", 3).full);
     assert!((radar.cos_of_column(column as f64) + 0.4).abs() < 0.02, "{column}");
-    taught("grating-lobes", "0.6 - 1 = -0.4");
+    taught("grating-lobes", "0.6 − 1 = −0.4");
 }
 
 /// Bins per column along the bright cells of a map.

@@ -2,7 +2,7 @@
 
 use crate::app::jobs::Jobs;
 use crate::app::state::lesson_focus::{control_of, map_of};
-use crate::app::state::{Arrangement, Before, LessonCommand, LessonRun, MapViews, Panel, State, Task};
+use crate::app::state::{Arrangement, Before, LessonCommand, LessonRun, MapKind, MapViews, Panel, State, Task};
 use crate::interact::{Document, SelectionMode};
 use crate::lesson::{Guess, Lesson, shipped};
 use crate::scene::Scene;
@@ -81,8 +81,13 @@ fn set_up(state: &mut State) {
     state.set_document(Document::shipped(SceneFile { scene, radar: step.radar.clone() }));
     let (scene, depth) = (state.editor.scene().clone(), state.editor.history().depth());
     state.map_views = MapViews::default();
+    let (map, control) = (map_of(&step), control_of(&step).map(|(panel, _)| panel));
+    close_opened(state, &[Some(map), control]);
     state.arrangement.set_open(Panel::Scene, true);
-    state.arrangement.put_large(map_of(&step));
+    if map == Panel::RangeDoppler {
+        open_for_step(state, map);
+    }
+    state.arrangement.put_large(map);
     show_challenge(state);
     let Some(run) = &mut state.lesson else { return };
     (run.set_up, run.depth) = (Some(scene), depth);
@@ -95,8 +100,27 @@ fn set_up(state: &mut State) {
 fn show_challenge(state: &mut State) {
     let run = state.lesson.as_ref().filter(|run| !run.is_predicting());
     let Some((panel, object)) = run.and_then(|run| run.current()).and_then(control_of) else { return };
-    state.arrangement.set_open(panel, true);
+    open_for_step(state, panel);
     state.editor.select(object, SelectionMode::Replace);
+}
+
+/// Opens a panel until a step that does not need it.
+fn open_for_step(state: &mut State, panel: Panel) {
+    let was_open = state.arrangement.has_tile(panel);
+    state.arrangement.set_open(panel, true);
+    state.lesson.iter_mut().filter(|_| !was_open).for_each(|run| run.opened.push(panel));
+}
+
+/// Closes the panels that earlier steps opened, but for `needed`.
+fn close_opened(state: &mut State, needed: &[Option<Panel>]) {
+    let is_of_lessons = state.is_presenting() || state.arrangement.task == Task::Teach;
+    let Some(run) = state.lesson.as_mut().filter(|_| is_of_lessons) else { return };
+    for panel in run.opened.extract_if(.., |panel| !needed.contains(&Some(*panel))) {
+        if panel == Panel::RangeDoppler {
+            state.arrangement.put_large(Panel::Map(MapKind::Target));
+        }
+        state.arrangement.set_open(panel, false);
+    }
 }
 
 /// Keeps the cells of a challenge in sight as scene and radar change, until the learner zooms.
@@ -125,6 +149,7 @@ fn show_solution(state: &mut State) {
 
 /// Ends the lesson and restores scene, radar, settings, panels and visible parts from before it.
 fn leave(state: &mut State) {
+    close_opened(state, &[]);
     let Some(run) = state.lesson.take() else { return };
     let after = state.settings.view.clone();
     let Before { setup, scene_view, map_views, .. } = run.before;
@@ -135,5 +160,32 @@ fn leave(state: &mut State) {
     state.kept_arrangement().switch(run.before.task);
     if state.presents_lesson() {
         state.arrangement = Arrangement::of_a_lesson();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_step_opened_is_closed_by_a_step_without_it() {
+        let mut state = State::new(Vec::new());
+        let index = |id: &str| shipped::ALL.iter().position(|file| file.id == id).unwrap();
+        let place = |state: &State, panel: Panel| state.arrangement.tree.tiles.find_pane(&panel.tile());
+        begin_shipped(&mut state, index("range-and-velocity")).unwrap();
+        let largest = place(&state, Panel::RangeDoppler);
+        go_to(&mut state, 3);
+        assert!(state.arrangement.is_open(Panel::RangeDoppler) && place(&state, Panel::RangeDoppler) == largest);
+        begin_shipped(&mut state, index("range-and-bandwidth")).unwrap();
+        assert!(!state.arrangement.is_open(Panel::RangeDoppler));
+        assert_eq!(place(&state, Panel::Map(MapKind::Target)), largest);
+        for (step, is_open) in [(3, false), (4, true), (4, true), (3, false)] {
+            go_to(&mut state, step);
+            assert_eq!(state.arrangement.is_open(Panel::Radar), is_open, "step {}", step + 1);
+        }
+        state.arrangement.set_open(Panel::Radar, true);
+        go_to(&mut state, 4);
+        go_to(&mut state, 3);
+        assert!(state.arrangement.is_open(Panel::Radar), "the learner's own stays");
     }
 }

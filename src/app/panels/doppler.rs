@@ -5,8 +5,8 @@ use crate::app::content::Content;
 use crate::app::jobs::{DopplerQuery, DopplerResult};
 use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
 use crate::app::widgets::{
-    Axis, Bar, Chart, Computed, Drawn, MARK, MARK_EDGE, NumberField, Texture, axes, colour_table, computed, edged,
-    labelled, padded, press, tick, warning,
+    Axis, Bar, Chart, Computed, Drawn, MARK, MARK_EDGE, NumberField, Texture, Tick, axes, colour_table, computed,
+    edged, labelled, padded, press, tick, warning,
 };
 use crate::maps::Normalisation;
 use crate::radar::{MAX_CHIRPS, Radar};
@@ -147,10 +147,12 @@ fn map(ui: &mut Ui, state: &State, result: &DopplerResult, texture: TextureId) {
     let beyond = 0.06 * (velocities[1] - velocities[0]);
     let area = ui.available_rect_before_wrap();
     ui.advance_cursor_after_rect(area);
+    let most = radar.unambiguous_velocity_metres_per_second();
+    let ticks = velocity_ticks(most);
     let x = Axis::new(velocities[0] - beyond, velocities[1] + beyond, "radial velocity, m/s");
+    let x = Axis { ticks: Some(&ticks), ..x };
     let mut chart = Chart::new("Range-Doppler map", x, Axis::new(ranges[0], ranges[1], "range, m"));
     chart.image(texture, [velocities[0], ranges[0]], [velocities[1], ranges[1]]);
-    let most = radar.unambiguous_velocity_metres_per_second();
     let stroke = Stroke::new(1.2, ui.visuals().warn_fg_color);
     for edge in [-most, most] {
         chart.add(VLine::new("", edge).stroke(stroke).style(LineStyle::dashed_dense()));
@@ -166,6 +168,13 @@ fn map(ui: &mut Ui, state: &State, result: &DopplerResult, texture: TextureId) {
     let bar = Bar::new(colour_table(state.settings.colours), low, high, title);
     bar.draw(ui, &ui.painter().with_clip_rect(area), drawn.rect);
     drawn.tell(|[velocity, range]| told(result, velocity, range));
+}
+
+/// Marks of the velocity axis: the limits, which the map repeats after, and round numbers that leave room for them.
+fn velocity_ticks(most: f64) -> Vec<Tick> {
+    let limit = |value: f64| Tick { value, text: axes::tick_text(value, most / 100.0) };
+    let round = axes::round_ticks(-most, most, 4.0).into_iter().filter(|tick| tick.value.abs() < 0.75 * most);
+    [limit(-most)].into_iter().chain(round).chain([limit(most)]).collect()
 }
 
 /// Draws a ring at the predicted place of each object, dashed where its velocity folds.

@@ -36,9 +36,10 @@ pub fn show(ui: &mut Ui, state: &State, hidden: Option<TextureId>, memory: &mut 
         let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 6));
         egui::Panel::bottom("steps").frame(frame).show(ui, |ui| steps(ui, run, presenting, &mut asked));
     }
-    let is_pinned = memory.overflows && lesson.is_some_and(LessonRun::is_predicting);
+    let asks = |run: &LessonRun| run.is_predicting() || run.current().is_some_and(|step| step.challenge.is_some());
+    let is_pinned = memory.overflows && lesson.is_some_and(asks);
     if let Some(run) = lesson.filter(|_| is_pinned) {
-        pinned_question(ui, run, memory, &mut asked);
+        pinned_question(ui, run, hidden, memory, &mut asked);
     }
     egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         let mut scroll = ScrollArea::vertical().min_scrolled_height(0.0).auto_shrink([false, false]);
@@ -64,18 +65,28 @@ pub fn show(ui: &mut Ui, state: &State, hidden: Option<TextureId>, memory: &mut 
     asked
 }
 
-/// Draws the question at the foot of the panel, in view for any length of the text above.
-fn pinned_question(ui: &mut Ui, run: &LessonRun, memory: &mut LessonMemory, asked: &mut Vec<Command>) {
-    let Some(question) = run.current().and_then(|step| step.predict.as_ref()) else { return };
+/// Draws the question or the challenge at the foot of the panel, in view for any length of the text above.
+fn pinned_question(
+    ui: &mut Ui,
+    run: &LessonRun,
+    hidden: Option<TextureId>,
+    memory: &mut LessonMemory,
+    asked: &mut Vec<Command>,
+) {
+    let Some(step) = run.current() else { return };
     let most = MOST_OF_HEIGHT * ui.available_height();
     let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 6));
     egui::Panel::bottom("question").frame(frame).show(ui, |ui| {
         // The height is that of the question, so that the rest is left for the text above.
         let scroll = ScrollArea::vertical().max_height(most).min_scrolled_height(most).auto_shrink([false, true]);
-        scroll.show(ui, |ui| {
-            ui.label(large(ui, &question.ask).strong());
-            // In rows, which leaves more height for the text.
-            ui.horizontal_wrapped(|ui| answer(ui, question, memory, asked));
+        scroll.show(ui, |ui| match (&step.predict, &step.challenge) {
+            (Some(question), _) if run.is_predicting() => {
+                ui.label(large(ui, &question.ask).strong());
+                // In rows, which leaves more height for the text.
+                ui.horizontal_wrapped(|ui| answer(ui, question, memory, asked));
+            }
+            (_, Some(challenge)) => requirements(ui, run, challenge, hidden, asked),
+            _ => {}
         });
     });
 }
@@ -105,7 +116,7 @@ fn step(
     }
     ui.label(inline(ui, &step.text, LARGE_TEXT_RATIO));
     ui.add_space(8.0);
-    if let Some(question) = step.predict.as_ref().filter(|_| !is_pinned) {
+    if let Some(question) = step.predict.as_ref().filter(|_| !(is_pinned && run.is_predicting())) {
         ui.label(large(ui, &question.ask).strong());
         match run.guess {
             None => answer(ui, question, memory, asked),
@@ -115,7 +126,7 @@ fn step(
             }
         }
     }
-    if let Some(challenge) = step.challenge.as_ref().filter(|_| !run.is_predicting()) {
+    if let Some(challenge) = step.challenge.as_ref().filter(|_| !is_pinned && !run.is_predicting()) {
         ui.add_space(8.0);
         requirements(ui, run, challenge, hidden, asked);
     }

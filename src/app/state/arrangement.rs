@@ -251,20 +251,22 @@ impl Arrangement {
         self.set_pane_open(id, panel, true);
     }
 
-    /// Swaps a map with the map in the largest tile.
-    pub fn put_large(&mut self, kind: MapKind) {
-        let asked = Panel::Map(kind);
-        if !self.is_open(asked) || !self.is_in_front(asked) {
-            self.set_open(asked, true);
+    /// Swaps a map, of range and angle or of range and velocity, with the map in the largest tile.
+    pub fn put_large(&mut self, map: Panel) {
+        let asked = map.tile();
+        if !self.is_open(map) || !self.is_in_front(asked) {
+            self.set_open(map, true);
         }
         let tiles = &self.tree.tiles;
         let area = |panel: &Panel| {
-            let place = tiles.find_pane(panel).filter(|_| self.is_open(*panel) && self.is_in_front(*panel));
+            let place = tiles.find_pane(panel).filter(|_| self.has_tile(*panel) && self.is_in_front(*panel));
             place.and_then(|id| tiles.rect(id)).map_or(0.0, |rect| rect.area())
         };
-        // Before a layout the target counts as the largest.
-        let maps = MapKind::ALL.map(Panel::Map).into_iter().chain([Panel::Map(MapKind::Target)]);
-        let Some(large) = maps.max_by(|a, b| area(a).total_cmp(&area(b))) else { return };
+        // Before a layout the first tile counts as the largest.
+        let order = |panel: &Panel| tiles.find_pane(panel).map_or(u64::MAX, |id| id.0);
+        let maps = MapKind::ALL.map(Panel::Map).into_iter().chain([Panel::RangeDoppler.tile()]);
+        let compared = |a: &Panel, b: &Panel| area(a).total_cmp(&area(b)).then(order(b).cmp(&order(a)));
+        let Some(large) = maps.max_by(compared) else { return };
         let (Some(to), Some(from)) = (tiles.find_pane(&large), tiles.find_pane(&asked)) else { return };
         if area(&large) > area(&asked) || area(&large) == 0.0 {
             self.tree.tiles.insert(to, Tile::Pane(asked));

@@ -4,7 +4,7 @@ use super::panel::{MapKind, Panel};
 use super::view::MapView;
 use crate::lesson::challenge::Measure;
 use crate::lesson::question::Answer;
-use crate::lesson::{Challenge, MapName, Step};
+use crate::lesson::{Challenge, MapName, Step, StepView};
 use crate::radar::Radar;
 use crate::scene::{Object, Scene};
 use eframe::egui::{pos2, vec2};
@@ -26,8 +26,9 @@ pub fn kind_of(map: MapName) -> MapKind {
     }
 }
 
-/// The map that a step's question or challenge is about.
-pub fn map_of(step: &Step) -> MapKind {
+/// The panel of the map that a step is about: the map that a question asks about or a challenge measures, else the range-Doppler map where the
+/// radar sends several chirps, the output where a question's step names a method, or the target.
+pub fn map_of(step: &Step) -> Panel {
     let asked = step.predict.as_ref().and_then(|question| match &question.answer {
         Answer::Click { map, .. } | Answer::Threshold { map, .. } => Some(*map),
         _ => None,
@@ -38,7 +39,13 @@ pub fn map_of(step: &Step) -> MapKind {
             _ => None,
         })
     };
-    asked.or_else(measured).map_or(MapKind::Target, kind_of)
+    let named_method = step.predict.is_some() && step.view.method != StepView::default().method;
+    match asked.or_else(measured) {
+        Some(map) => Panel::Map(kind_of(map)),
+        None if step.radar.chirps > 1 => Panel::RangeDoppler,
+        None if named_method => Panel::Map(MapKind::Output),
+        None => Panel::Map(MapKind::Target),
+    }
 }
 
 /// The panel with the control for a step's challenge, and the index of the object to change there.
@@ -105,6 +112,22 @@ mod tests {
     }
 
     #[test]
+    fn the_large_map_is_the_one_that_a_step_is_about() {
+        let target = Panel::Map(MapKind::Target);
+        for (id, step, panel) in [
+            ("range-and-bandwidth", 5, target),
+            ("angle-and-aperture", 5, Panel::Map(MapKind::Input0)),
+            ("range-and-velocity", 3, Panel::RangeDoppler),
+            ("range-and-velocity", 4, Panel::RangeDoppler),
+            ("points-taken-for-a-line", 1, target),
+            ("points-taken-for-a-line", 2, Panel::Map(MapKind::Output)),
+        ] {
+            let lesson = shipped::ALL.iter().find(|file| file.id == id).unwrap().load().unwrap();
+            assert_eq!(map_of(&lesson.steps[step - 1]), panel, "{id}, step {step}");
+        }
+    }
+
+    #[test]
     fn a_challenge_about_two_blobs_shows_their_part_of_the_map() {
         let step = last_step("range-and-bandwidth");
         let challenge = step.challenge.as_ref().unwrap();
@@ -116,8 +139,6 @@ mod tests {
             assert!(low < 19.0 && high > 21.6 && high - low < 12.0, "{bandwidth_hz}: {low} to {high} m");
             assert!(part.low.x < 0.5 && part.high.x > 0.5);
         }
-        assert_eq!(map_of(&step), MapKind::Target);
-        assert_eq!(map_of(&last_step("angle-and-aperture")), MapKind::Input0);
         let whole = last_step("near-field");
         assert_eq!(part_of(whole.challenge.as_ref().unwrap(), &whole.radar, &whole.scene()), None);
     }

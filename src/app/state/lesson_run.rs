@@ -42,6 +42,8 @@ pub struct LessonRun {
     pub depth: usize,
     /// Panels closed because the lesson doesn't use them, and whether each tab was in front.
     pub closed: Vec<(Panel, bool)>,
+    /// Panels opened for a step, which another step or the end of the lesson closes.
+    pub opened: Vec<Panel>,
     pub before: Before,
     /// The part of the maps last shown for the challenge, until the learner zooms.
     pub part: Option<MapView>,

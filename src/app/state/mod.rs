@@ -42,6 +42,7 @@ pub use cuts::{CutMap, PinnedCut, pin_cut};
 pub use failures::{Conditions, FailureChoice, Failures, OpenedRow};
 pub use guided::{Guided, Setup};
 pub use help::HelpPage;
+use lesson_focus::{control_of, map_of};
 pub use lesson_run::{Before, LessonRun};
 pub use menus::menu_path;
 pub use method_times::MethodTimes;
@@ -180,9 +181,14 @@ impl State {
     /// Gives the lesson the whole screen, or ends that.
     pub fn present_lesson(&mut self) {
         let uses = self.uses();
+        let run = self.lesson.as_ref();
+        let map = run.and_then(LessonRun::current).map(map_of);
+        let control = run.filter(|run| !run.is_predicting()).and_then(LessonRun::current).and_then(control_of);
         self.present_as(|| {
             let mut arrangement = Arrangement::of_a_lesson();
             arrangement.close_unused(uses);
+            map.into_iter().for_each(|map| arrangement.put_large(map));
+            control.into_iter().for_each(|(panel, _)| arrangement.set_open(panel, true));
             arrangement
         });
     }

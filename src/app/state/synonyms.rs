@@ -64,7 +64,7 @@ fn view_words(command: &ViewCommand) -> &'static str {
         ViewCommand::SetFloor(_) => "noise snr thermal",
         ViewCommand::ToggleReflectors => "truth ground true rings show objects",
         ViewCommand::ToggleFound => "detections crosses points",
-        ViewCommand::ToggleKinds => "missed merged ghost wrong tooth failure",
+        ViewCommand::ToggleKinds => "missed merged ghost false alarm wrong tooth failure",
         ViewCommand::ToggleTheory => "formulas beam lobes bound resolution",
         ViewCommand::FitScene | ViewCommand::ResetMaps => "zoom reset view all home",
         ViewCommand::Method(_) | ViewCommand::NextMethod => "reconstruction algorithm network solver",

@@ -102,16 +102,16 @@ fn failures() -> Tree<Panel> {
     tree("failures", column([(0.42, above), (0.58, tabs([Panel::Failures]))]), [])
 }
 
-/// A lesson large, with the scene and the controls of challenges, one map large, the others that lessons ask about, and the target above
-/// its threshold. `part` of the height is the lesson's, and the maps are so many times as wide.
+/// A lesson large, with the scene and the controls of challenges, one map large, the others that lessons ask about, the target above its
+/// threshold, and the waveform closed. `part` of the height is the lesson's, and the maps are so many times as wide.
 pub fn lesson(name: &'static str, [part, times]: [f32; 2]) -> Tree<Panel> {
     let controls = [Panel::Radar, Panel::Inspector];
     let scene = tabs([Panel::Scene].into_iter().chain(controls));
     let left = column([(part, tabs([Panel::Lesson])), (1.0 - part, scene)]);
-    let others = [vec![Input0], vec![Input1], vec![Output, TargetAbove]];
-    let others = row(others.map(|maps| (1.0, tabs(maps.into_iter().map(Map)))));
+    let others = [vec![Map(Input0)], vec![Map(Input1)], vec![Map(Output), Map(TargetAbove), Panel::Chirp]];
+    let others = row(others.map(|maps| (1.0, tabs(maps))));
     let right = column([(1.5, tabs([Map(Target)])), (1.0, others)]);
-    tree(name, row([(1.0, left), (times, right)]), controls)
+    tree(name, row([(1.0, left), (times, right)]), controls.into_iter().chain([Panel::Chirp]))
 }
 
 /// Panels for an audience: target and output equally large, scene and the ends' maps below them.

@@ -34,8 +34,8 @@ use std::time::Duration;
 /// (live, hybrid, and nomp where something is unexplained). A further column gives P_D
 /// with a threshold for each scene that holds its P_FA to the printed one. The thesis' P_D is at one fixed threshold and cannot be compared with
 /// that column. Below each mean stands the median over the scenes. An object is missed when less than half of the cells in which the whole
-/// array shows it exceed the threshold. A ghost is a blob where the whole array shows nothing. "Near best" is the fraction of scenes on
-/// which the squared error is at most 1.2 times the smallest of the other methods'. The optimisers that trained a network stand behind
+/// array shows it exceed the threshold. A false alarm (column false; ghosts in rows) is a blob where the scene has no object and the whole array
+/// shows nothing. "Near best" is the fraction of scenes on which the squared error is at most 1.2 times the smallest of the other methods'. The optimisers that trained a network stand behind
 /// its name. For scenes with bodies a further table counts echoes: those that stand 10 dB out of the map of the whole array, and those of them
 /// that the method shows, by classes of 10 dB below the scene's strongest. The end of a wall lies 30 to 60 dB below its glint, where P_D doesn't see it.
 ///

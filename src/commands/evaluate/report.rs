@@ -241,7 +241,7 @@ impl SetReport {
         let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.false_alarm);
         let (fixed, own) = ("at the method's threshold", "at each scene's own");
         let _ = writeln!(text, "{:<width$} {:>20} {fixed:>33} {own:>22}", "", "");
-        line(text, width, "", ["SE", "P_D %", "P_FA %", &rate, "missed", "ghosts", "near best %", "ms a map"]);
+        line(text, width, "", ["SE", "P_D %", "P_FA %", &rate, "missed", "false", "near best %", "ms a map"]);
         if let Some(printed) = &self.printed {
             printed.write(width, text);
         }

@@ -146,7 +146,8 @@ pub fn summary(failures: &Failures) -> String {
     let count = |name: &str| failures.objects.iter().filter(|f| f.name() == name).count();
     let fates = [Fate::Found, Fate::Missed, Fate::Merged { with: 0 }, Fate::WrongTooth { columns: 0 }, Fate::Hidden];
     let objects = fates.into_iter().map(|f| (count(f.name()), f.name().to_owned()));
-    let ghosts = (failures.ghosts.len(), if failures.ghosts.len() == 1 { "ghost" } else { "ghosts" }.to_owned());
+    let alarms = if failures.ghosts.len() == 1 { "false alarm" } else { "false alarms" };
+    let ghosts = (failures.ghosts.len(), alarms.to_owned());
     let parts = objects.chain([ghosts]).filter(|(n, _)| *n > 0).map(|(n, name)| format!("{n} {name}"));
     parts.collect::<Vec<_>>().join(", ")
 }

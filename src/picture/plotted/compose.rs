@@ -96,7 +96,7 @@ pub fn compose(
     let detected = style.cfar.map(detect).transpose()?;
     let eta = style.eta.unwrap_or_else(|| method.eta_of(&output));
     let above = detected.as_ref().map_or_else(|| output.lambda.above(eta), |cells| cells.output.above(DETECTED));
-    let ghosts = Footprints::new(radar, scene, &target, scale).judge_cells(&target, &output.lambda, &above).ghosts;
+    let failures = Footprints::new(radar, scene, &target, scale).judge_cells(&target, &output.lambda, &above);
     let panels = Panels {
         scene,
         found: None,
@@ -107,7 +107,7 @@ pub fn compose(
         output: &output.lambda,
         method: method.name(),
         etas: [eta, style.target_eta],
-        ghosts: &ghosts,
+        failures: Some(&failures),
         detected: detected.as_ref(),
         colours: style.colours,
     };

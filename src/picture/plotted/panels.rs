@@ -5,7 +5,7 @@ use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
 use super::{Drawing, InputMap, PictureError, text};
-use crate::evaluate::failure::Ghost;
+use crate::evaluate::failure::Failures;
 use crate::evaluate::{Metrics, eta_text, squared_error};
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -37,8 +37,8 @@ pub struct Panels<'a> {
     pub method: &'a str,
     /// The threshold eta of either method.
     pub etas: [f32; 2],
-    /// Blobs of the output where the scene has nothing.
-    pub ghosts: &'a [Ghost],
+    /// The verdicts on the scene's objects, and the false alarms; `None` of a recording.
+    pub failures: Option<&'a Failures>,
     /// The cells that a detector found, in the place of those above the thresholds.
     pub detected: Option<&'a DetectedCells>,
     pub colours: ColourMap,
@@ -183,12 +183,13 @@ impl<'a> Panels<'a> {
     }
 
     fn told_apart(&self, target: &RangeAngleMap, judged: &Judged<'_>) -> Array2<CellVerdict> {
-        let verdicts = told_apart(judged.output.lambda.view(), target.lambda.view(), judged.etas, self.ghosts);
+        let ghosts = self.failures.map_or(&[][..], |failures| &failures.ghosts);
+        let verdicts = told_apart(judged.output.lambda.view(), target.lambda.view(), judged.etas, ghosts);
         let drawn = self.radar.left_to_right(&verdicts);
         in_place(self.radar, drawn).unwrap_or_else(|| drawn.to_owned())
     }
 
-    /// The three figures of the tables for this scene, or the echoes found in a recording, then the notes.
+    /// The verdict on the objects and the three figures of the tables for this scene, or the echoes found in a recording, then the notes.
     fn figures_and_notes<B: DrawingBackend>(&self, area: &PanelArea<B>) -> Painted {
         if let Some(found) = self.found {
             text::line(area, (0, 0), &strongest_of(found), 20, text::Weight::Bold, &INK)?;
@@ -207,12 +208,19 @@ impl<'a> Panels<'a> {
             ("P_D", metrics.detection.map_or_else(|| "no target cell".to_owned(), percent)),
             ("P_FA", percent(metrics.false_alarm)),
         ];
+        let verdict = self.failures.filter(|failures| !failures.objects.is_empty()).map(Failures::verdict);
+        let below = if let Some(verdict) = verdict {
+            text::line(area, (0, 0), &verdict, 23, text::Weight::Bold, &INK)?;
+            32
+        } else {
+            0
+        };
         for (column, (name, value)) in figures.iter().enumerate() {
             let x = column as i32 * 210;
-            text::line(area, (x, 5), name, 18, text::Weight::Normal, &FAINT_INK)?;
-            text::line(area, (x + 58, 0), value, 23, text::Weight::Bold, &INK)?;
+            text::line(area, (x, below + 5), name, 18, text::Weight::Normal, &FAINT_INK)?;
+            text::line(area, (x + 58, below), value, 23, text::Weight::Bold, &INK)?;
         }
-        text::paragraphs(area, (0, 40), &self.scene.notes, 18, &INK)
+        text::paragraphs(area, (0, below + 40), &self.scene.notes, 18, &INK)
     }
 }
 
@@ -240,6 +248,7 @@ fn strongest_of(found: &[Detection]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluate::failure::Fate;
     use crate::maps::{LogMaps, Normalisation};
     use crate::picture::{encode_png, is_our_png};
     use crate::radar::{BuiltArray, Decibels};
@@ -254,6 +263,8 @@ mod tests {
         let file = presets::default_scene();
         let (array, ends) = (BuiltArray::default(), [&maps.first, &maps.last]);
         let (_, inputs) = InputMap::of(&radar, &array, None, ends, (None, Normalisation::MinMax)).unwrap();
+        let found = file.scene.objects.iter().map(|_| Fate::Found).collect();
+        let failures = Failures { objects: found, ..Failures::default() };
         let panels = Panels {
             scene: &file.scene,
             radar: &radar,
@@ -264,12 +275,14 @@ mod tests {
             output: &flat,
             method: "baseline",
             etas: [0.8, 0.9],
-            ghosts: &[],
+            failures: Some(&failures),
             detected: None,
             colours: ColourMap::Grey,
         };
         let svg = render_svg(&panels).unwrap();
         assert!(svg.trim_end().ends_with("</svg>") && svg.contains("Target"));
+        let place = |text: &str| svg.find(text).unwrap();
+        assert!(place(&failures.verdict()) < place(">\nSE\n"), "the headline comes before the cells' figures");
         assert_eq!(svg.matches("<image").count(), 7, "six maps and the one seen from above are one image each");
         let without = render_svg(&Panels { target: None, ..panels }).unwrap();
         assert_eq!(without.matches("<image").count(), 5, "no target, no map of it and of its threshold");

@@ -107,7 +107,7 @@ impl Search {
         let told = |finding: &Finding| match search.measure {
             WorseningMeasure::SquaredError => format!("SE {:.1}", finding.metrics.squared_error),
             WorseningMeasure::Missed => format!("{} missed", finding.failures.missed()),
-            WorseningMeasure::Ghosts => counted(finding.failures.ghosts.len(), "ghost", "ghosts"),
+            WorseningMeasure::Ghosts => counted(finding.failures.ghosts.len(), "false alarm", "false alarms"),
         };
         Some(format!("{method}: {} here, {} after {:.2} m", told(start), told(end), end.moved_metres))
     }

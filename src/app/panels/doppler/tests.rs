@@ -74,7 +74,7 @@ fn the_map_has_its_axes_in_a_wide_panel_or_a_narrow_one() {
         let rect = panel.get_by_label("Range-Doppler map").rect();
         assert!(rect.height() > 60.0 && rect.right() <= size[0], "{rect:?}");
         let texts = seen::texts(panel.output());
-        for text in ["radial velocity, m/s", "range, m", "1"] {
+        for text in ["radial velocity, m/s", "range, m", "1", "−78.0", "−50", "0", "50", "78.0"] {
             assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
         }
         seen::assert_readable(panel.output());

@@ -63,7 +63,7 @@ fn rates(ui: &mut Ui, metrics: &Metrics) {
     }
 }
 
-/// Text with the numbers of a row's found, missed, merged and shifted objects, and of its ghosts.
+/// Text with the numbers of a row's found, missed, merged and shifted objects, and of its false alarms.
 fn fates(row: &Row) -> String {
     let maybe = |count: Option<usize>, name: &str| count.filter(|n| *n > 0).map(|n| format!("{n} {name}"));
     let told = [row.found, Some(row.missed), row.merged, row.wrong_tooth].into_iter().sum::<Option<usize>>();
@@ -73,7 +73,7 @@ fn fates(row: &Row) -> String {
         maybe(row.merged, "merged"),
         maybe(row.wrong_tooth, "wrong tooth"),
         maybe(told.map(|told| row.objects.saturating_sub(told)), "hidden"),
-        maybe(Some(row.ghosts), if row.ghosts == 1 { "ghost" } else { "ghosts" }),
+        maybe(Some(row.ghosts), if row.ghosts == 1 { "false alarm" } else { "false alarms" }),
     ];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
@@ -112,6 +112,6 @@ fn name(measure: WorseningMeasure) -> &'static str {
     match measure {
         WorseningMeasure::SquaredError => "squared error",
         WorseningMeasure::Missed => "missed objects",
-        WorseningMeasure::Ghosts => "ghosts",
+        WorseningMeasure::Ghosts => "false alarms",
     }
 }

@@ -31,7 +31,9 @@ impl LessonMemory {
         let begins = self.of != of;
         if begins {
             let (learner, hidden) = (std::mem::take(&mut self.learner), std::mem::take(&mut self.hidden));
-            *self = LessonMemory { of, eta: 0.5, learner, hidden, ..LessonMemory::default() };
+            // A step that was answered before starts at its top too.
+            let told = run.guess.is_some();
+            *self = LessonMemory { of, eta: 0.5, learner, hidden, told, ..LessonMemory::default() };
         }
         begins
     }

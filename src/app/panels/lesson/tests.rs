@@ -103,6 +103,26 @@ fn the_question_is_in_view_however_little_room_there_is() {
 }
 
 #[test]
+fn a_challenge_is_in_view_however_little_room_there_is() {
+    for size in [[360.0, 180.0], [300.0, 230.0], [640.0, 800.0]] {
+        let mut panel = harness_of(size, Some(run("range-and-velocity", 3)), Progress::default(), true);
+        panel.run_steps(3);
+        let step = panel.state().0.lesson.as_ref().and_then(LessonRun::current).unwrap().clone();
+        let ask = panel.get_by_label(&step.challenge.unwrap().ask).rect();
+        assert!(panel.get_by_label_contains("Step ").rect().top() > 0.0, "it begins at its top: {size:?}");
+        assert!(ask.top() > 0.0 && ask.bottom() < size[1] - 30.0, "{size:?}: the challenge is at {ask:?}");
+    }
+}
+
+#[test]
+fn a_step_that_was_answered_starts_at_its_top() {
+    let answered = answered_run("range-and-velocity", 2, Guess::Number(-15.0));
+    let mut panel = harness_of([360.0, 180.0], Some(answered), Progress::default(), true);
+    panel.run_steps(3);
+    assert!(panel.get_by_label_contains("Step ").rect().top() > 0.0);
+}
+
+#[test]
 fn each_step_starts_at_its_top() {
     let mut panel = harness(Some(run("which-points-a-car-is", 4)));
     panel.set_size(egui::vec2(360.0, 200.0));

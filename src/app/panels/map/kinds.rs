@@ -64,7 +64,7 @@ impl Sign {
             Sign::Missed => ("missed", Color32::from_rgb(255, 122, 60)),
             Sign::Merged => ("merged", Color32::from_rgb(240, 228, 66)),
             Sign::WrongTooth => ("wrong tooth", Color32::from_rgb(232, 150, 200)),
-            Sign::Ghost => ("ghost", Color32::WHITE),
+            Sign::Ghost => ("false alarm", Color32::WHITE),
             Sign::Hidden => ("hidden", Color32::from_gray(176)),
         }
     }
@@ -179,7 +179,10 @@ impl Kinds<'_> {
         let eta = eta_text(*eta);
         let cells = verdict.cells;
         let Some(index) = verdict.object else {
-            return format!("ghost: {} above η = {eta}\nwhere the scene has nothing", counted(cells, "cell", "cells"));
+            return format!(
+                "false alarm: {} above η = {eta}\nwhere the scene has nothing",
+                counted(cells, "cell", "cells")
+            );
         };
         let unknown = |index: usize| format!("object {}", index + 1);
         let named = |index: usize| scene.objects.get(index).map_or_else(|| unknown(index), |o| o.called(index));
@@ -190,6 +193,7 @@ impl Kinds<'_> {
         };
         let detected = format!("{:.0} % of its {of_what} exceed η = {eta}", 100.0 * part);
         let reason = match failures.objects.get(index).copied().unwrap_or(Fate::Hidden) {
+            Fate::Found if cells == 0 => "the target itself does not show it, but the output does".to_owned(),
             Fate::Found => detected,
             Fate::Missed => format!("{detected}: less than half"),
             Fate::Merged { with } => format!("one blob covers it and {};\nthe target shows two", named(with)),
@@ -245,7 +249,7 @@ pub mod tests {
         let told = kinds.why(&radar.in_convention(Convention::Physical), &fates.verdicts[3]);
         assert!(told.contains("3 columns to the right"), "lower columns are drawn farther right: {told}");
         assert_eq!(said[4], "point 5: hidden\nthe target itself does not show it");
-        assert_eq!(said[5], "ghost: 12 cells above η = 0.80\nwhere the scene has nothing");
+        assert_eq!(said[5], "false alarm: 12 cells above η = 0.80\nwhere the scene has nothing");
         assert_eq!(kinds.counts().len(), Sign::ALL.len(), "every kind is counted");
     }
 

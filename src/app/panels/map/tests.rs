@@ -189,7 +189,8 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
 
 #[test]
 fn fates_are_counted_above_the_map_and_told_under_the_pointer() {
-    let legend = "Legend: hit, rim, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 ghost, 1 hidden";
+    let legend =
+        "Legend: hit, rim, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 false alarm, 1 hidden";
     assert!(judged([260.0, 140.0]).query_by_label_contains("Legend").is_none(), "not in a small panel");
     let mut map = judged([900.0, 500.0]);
     assert!(map.query_by_label(legend).is_some());

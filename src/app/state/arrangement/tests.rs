@@ -28,9 +28,14 @@ fn the_map_that_is_asked_for_takes_the_largest_place() {
     let mut arrangement = Arrangement::of_a_lesson();
     let place = |arrangement: &Arrangement, kind| arrangement.tree.tiles.find_pane(&Panel::Map(kind));
     let largest = place(&arrangement, MapKind::Target);
-    arrangement.put_large(MapKind::Input1);
+    arrangement.put_large(Panel::Map(MapKind::Input1));
     assert_eq!(place(&arrangement, MapKind::Input1), largest);
     assert!(place(&arrangement, MapKind::Target).is_some_and(|target| Some(target) != largest));
+    let mut arrangement = Arrangement::of_a_lesson();
+    let largest = place(&arrangement, MapKind::Target);
+    (0..2).for_each(|_| arrangement.put_large(Panel::RangeDoppler));
+    assert!(arrangement.is_open(Panel::RangeDoppler), "also where it is asked for twice before a layout");
+    assert_eq!(arrangement.tree.tiles.find_pane(&Panel::RangeDoppler.tile()), largest);
 }
 
 #[test]

@@ -83,7 +83,7 @@ pub(super) const COMMANDS: &[Entry] = {
         View(ViewCommand::ToggleTheory), "Theory on the maps",
             "Draw the formulas' figures of the selected reflector: beam, lobes, streak, comb, bound, wraps and folds", key(Key::T);
         View(ViewCommand::ToggleKinds), "Mark kinds of failure",
-            "Mark in the maps which objects are found, missed, merged or on the wrong tooth, and ghosts", key(Key::H);
+            "Mark in the maps which objects are found, missed, merged or on the wrong tooth, and false alarms", key(Key::H);
         View(ViewCommand::ToggleDeveloper), "Developer",
             "List the panels for developers of the program and of methods: Timing and Training", None;
         View(ViewCommand::Flip), "Flip two maps",

@@ -1,0 +1,146 @@
+//! Tests of the verdicts.
+
+use super::*;
+use crate::maps::{LogMaps, Normalisation};
+use crate::radar::Decibels;
+use crate::scene::presets::Preset;
+use crate::scene::{Object, Point, Wall};
+use crate::signal::{Floor, simulate};
+use ndarray::Array2;
+
+fn seen(objects: Vec<Object>) -> (RangeAngleMap, Footprints) {
+    let (radar, scene) = (Radar::default(), Scene { objects, ..Scene::default() });
+    let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
+    let target = full.normalise(Normalisation::MinMax);
+    let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
+    (target, footprints)
+}
+
+fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
+    seen(Scene::of_points(points.iter().copied()).objects)
+}
+
+fn shifted(map: &RangeAngleMap, by: i32) -> RangeAngleMap {
+    let columns = map.lambda.ncols();
+    let lambda =
+        ndarray::Array2::from_shape_fn(map.lambda.dim(), |(r, c)| map.lambda[[r, shifted_column(c, -by, columns)]]);
+    RangeAngleMap { lambda }
+}
+
+fn without(map: &RangeAngleMap, cells: &[CellIndex]) -> RangeAngleMap {
+    let mut map = map.clone();
+    for &[r, c] in cells {
+        for c in c.saturating_sub(60)..(c + 60).min(1024) {
+            map.lambda[[r, c]] = 0.0;
+        }
+    }
+    map
+}
+
+const TWO: [(f64, f64); 2] = [(-4.0, 12.0), (5.0, 20.0)];
+
+#[test]
+fn an_object_that_the_output_lacks_is_missed() {
+    let (target, footprints) = scene(&TWO);
+    let output = without(&target, &footprints.cells()[1]);
+    let found = footprints.judge(&target, &output, TARGET_ETA);
+    assert_eq!((&found.objects[..], found.missed()), (&[Fate::Found, Fate::Missed][..], 1));
+    assert!(found.ghosts.is_empty());
+    assert!(found.covered[0] == 1.0 && found.covered[1] == 0.0, "{:?}", found.covered);
+}
+
+#[test]
+fn a_shift_by_a_few_columns_is_the_wrong_tooth() {
+    let (target, footprints) = scene(&[(5.0, 20.0)]);
+    for by in [-3, 1, 6] {
+        let found = footprints.judge(&target, &shifted(&target, by), TARGET_ETA);
+        assert_eq!(found.objects, [Fate::WrongTooth { columns: by }]);
+        assert!(found.ghosts.is_empty());
+    }
+}
+
+#[test]
+fn a_blob_elsewhere_is_a_ghost() {
+    let (target, footprints) = scene(&[(5.0, 20.0)]);
+    let mut output = target.clone();
+    output.lambda.slice_mut(ndarray::s![100..104, 200..206]).fill(1.0);
+    output.lambda[[50, 50]] = 1.0;
+    let found = footprints.judge(&target, &output, TARGET_ETA);
+    assert_eq!((found.objects[0], found.ghosts.len()), (Fate::Found, 1), "one cell is no ghost");
+    assert_eq!(found.ghosts[0].cells.len(), 24);
+}
+
+#[test]
+fn one_blob_over_two_objects_is_a_merger() {
+    let (target, footprints) = scene(&[(-2.0, 20.0), (2.0, 20.0)]);
+    assert_eq!(footprints.judge(&target, &target, TARGET_ETA).objects, [Fate::Found; 2]);
+    let row = footprints.cells()[0][0][0];
+    let mut output = target.clone();
+    output.lambda.slice_mut(ndarray::s![row..row + 2, 400..620]).fill(1.0);
+    let found = footprints.judge(&target, &output, TARGET_ETA);
+    assert_eq!(found.objects, [Fate::Merged { with: 1 }, Fate::Merged { with: 0 }]);
+}
+
+#[test]
+fn the_ends_of_a_wall_are_the_wall_and_no_ghosts() {
+    let objects = vec![Object::Wall(Wall::new(0.0, 10.0, 5.0, 0.0)), Object::Point(Point::new(-6.0, 20.0))];
+    let (target, footprints) = seen(objects);
+    assert_eq!(footprints.echoes.iter().map(Vec::len).collect::<Vec<_>>(), [3, 0], "a glint and two ends");
+    let mut output = RangeAngleMap { lambda: Array2::zeros(target.lambda.raw_dim()) };
+    let draw = |output: &mut RangeAngleMap, [row, column]: CellIndex| {
+        output.lambda.slice_mut(ndarray::s![row - 1..row + 2, column - 2..column + 3]).fill(1.0);
+    };
+    let middle = |cells: &[CellIndex]| cells[cells.len() / 2];
+    for end in &footprints.echoes[0][1..] {
+        draw(&mut output, middle(end));
+    }
+    draw(&mut output, middle(&footprints.cells()[1]));
+    let judged = footprints.judge(&target, &output, 0.5);
+    assert_eq!((judged.objects[0], judged.ghosts.len()), (Fate::Found, 0), "two of its three echoes");
+    output.lambda.fill(0.0);
+    draw(&mut output, [300, 100]);
+    let judged = footprints.judge(&target, &output, 0.5);
+    assert_eq!((judged.objects[0], judged.ghosts.len()), (Fate::Missed, 1));
+    assert_eq!(judged.verdict(), "0 of 2 found, 1 false");
+}
+
+/// The target of a shipped scene, and the verdicts on an output equal to it above the threshold 0.7.
+fn same_output(id: &str, elements: usize, normalisation: Normalisation) -> (Footprints, Failures) {
+    let document = Preset::by_id(id).unwrap().load().unwrap();
+    let radar = Radar { elements, end_elements: document.radar.end_elements.min(elements / 2), ..document.radar };
+    let full = LogMaps::of_signal(&radar, &simulate(&radar, &document.scene, Floor::Thesis, 1).unwrap()).full;
+    let target = full.normalise(normalisation);
+    let footprints = Footprints::new(&radar, &document.scene, &target, full.scale(normalisation));
+    let judged = footprints.judge(&target, &target, 0.7);
+    (footprints, judged)
+}
+
+#[test]
+fn objects_below_the_targets_threshold_are_no_ghosts() {
+    for (id, elements, hidden) in [("street", 1024, &[3, 4][..]), ("traffic", 8, &[0])] {
+        let (footprints, judged) = same_output(id, elements, Normalisation::DynamicRange(Decibels(100.0)));
+        for &object in hidden {
+            let is_hidden = footprints.objects[object].is_empty();
+            assert_eq!((is_hidden, judged.objects[object]), (true, Fate::Found), "{id}, object {object}");
+        }
+        assert!(judged.ghosts.is_empty(), "{id}: {}", judged.verdict());
+    }
+    assert_eq!(
+        same_output("street", 1024, Normalisation::DynamicRange(Decibels(100.0))).1.verdict(),
+        "5 of 5 found, 0 false"
+    );
+}
+
+#[test]
+fn an_object_in_neither_map_is_hidden_and_not_counted() {
+    let point = |x_metres, reflectivity| Object::Point(Point { reflectivity, ..Point::new(x_metres, 15.0) });
+    let (target, footprints) = seen(vec![point(-5.0, 1.0), point(5.0, 1e-6)]);
+    let found = footprints.judge(&target, &target, TARGET_ETA);
+    assert_eq!(found.objects, [Fate::Found, Fate::Hidden]);
+    assert_eq!(found.verdict(), "1 of 1 found, 0 false");
+    let mut output = target.clone();
+    let [row, column] = footprints.places[1][0];
+    output.lambda.slice_mut(ndarray::s![row - 2..row + 2, column - 2..column + 2]).fill(1.0);
+    let found = footprints.judge(&target, &output, TARGET_ETA);
+    assert_eq!(found.verdict(), "2 of 2 found, 0 false", "the output shows it");
+}
