@@ -11,7 +11,7 @@ pub(super) const W: usize = LANES_F32;
 /// Lane groups that are computed together: enough to hide the latency of an addition.
 const TOGETHER: usize = 4;
 
-/// Rows and columns of the covariance kept in registers.
+/// BinSpans and columns of the covariance kept in registers.
 const TILE: (usize, usize) = (2, 4);
 
 /// One element of `W` steering vectors.
@@ -105,7 +105,7 @@ impl Iteration<'_> {
         out
     }
 
-    /// Rows from `i` and columns from `j` of the covariance without noise, with one sum a lane.
+    /// BinSpans from `i` and columns from `j` of the covariance without noise, with one sum a lane.
     #[inline(always)]
     #[allow(clippy::needless_range_loop)] // constant bounds keep the tile in registers
     fn tile<const FMA: bool>(&self, powers: &[Lanes<f32, W>], i: usize, j: usize) -> [[Lane; TILE.1]; TILE.0] {

@@ -8,7 +8,7 @@ use super::sectors::end_beam_cos;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
-use crate::reconstruct::fit::{Atom, Fit, Rows, Samples, Tie, Workbench, distance_bins, rows_of};
+use crate::reconstruct::fit::{Atom, BinSpans, Fit, Fitter, Samples, Tie, bin_spans, distance_bins};
 use crate::reconstruct::search::{APART_BINS, Detector, MIN_WORTH_RATIO, Search, Settings, Trace, tied};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -48,7 +48,7 @@ const MOST_WORK: usize = 30_000;
 /// A peak without a reflector so far.
 struct Waiting {
     echo: ArrayEcho,
-    rows: Rows,
+    spans: BinSpans,
     /// Energy that the peak explained when it was found.
     energy: f64,
 }
@@ -57,7 +57,7 @@ struct Waiting {
 pub(super) struct Settled<'a> {
     radar: &'a Radar,
     task: &'a Task,
-    bench: Workbench<'a>,
+    fitter: Fitter<'a>,
     detector: Arc<Detector>,
     settings: Settings,
     samples: Samples,
@@ -71,20 +71,20 @@ impl<'a> Settled<'a> {
     /// The start for `ends`, without reflectors.
     pub fn new(radar: &'a Radar, ends: &TwoEnds, task: &'a Task) -> Self {
         let flat = ends.flat();
-        let bench = Workbench::new(radar, &hann(radar.samples), task, MOST_WORK).hearing(&flat);
-        let samples = Samples::new(&bench.sensor, &flat);
-        let fit = bench.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
+        let fitter = Fitter::new(radar, &hann(radar.samples), task, MOST_WORK).with_channels_of(&flat);
+        let samples = Samples::new(&fitter.sensor, &flat);
+        let fit = fitter.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
-        Settled { radar, task, bench, detector, settings, samples, trace: Trace::default(), fit, enough }
+        Settled { radar, task, fitter, detector, settings, samples, trace: Trace::default(), fit, enough }
     }
 
     fn search(&self) -> Search<'_> {
-        let Settled { radar, task, bench, detector, settings, samples, trace, .. } = self;
-        Search { radar, bench, detector, samples, in_noise: false, settings, task, trace }
+        let Settled { radar, task, fitter, detector, settings, samples, trace, .. } = self;
+        Search { radar, fitter, detector, samples, in_noise: false, settings, task, trace }
     }
 
     pub fn left(&self) -> TwoEnds {
-        TwoEnds::of_flat(self.radar, &self.fit.residual.flat(&self.bench.sensor))
+        TwoEnds::of_flat(self.radar, &self.fit.residual.flat(&self.fitter.sensor))
     }
 
     /// Adds the reflectors behind `peaks`: the strongest first, nearby ones against its residual. Returns whether another look is worthwhile.
@@ -98,7 +98,7 @@ impl<'a> Settled<'a> {
         waiting.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
         for _ in 0..ROUNDS_A_LOOK {
             self.task.check()?;
-            let noise = MIN_WORTH_RATIO * self.bench.gain_noise(self.radar, &self.fit);
+            let noise = MIN_WORTH_RATIO * self.fitter.noise_energy(self.radar, &self.fit);
             let now = self.heard(&waiting);
             let mut left: Vec<(f64, Waiting)> = now.into_iter().zip(waiting).collect();
             left.retain(|(now, w)| *now > noise.max(LEFT_OF_EXPLAINED * w.energy));
@@ -136,15 +136,15 @@ impl<'a> Settled<'a> {
 
     /// Whether the residual is small enough, or the work is spent.
     fn is_done(&self) -> bool {
-        self.fit.cost() <= self.enough || self.bench.work.is_spent()
+        self.fit.cost() <= self.enough || self.fitter.work.is_spent()
     }
 
     /// Energy of the residual that each of `waiting` explains by itself.
     fn heard(&self, waiting: &[Waiting]) -> Vec<f64> {
-        let mut weighted = self.fit.residual.flat(&self.bench.sensor);
-        let weights = self.bench.squared.iter().cycle();
+        let mut weighted = self.fit.residual.flat(&self.fitter.sensor);
+        let weights = self.fitter.squared.iter().cycle();
         weighted.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
-        let mean = self.bench.squared.iter().sum::<f64>() / self.bench.squared.len() as f64;
+        let mean = self.fitter.squared.iter().sum::<f64>() / self.fitter.squared.len() as f64;
         waiting.par_iter().map(|w| w.echo.correlate(&weighted).norm_sqr() / mean).collect()
     }
 
@@ -153,8 +153,8 @@ impl<'a> Settled<'a> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
-        let Settled { radar, task, bench, samples, mut fit, enough, .. } = self;
-        fit = tied(&bench, &samples, fit, false);
+        let Settled { radar, task, fitter, samples, mut fit, enough, .. } = self;
+        fit = tied(&fitter, &samples, fit, false);
         let is_certain = fit.cost() <= enough * CERTAIN;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
@@ -183,18 +183,18 @@ impl Waiting {
         let echo = ArrayEcho::at(radar, peak.range_metres, peak.cos_theta);
         let Reflector { x_metres, y_metres, .. } = echo.reflector;
         let is_heard = echo.norm().is_finite() && echo.norm() > 0.0;
-        let rows = rows_of(radar, &Atom::Point { x_metres, y_metres });
-        is_heard.then_some(Waiting { rows, echo, energy: 0.0 })
+        let spans = bin_spans(radar, &Atom::Point { x_metres, y_metres });
+        is_heard.then_some(Waiting { spans, echo, energy: 0.0 })
     }
 }
 
 /// Moves from `left` into the answer the places of those without a stronger one nearby.
 fn strongest_apart(radar: &Radar, left: &mut Vec<(f64, Waiting)>) -> Vec<[f64; 2]> {
-    let mut taken: Vec<(Rows, [f64; 2])> = Vec::new();
+    let mut taken: Vec<(BinSpans, [f64; 2])> = Vec::new();
     left.retain(|(_, w)| {
-        let is_apart = taken.iter().all(|(rows, _)| distance_bins(radar.samples, rows, &w.rows) > APART_BINS);
+        let is_apart = taken.iter().all(|(spans, _)| distance_bins(radar.samples, spans, &w.spans) > APART_BINS);
         if is_apart {
-            taken.push((w.rows, [w.echo.reflector.x_metres, w.echo.reflector.y_metres]));
+            taken.push((w.spans, [w.echo.reflector.x_metres, w.echo.reflector.y_metres]));
         }
         !is_apart
     });

@@ -2,13 +2,13 @@
 
 use super::atom::Atom;
 use super::echoes::{Samples, echo_of_all};
-use super::refine::{Fit, Workbench};
+use super::refine::{Fit, Fitter};
 use crate::scene::Reflector;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-impl Workbench<'_> {
-    /// The result of [`Workbench::solve`] for a single atom, many times faster.
+impl Fitter<'_> {
+    /// The result of [`Fitter::solve`] for a single atom, many times faster.
     pub fn solve_alone(&self, samples: &Samples, atom: Atom) -> Fit {
         let reflectors: Vec<Reflector> = atom.reflectors(1.0).collect();
         self.work.spend(reflectors.len() + 1);
@@ -44,20 +44,20 @@ mod tests {
     fn an_atom_by_itself_is_solved_as_by_the_normal_equations() {
         let radar = Radar { end_elements: 11, ..Radar::default() };
         let task = Task::default();
-        let bench = Workbench::new(&radar, &hann(radar.samples), &task, usize::MAX);
+        let fitter = Fitter::new(&radar, &hann(radar.samples), &task, usize::MAX);
         let wall = Atom::Segment { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 31 };
         // A wall of another gain at each end, and noise.
-        let noise: Vec<Complex64> = unit_noise(3, 0).take(bench.sensor.sample_count()).collect();
+        let noise: Vec<Complex64> = unit_noise(3, 0).take(fitter.sensor.sample_count()).collect();
         let gains = [Complex64::new(-900.0, 200.0), Complex64::new(0.0, 500.0)];
-        let samples = bench.without(&Samples::new(&bench.sensor, &noise), &[wall], &[gains]).residual;
-        let (slow, fast) = (bench.solve(&samples, vec![wall], Tie::PerEnd, 0.0), bench.solve_alone(&samples, wall));
+        let samples = fitter.subtract(&Samples::new(&fitter.sensor, &noise), &[wall], &[gains]).residual;
+        let (slow, fast) = (fitter.solve(&samples, vec![wall], Tie::PerEnd, 0.0), fitter.solve_alone(&samples, wall));
         for (end, gain) in gains.iter().enumerate() {
             let [of_slow, of_fast] = [&slow, &fast].map(|fit| fit.gains[0][end]);
             assert!((of_slow - of_fast).norm() < 1e-9, "{of_slow} {of_fast}");
             assert!((of_slow + gain).norm() < 20.0, "{of_slow}");
             assert!((slow.energy[end] / fast.energy[end] - 1.0).abs() < 1e-9);
         }
-        for (a, b) in slow.residual.flat(&bench.sensor).iter().zip(fast.residual.flat(&bench.sensor)) {
+        for (a, b) in slow.residual.flat(&fitter.sensor).iter().zip(fast.residual.flat(&fitter.sensor)) {
             assert!((a - b).norm() < 1e-6, "{a} {b}");
         }
     }

@@ -31,14 +31,14 @@ impl Atom {
     ///
     /// A point's distance from the array follows the square of its y: near the array's axis y itself hardly changes anything, its
     /// square does.
-    pub fn parameters(&self) -> usize {
+    pub fn parameter_count(&self) -> usize {
         match self {
             Atom::Point { .. } => 2,
             Atom::Segment { .. } => 4,
         }
     }
 
-    /// The atom with its continuous parameters moved by `step`, in the order of [`Atom::parameters`].
+    /// The atom with its continuous parameters moved by `step`, in the order of [`Atom::parameter_count`].
     pub fn moved(&self, step: &[f64]) -> Atom {
         match *self {
             Atom::Point { x_metres, y_metres } => {
@@ -72,7 +72,7 @@ impl Atom {
     }
 
     /// Derivatives of reflector `i`'s x and of half the square of its y by the parameter.
-    pub fn share(&self, i: usize, parameter: usize) -> [f64; 2] {
+    pub fn derivatives(&self, i: usize, parameter: usize) -> [f64; 2] {
         let i = i as f64;
         let [_, y] = self.position_metres(i);
         match (self, parameter) {

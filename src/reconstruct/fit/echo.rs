@@ -1,6 +1,6 @@
 //! Reflectors at the channels of both ends: the factors of inner products of echoes.
 
-use super::sensor::{NEAREST_METRES, Sensor, W, kept_apart};
+use super::sensor::{MIN_DISTANCE_METRES, Sensor, W, with_min_distance};
 use crate::radar::Pair;
 use crate::scene::Reflector;
 use crate::signal::path::PairBlocks;
@@ -8,7 +8,7 @@ use crate::signal::simd::{ComplexLanes, Kernel, Lanes, phasor};
 
 /// A reflector's echo at some neighbouring channels of one end, a lane a channel. Lanes beyond the end are silent.
 #[derive(Debug, Clone, Copy)]
-pub struct Part {
+pub struct EchoBlock {
     /// Frequency in range bins, wrapped.
     pub bins: Lanes<f64, W>,
     /// Value at the middle of the chirp.
@@ -24,15 +24,15 @@ pub struct Part {
 /// A reflector's echo at both ends.
 #[derive(Debug, Clone)]
 pub struct Echo {
-    /// The first end's parts, then as many of the last end's.
-    parts: Vec<Part>,
+    /// The first end's blocks, then as many of the last end's.
+    blocks: Vec<EchoBlock>,
 }
 
 impl Echo {
     #[inline(always)]
-    pub fn end(&self, end: usize) -> &[Part] {
-        let each = self.parts.len() / 2;
-        &self.parts[end * each..(end + 1) * each]
+    pub fn end(&self, end: usize) -> &[EchoBlock] {
+        let each = self.blocks.len() / 2;
+        &self.blocks[end * each..(end + 1) * each]
     }
 }
 
@@ -52,23 +52,23 @@ impl Kernel for Echoes<'_> {
         let starts: Vec<(usize, usize)> = starts.collect();
         let mut echoes = Vec::with_capacity(reflectors.len());
         for reflector in reflectors {
-            let mut parts = Vec::with_capacity(starts.len());
-            let reflector = kept_apart(sensor, reflector);
+            let mut blocks = Vec::with_capacity(starts.len());
+            let reflector = with_min_distance(sensor, reflector);
             for &(end, first) in &starts {
-                parts.push(part::<FMA>(sensor, &reflector, end, first));
+                blocks.push(echo_block::<FMA>(sensor, &reflector, end, first));
             }
-            echoes.push(Echo { parts });
+            echoes.push(Echo { blocks });
         }
         echoes
     }
 }
 
 #[inline(always)]
-fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usize) -> Part {
+fn echo_block<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usize) -> EchoBlock {
     let of = |v: f64| Lanes::<f64, W>::splat(v);
     let samples = sensor.samples as f64;
     let channel = |lane: usize| end * sensor.end_elements + (first + lane).min(sensor.end_elements - 1);
-    let is_heard = |lane: usize| first + lane < sensor.end_elements && sensor.hears[channel(lane)];
+    let is_heard = |lane: usize| first + lane < sensor.end_elements && sensor.has_samples[channel(lane)];
     let heard = Lanes(std::array::from_fn(|lane| f64::from(u8::from(is_heard(lane)))));
     let pairs = PairBlocks::new(|lane| sensor.pairs[channel(lane)]);
     let echo = sensor.model.echo_lanes::<W, FMA>(pairs, r);
@@ -80,7 +80,7 @@ fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usiz
     } else {
         Slopes::of_pairs(std::array::from_fn(|lane| sensor.pairs[channel(lane)]), r)
     };
-    Part {
+    EchoBlock {
         bins: echo.beat_turns * of(samples),
         middle: phasor::<f64, W, FMA>(turns).scaled(echo.amplitude * heard),
         by_x,
@@ -89,7 +89,7 @@ fn part<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first: usiz
     }
 }
 
-/// Derivatives of distances and amplitudes, as in [`Part`].
+/// Derivatives of distances and amplitudes, as in [`EchoBlock`].
 struct Slopes {
     by_x: Lanes<f64, W>,
     by_half_square: Lanes<f64, W>,
@@ -111,7 +111,7 @@ impl Slopes {
         let ((there_x, there, out), (back_x, back, home)) = (leg(0), leg(1));
         let half = of(0.5);
         // The derivative of half the square of y by y is y; beside the line's end, where y is 0, the antennas count as on the line.
-        let by_half_square = if pairs.iter().all(Pair::is_on_line) || r.y_metres.abs() < NEAREST_METRES {
+        let by_half_square = if pairs.iter().all(Pair::is_on_line) || r.y_metres.abs() < MIN_DISTANCE_METRES {
             (there + back) * half
         } else {
             (out + home) * of(0.5 / r.y_metres)

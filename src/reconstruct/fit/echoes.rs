@@ -1,6 +1,6 @@
 //! Echoes of many reflectors at every channel of both ends: sums of them, and their products with a residual.
 
-use super::sensor::{Sensor, W, kept_apart};
+use super::sensor::{Sensor, W, with_min_distance};
 use crate::scene::Reflector;
 use crate::signal::path::PairBlocks;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
@@ -64,16 +64,16 @@ impl Samples {
 }
 
 /// Fewest reflectors that are divided among processors, block by block of channels; there are few blocks.
-const LEAST_SHARED: usize = 12;
+const MIN_SPLIT_REFLECTORS: usize = 12;
 
 /// Number of parts into which they are divided.
-const SHARES: usize = 2;
+const SPLIT_PARTS: usize = 2;
 
 /// The requested products of echoes with the residual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asked {
+pub enum ProductKind {
     /// None.
-    Nothing,
+    None,
     /// Products of the echoes themselves.
     Values,
     /// Products of the echoes and of echoes times time.
@@ -87,23 +87,23 @@ pub fn remainder(
     squared: &[f64],
     samples: &Samples,
     reflectors: &[(Reflector, [Complex64; 2])],
-    asked: Asked,
+    kind: ProductKind,
 ) -> Remainder {
     let simd = Simd::chosen();
-    let shares = if reflectors.len() < LEAST_SHARED { 1 } else { SHARES };
-    let share = reflectors.len().div_ceil(shares).max(1);
-    let sum = |block: usize, share_at: usize| {
-        let start = if share_at == 0 { Start::Samples(&samples.blocks[block]) } else { Start::Silence };
-        let reflectors = reflectors.chunks(share).nth(share_at).unwrap_or_default();
-        simd.run(Sum { sensor, first_channel: block * W, reflectors, start, keep: asked != Asked::Nothing })
+    let parts = if reflectors.len() < MIN_SPLIT_REFLECTORS { 1 } else { SPLIT_PARTS };
+    let part_size = reflectors.len().div_ceil(parts).max(1);
+    let sum = |block: usize, part_at: usize| {
+        let start = if part_at == 0 { Start::Samples(&samples.blocks[block]) } else { Start::Silence };
+        let reflectors = reflectors.chunks(part_size).nth(part_at).unwrap_or_default();
+        simd.run(Sum { sensor, first_channel: block * W, reflectors, start, keeps_echoes: kind != ProductKind::None })
     };
-    let subtract = |sums: &mut [Summed]| simd.run(Subtract { squared, sums, weighted: asked != Asked::Nothing });
-    let multiply = |summed: &Summed, left: &Left| match asked {
-        Asked::Nothing => Vec::new(),
-        _ => simd.run(Multiply { samples: sensor.samples, echoes: &summed.echoes, weighted: &left.weighted, asked }),
+    let subtract = |sums: &mut [BlockSum]| simd.run(Subtract { squared, sums, weighted: kind != ProductKind::None });
+    let multiply = |summed: &BlockSum, left: &BlockResidual| match kind {
+        ProductKind::None => Vec::new(),
+        _ => simd.run(Multiply { samples: sensor.samples, echoes: &summed.echoes, weighted: &left.weighted, kind }),
     };
     let blocks = 0..samples.blocks.len();
-    let (left, products): (Vec<Left>, Vec<Vec<BlockProducts>>) = if shares == 1 {
+    let (left, products): (Vec<BlockResidual>, Vec<Vec<BlockProducts>>) = if parts == 1 {
         let of_block = |block: usize| {
             let mut summed = sum(block, 0);
             let left = subtract(std::slice::from_mut(&mut summed));
@@ -112,18 +112,18 @@ pub fn remainder(
         };
         blocks.into_par_iter().map(of_block).unzip()
     } else {
-        let tasks = blocks.len() * shares;
-        let mut sums: Vec<Summed> = (0..tasks).into_par_iter().map(|task| sum(task / shares, task % shares)).collect();
-        let left: Vec<Left> = sums.chunks_mut(shares).map(subtract).collect();
-        let product = |task: usize| multiply(&sums[task], &left[task / shares]);
+        let tasks = blocks.len() * parts;
+        let mut sums: Vec<BlockSum> = (0..tasks).into_par_iter().map(|task| sum(task / parts, task % parts)).collect();
+        let left: Vec<BlockResidual> = sums.chunks_mut(parts).map(subtract).collect();
+        let product = |task: usize| multiply(&sums[task], &left[task / parts]);
         let products: Vec<Vec<BlockProducts>> = (0..tasks).into_par_iter().map(product).collect();
-        (left, products.chunks(shares).map(<[_]>::concat).collect())
+        (left, products.chunks(parts).map(<[_]>::concat).collect())
     };
     let mut energy = [0.0; 2];
     for channel in 0..sensor.element_x.len() {
         energy[channel / sensor.end_elements] += left[channel / W].energy.0[channel % W];
     }
-    let products = if asked == Asked::Nothing { Vec::new() } else { channel_by_channel(sensor, &products) };
+    let products = if kind == ProductKind::None { Vec::new() } else { channel_by_channel(sensor, &products) };
     Remainder { residual: Samples { blocks: left.into_iter().map(|l| l.residual).collect() }, energy, products }
 }
 
@@ -132,7 +132,7 @@ pub fn echo_of_all(sensor: &Sensor, reflectors: &[Reflector], block: usize) -> V
     let negative = [Complex64::from(-1.0); 2];
     let reflectors: Vec<(Reflector, [Complex64; 2])> = reflectors.iter().map(|r| (*r, negative)).collect();
     let first_channel = block * W;
-    let sum = Sum { sensor, first_channel, reflectors: &reflectors, start: Start::Silence, keep: false };
+    let sum = Sum { sensor, first_channel, reflectors: &reflectors, start: Start::Silence, keeps_echoes: false };
     Simd::chosen().run(sum).sum
 }
 
@@ -151,7 +151,7 @@ fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Pro
 }
 
 /// Number of echoes subtracted together: their phasors fit the first-level cache.
-const TOGETHER: usize = 4;
+const BATCH_REFLECTORS: usize = 4;
 
 /// The start of a sum of echoes.
 enum Start<'a> {
@@ -166,7 +166,7 @@ struct Sum<'a> {
     reflectors: &'a [(Reflector, [Complex64; 2])],
     start: Start<'a>,
     /// Whether the echoes of gain 1 are kept, too.
-    keep: bool,
+    keeps_echoes: bool,
 }
 
 /// Phasors of some reflectors, see [`Factors`](crate::signal::split::Factors).
@@ -184,7 +184,7 @@ impl Phasors {
     }
 }
 
-struct Summed {
+struct BlockSum {
     /// The echoes of the reflectors, of gain 1; not all of them unless they are kept.
     echoes: Phasors,
     /// The sum of all echoes times minus their gains, added to the start.
@@ -192,31 +192,32 @@ struct Summed {
 }
 
 impl Kernel for Sum<'_> {
-    type Output = Summed;
+    type Output = BlockSum;
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> Summed {
-        let Sum { sensor, reflectors, keep, .. } = self;
+    fn run<const FMA: bool>(self) -> BlockSum {
+        let Sum { sensor, reflectors, keeps_echoes, .. } = self;
         let last = sensor.element_x.len() - 1;
         let channel = |lane: usize| (self.first_channel + lane).min(last);
         let pairs = PairBlocks::new(|lane| sensor.pairs[channel(lane)]);
         let many = rows_of(sensor.samples);
-        let mut echoes = Phasors::room(if keep { reflectors.len() } else { reflectors.len().min(TOGETHER) }, many);
-        let mut scaled = vec![ComplexLanes::zero(); TOGETHER * many];
+        let mut echoes =
+            Phasors::room(if keeps_echoes { reflectors.len() } else { reflectors.len().min(BATCH_REFLECTORS) }, many);
+        let mut scaled = vec![ComplexLanes::zero(); BATCH_REFLECTORS * many];
         let mut sum = match self.start {
             Start::Silence => vec![ComplexLanes::zero(); many * STRIDE],
             Start::Samples(samples) => samples.to_vec(),
         };
         // Gains mostly start at 0.
         let is_silent = reflectors.iter().all(|(_, gains)| *gains == [Complex64::default(); 2]);
-        for (at, reflectors) in reflectors.chunks(TOGETHER).enumerate() {
-            let first = if keep { at * TOGETHER } else { 0 };
+        for (at, reflectors) in reflectors.chunks(BATCH_REFLECTORS).enumerate() {
+            let first = if keeps_echoes { at * BATCH_REFLECTORS } else { 0 };
             let rows = &mut echoes.rows[first * many..(first + reflectors.len()) * many];
             let columns = &mut echoes.columns[first..first + reflectors.len()];
             let each = rows.chunks_exact_mut(many).zip(columns.iter_mut()).zip(scaled.chunks_exact_mut(many));
             for (((rows, columns), scaled), (reflector, gains)) in each.zip(reflectors) {
-                fill_factors::<f64, W, FMA>(&sensor.model, pairs, &kept_apart(sensor, reflector), rows, columns);
-                let gain = |lane: usize| match sensor.hears[channel(lane)] {
+                fill_factors::<f64, W, FMA>(&sensor.model, pairs, &with_min_distance(sensor, reflector), rows, columns);
+                let gain = |lane: usize| match sensor.has_samples[channel(lane)] {
                     true => -gains[channel(lane) / sensor.end_elements],
                     false => Complex64::default(),
                 };
@@ -229,14 +230,14 @@ impl Kernel for Sum<'_> {
                 }
             }
             if !is_silent {
-                let products: [_; TOGETHER] = std::array::from_fn(|i| Product {
+                let products: [_; BATCH_REFLECTORS] = std::array::from_fn(|i| Product {
                     rows: &scaled[i * many..(i + 1) * many],
                     columns: &columns[i.min(columns.len() - 1)],
                 });
                 add_products::<f64, W, FMA>(&products[..columns.len()], &mut sum);
             }
         }
-        Summed { echoes, sum }
+        BlockSum { echoes, sum }
     }
 }
 
@@ -244,12 +245,12 @@ impl Kernel for Sum<'_> {
 struct Subtract<'a> {
     squared: &'a [f64],
     /// Samples less some echoes, and sums of other echoes times minus their gains. The first becomes the residual.
-    sums: &'a mut [Summed],
+    sums: &'a mut [BlockSum],
     /// Whether the weighted residual is requested.
     weighted: bool,
 }
 
-struct Left {
+struct BlockResidual {
     residual: Vec<ComplexLanes<f64, W>>,
     /// The residual times the squared window; empty where it isn't requested.
     weighted: Vec<ComplexLanes<f64, W>>,
@@ -257,12 +258,12 @@ struct Left {
 }
 
 impl Kernel for Subtract<'_> {
-    type Output = Left;
+    type Output = BlockResidual;
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> Left {
+    fn run<const FMA: bool>(self) -> BlockResidual {
         let Some((first, others)) = self.sums.split_first_mut() else {
-            return Left { residual: Vec::new(), weighted: Vec::new(), energy: Lanes::splat(0.0) };
+            return BlockResidual { residual: Vec::new(), weighted: Vec::new(), energy: Lanes::splat(0.0) };
         };
         let mut residual = std::mem::take(&mut first.sum);
         for part in others {
@@ -282,7 +283,7 @@ impl Kernel for Subtract<'_> {
                 energy = (v.re * v.re + v.im * v.im).mul_add::<FMA>(Lanes::splat(*w), energy);
             }
         }
-        Left { residual, weighted, energy }
+        BlockResidual { residual, weighted, energy }
     }
 }
 
@@ -294,7 +295,7 @@ struct Multiply<'a> {
     samples: usize,
     echoes: &'a Phasors,
     weighted: &'a [ComplexLanes<f64, W>],
-    asked: Asked,
+    kind: ProductKind,
 }
 
 impl Kernel for Multiply<'_> {
@@ -310,7 +311,7 @@ impl Kernel for Multiply<'_> {
             let mut sums = [ComplexLanes::zero(); 2];
             for (a, (row, part)) in rows.iter().zip(self.weighted.chunks_exact(STRIDE)).enumerate() {
                 let row = row.conj();
-                if self.asked == Asked::Values {
+                if self.kind == ProductKind::Values {
                     let mut plain = ComplexLanes::zero();
                     for (column, v) in columns.iter().zip(part) {
                         plain = plain.plus_product::<FMA>(column.conj(), *v);
@@ -351,18 +352,19 @@ mod tests {
         let samples = Samples::new(&sensor, &noise);
         let at = |i: usize| Reflector { x_metres: i as f64 - 9.0, y_metres: 4.0 + i as f64, reflectivity: 1.0 };
         let gain = |i: usize| Complex64::from_polar(30.0, i as f64);
-        let reflectors: Vec<_> = (0..2 * LEAST_SHARED + 1).map(|i| (at(i), [gain(i), -gain(2 * i)])).collect();
-        let together = remainder(&sensor, &squared, &samples, &reflectors, Asked::Slopes);
+        let reflectors: Vec<_> = (0..2 * MIN_SPLIT_REFLECTORS + 1).map(|i| (at(i), [gain(i), -gain(2 * i)])).collect();
+        let together = remainder(&sensor, &squared, &samples, &reflectors, ProductKind::Slopes);
         let mut left = samples;
-        for few in reflectors.chunks(LEAST_SHARED - 1) {
-            left = remainder(&sensor, &squared, &left, few, Asked::Nothing).residual;
+        for few in reflectors.chunks(MIN_SPLIT_REFLECTORS - 1) {
+            left = remainder(&sensor, &squared, &left, few, ProductKind::None).residual;
         }
         for (a, b) in together.residual.flat(&sensor).iter().zip(left.flat(&sensor)) {
             assert!((a - b).norm() < 1e-11, "{a} {b}");
         }
         // In the order of the reflectors, whichever thread computed them.
         for ((reflector, _), found) in reflectors.iter().zip(&together.products) {
-            let alone = remainder(&sensor, &squared, &left, &[(*reflector, [Complex64::default(); 2])], Asked::Slopes);
+            let alone =
+                remainder(&sensor, &squared, &left, &[(*reflector, [Complex64::default(); 2])], ProductKind::Slopes);
             for (a, b) in found.zeroth.iter().zip(&alone.products[0].zeroth) {
                 assert!((a - b).norm() < 1e-11, "{a} {b}");
             }

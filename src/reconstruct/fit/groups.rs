@@ -4,9 +4,9 @@ use super::atom::Atom;
 use crate::radar::{End, Radar};
 
 /// Range bins that an atom fills at each end: (first, last), not wrapped.
-pub type Rows = [(f64, f64); 2];
+pub type BinSpans = [(f64, f64); 2];
 
-pub fn rows_of(radar: &Radar, atom: &Atom) -> Rows {
+pub fn bin_spans(radar: &Radar, atom: &Atom) -> BinSpans {
     End::BOTH.map(|end| {
         let centre = radar.end_centre_metres(end);
         let bin = |i: f64| {
@@ -24,7 +24,7 @@ pub fn rows_of(radar: &Radar, atom: &Atom) -> Rows {
 }
 
 /// Range bins between two atoms at the end where they are nearer, wraps of the range taken off; 0 where they overlap.
-pub fn distance_bins(bins: usize, a: &Rows, b: &Rows) -> f64 {
+pub fn distance_bins(bins: usize, a: &BinSpans, b: &BinSpans) -> f64 {
     let bins = bins as f64;
     (0..2)
         .map(|end| {
@@ -40,8 +40,8 @@ pub fn distance_bins(bins: usize, a: &Rows, b: &Rows) -> f64 {
 
 /// Groups of atoms, each within `link_bins` of another of its group; only those with a marked atom. A group larger than `most`
 /// is cut to the atoms nearest to its marked ones.
-pub fn groups(bins: usize, rows: &[Rows], marked: &[bool], link_bins: f64, most: usize) -> Vec<Vec<usize>> {
-    let n = rows.len();
+pub fn groups(bins: usize, spans: &[BinSpans], marked: &[bool], link_bins: f64, most: usize) -> Vec<Vec<usize>> {
+    let n = spans.len();
     let mut seen = vec![false; n];
     let mut found = Vec::new();
     for start in 0..n {
@@ -55,7 +55,7 @@ pub fn groups(bins: usize, rows: &[Rows], marked: &[bool], link_bins: f64, most:
         while at < group.len() && group.len() < most {
             let mut near: Vec<(f64, usize)> = (0..n)
                 .filter(|&j| !group.contains(&j))
-                .map(|j| (distance_bins(bins, &rows[group[at]], &rows[j]), j))
+                .map(|j| (distance_bins(bins, &spans[group[at]], &spans[j]), j))
                 .filter(|(d, _)| *d <= link_bins)
                 .collect();
             near.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -76,11 +76,11 @@ mod tests {
 
     #[test]
     fn neighbours_at_either_end_share_a_group() {
-        let rows: Vec<Rows> =
+        let spans: Vec<BinSpans> =
             [(10.0, 30.0), (14.0, 90.0), (200.0, 34.0), (500.0, 400.0)].map(|(a, b)| [(a, a), (b, b)]).to_vec();
-        let found = groups(512, &rows, &[true, false, false, false], 5.0, 10);
+        let found = groups(512, &spans, &[true, false, false, false], 5.0, 10);
         assert_eq!(found, [vec![0, 1, 2]]);
-        assert_eq!(groups(512, &rows, &[true, false, false, true], 30.0, 10).len(), 1, "ranges wrap");
-        assert_eq!(groups(512, &rows, &[true, false, false, false], 5.0, 2)[0].len(), 2);
+        assert_eq!(groups(512, &spans, &[true, false, false, true], 30.0, 10).len(), 1, "ranges wrap");
+        assert_eq!(groups(512, &spans, &[true, false, false, false], 5.0, 2)[0].len(), 2);
     }
 }

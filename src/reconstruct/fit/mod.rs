@@ -14,7 +14,7 @@
 //! | `refine` | Levenberg-Marquardt on positions, gains projected out |
 //! | `alone` | one atom by itself |
 //! | `groups` | atoms that are neighbours in range |
-//! | `narrow` | a fit within the range bins around an atom |
+//! | `range_gate` | a fit within the range bins around an atom |
 //! | `profile` | unexplained energy over range |
 //! | `work` | a bound on work, counted and not timed |
 
@@ -25,8 +25,8 @@ mod echoes;
 mod gram;
 mod groups;
 mod moments;
-mod narrow;
 mod profile;
+mod range_gate;
 mod refine;
 mod sensor;
 mod solver;
@@ -34,8 +34,8 @@ mod work;
 
 pub use atom::Atom;
 pub use echoes::Samples;
-pub use groups::{Rows, distance_bins, groups, rows_of};
-pub use narrow::{Narrow, Spectra};
+pub use groups::{BinSpans, bin_spans, distance_bins, groups};
 pub use profile::{Profile, union_of};
-pub use refine::{Fit, Gains, Limits, Tie, Workbench};
+pub use range_gate::{RangeGate, Spectra};
+pub use refine::{Fit, Fitter, Gains, Limits, Tie};
 pub use solver::damped_step;

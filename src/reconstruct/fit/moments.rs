@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Nodes of the table for each range bin.
 const NODES_PER_BIN: usize = 8;
 
-/// Terms of the Taylor series around each node, and how far from it, in range bins, they reach: the last ones are below 1e-14 of the first there.
-const TERMS: usize = 18;
+/// FitOptions of the Taylor series around each node, and how far from it, in range bins, they reach: the last ones are below 1e-14 of the first there.
+const TAYLOR_TERMS: usize = 18;
 const MAX_SERIES_ARGUMENT: f64 = 0.3;
 
 /// Bins beyond which echoes under a Hann window count as orthogonal: the square of the window falls by 180 dB there.
@@ -25,7 +25,7 @@ const HANN_REACH_BINS: f64 = 12.0;
 #[derive(Debug, Clone)]
 pub struct Moments {
     /// Taylor coefficients of the moment of order 0 around every node.
-    table: Arc<Vec<[f64; TERMS]>>,
+    table: Arc<Vec<[f64; TAYLOR_TERMS]>>,
     /// Number of range bins after which the range repeats.
     bins: f64,
     /// Sign of the phase at the chirp's middle after a wrap of the range by all bins.
@@ -53,13 +53,13 @@ impl Moments {
         let nodes = samples * NODES_PER_BIN;
         let middle = (samples as f64 - 1.0) / 2.0;
         let fft = FftPlanner::new().plan_fft_inverse(nodes);
-        let mut table = vec![[0.0; TERMS]; nodes];
+        let mut table = vec![[0.0; TAYLOR_TERMS]; nodes];
         // Referred to the middle of the chirp; nodes in the upper half stand for negative differences.
-        let d = |node: usize| signed(node, nodes) / NODES_PER_BIN as f64;
+        let d = |node: usize| signed_node(node, nodes) / NODES_PER_BIN as f64;
         let turns: Vec<Complex64> =
             (0..nodes).map(|node| Complex64::cis(-TAU * (d(node) * middle / samples as f64).fract())).collect();
         let mut factorial = 1.0;
-        for term in 0..TERMS {
+        for term in 0..TAYLOR_TERMS {
             factorial *= term.max(1) as f64;
             let mut line = vec![Complex64::default(); nodes];
             for (t, w) in window.iter().enumerate() {
@@ -109,7 +109,7 @@ impl Moments {
 
     /// The node next to a difference, counted from the one at 0, its coefficients, and the sign of its wraps.
     #[inline(always)]
-    fn node(&self, bins: f64) -> (f64, &[f64; TERMS], f64) {
+    fn node(&self, bins: f64) -> (f64, &[f64; TAYLOR_TERMS], f64) {
         let wraps = (bins / self.bins).round();
         let node = (bins * NODES_PER_BIN as f64).round();
         let index = (node - wraps * self.bins * NODES_PER_BIN as f64) as i64;
@@ -126,8 +126,8 @@ fn taylor<const ALL: bool, const FMA: bool>(
     coefficients: impl Fn(usize) -> Lanes<f64, W>,
 ) -> MomentsAt {
     let zero = Lanes::splat(0.0);
-    let (mut value, mut slope, mut bend) = (coefficients(TERMS - 1), zero, zero);
-    for term in (0..TERMS - 1).rev() {
+    let (mut value, mut slope, mut bend) = (coefficients(TAYLOR_TERMS - 1), zero, zero);
+    for term in (0..TAYLOR_TERMS - 1).rev() {
         if ALL {
             bend = bend.mul_add::<FMA>(h, slope);
             slope = slope.mul_add::<FMA>(h, value);
@@ -138,7 +138,7 @@ fn taylor<const ALL: bool, const FMA: bool>(
     MomentsAt { zeroth: value * sign, first: slope * per(-1.0 / TAU), second: bend * per(-2.0 / (TAU * TAU)) }
 }
 
-fn signed(node: usize, nodes: usize) -> f64 {
+fn signed_node(node: usize, nodes: usize) -> f64 {
     if node > nodes / 2 { node as f64 - nodes as f64 } else { node as f64 }
 }
 

@@ -1,6 +1,6 @@
 //! Energy of a residual over range at each end, which shows the unexplained parts of the scene.
 
-use super::groups::Rows;
+use super::groups::BinSpans;
 use crate::radar::{End, Radar};
 use crate::reconstruct::hearing::range_energy;
 use crate::signal::TwoEnds;
@@ -22,31 +22,35 @@ impl Profile {
         Profile { energy: End::BOTH.map(|end| range_energy(radar, ends.end(end).view())) }
     }
 
-    /// The largest energy of a bin at or beside these rows.
-    pub fn strongest(&self, rows: &Rows) -> f64 {
-        rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).fold(0.0, f64::max)).fold(0.0, f64::max)
+    /// The largest energy of a bin at or beside these spans.
+    pub fn peak_energy(&self, spans: &BinSpans) -> f64 {
+        spans
+            .iter()
+            .zip(&self.energy)
+            .map(|(spans, energy)| near(energy, spans).fold(0.0, f64::max))
+            .fold(0.0, f64::max)
     }
 
-    /// Energy at and beside these rows.
-    pub fn at(&self, rows: &Rows) -> f64 {
-        rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).sum::<f64>()).sum()
+    /// Energy at and beside these spans.
+    pub fn energy(&self, spans: &BinSpans) -> f64 {
+        spans.iter().zip(&self.energy).map(|(spans, energy)| near(energy, spans).sum::<f64>()).sum()
     }
 
-    /// Energy at and beside these rows less noise of this energy a bin; at least 0.
-    pub fn over_noise(&self, rows: &Rows, noise_a_bin: f64) -> f64 {
-        let bins: usize = rows.iter().zip(&self.energy).map(|(rows, energy)| near(energy, rows).count()).sum();
-        (self.at(rows) - noise_a_bin * bins as f64).max(0.0)
+    /// Energy at and beside these spans less noise of this energy a bin; at least 0.
+    pub fn energy_over_noise(&self, spans: &BinSpans, noise_a_bin: f64) -> f64 {
+        let bins: usize = spans.iter().zip(&self.energy).map(|(spans, energy)| near(energy, spans).count()).sum();
+        (self.energy(spans) - noise_a_bin * bins as f64).max(0.0)
     }
 }
 
-/// Energy of each bin at and beside these rows of one end, none twice.
+/// Energy of each bin at and beside these spans of one end, none twice.
 fn near(energy: &[f64], (low, high): &(f64, f64)) -> impl Iterator<Item = f64> {
     let (low, high) = ((low - MARGIN_BINS).round() as i64, (high + MARGIN_BINS).round() as i64);
     let len = energy.len() as i64;
     (low..=high.min(low + len - 1)).map(move |bin| energy[bin.rem_euclid(len) as usize])
 }
 
-/// Rows that hold all of several atoms' rows.
-pub fn union_of(rows: impl Iterator<Item = Rows>) -> Option<Rows> {
-    rows.reduce(|a, b| [0, 1].map(|end| (a[end].0.min(b[end].0), a[end].1.max(b[end].1))))
+/// BinSpans that hold all of several atoms' spans.
+pub fn union_of(spans: impl Iterator<Item = BinSpans>) -> Option<BinSpans> {
+    spans.reduce(|a, b| [0, 1].map(|end| (a[end].0.min(b[end].0), a[end].1.max(b[end].1))))
 }

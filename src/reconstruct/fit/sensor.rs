@@ -8,7 +8,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Nearest a reflector may come to an element in a fit, metres: keeps a wandering step finite.
-pub const NEAREST_METRES: f64 = 1e-3;
+pub const MIN_DISTANCE_METRES: f64 = 1e-3;
 
 /// Channels evaluated together, one lane each.
 pub const W: usize = LANES_F64;
@@ -26,7 +26,7 @@ pub struct Sensor {
     pub samples: usize,
     pub end_elements: usize,
     /// Whether each channel has samples: a silent one has no echoes.
-    pub hears: Vec<bool>,
+    pub has_samples: Vec<bool>,
     carrier_radians_per_metre: f64,
     beat_radians_per_metre: f64,
 }
@@ -41,22 +41,22 @@ impl Sensor {
             is_monostatic: radar.is_monostatic(),
             samples: radar.samples,
             end_elements: radar.end_elements,
-            hears: vec![true; 2 * radar.end_elements],
+            has_samples: vec![true; 2 * radar.end_elements],
             carrier_radians_per_metre: TAU * radar.carrier.turns_per_wavelength() / radar.wavelength_metres(),
             beat_radians_per_metre: TAU / radar.max_range_metres(),
         }
     }
 
     /// The sensor with the channels of `flat` that aren't silent; `flat` are the samples channel by channel.
-    pub fn hearing(mut self, flat: &[Complex64]) -> Self {
-        for (hears, channel) in self.hears.iter_mut().zip(flat.chunks_exact(self.samples)) {
-            *hears = channel.iter().any(|v| v.norm_sqr() > 0.0);
+    pub fn with_channels_of(mut self, flat: &[Complex64]) -> Self {
+        for (has_samples, channel) in self.has_samples.iter_mut().zip(flat.chunks_exact(self.samples)) {
+            *has_samples = channel.iter().any(|v| v.norm_sqr() > 0.0);
         }
         self
     }
 
     pub fn sampled_as(&self, radar: &Radar) -> Self {
-        Sensor { hears: self.hears.clone(), ..Sensor::new(radar) }
+        Sensor { has_samples: self.has_samples.clone(), ..Sensor::new(radar) }
     }
 
     /// Samples of both ends together.
@@ -83,9 +83,9 @@ impl Sensor {
 }
 
 /// `r`, moved so that its distance from every element is large enough to divide by.
-pub fn kept_apart(sensor: &Sensor, r: &Reflector) -> Reflector {
-    let is_near = |[x, y]: &[f64; 2]| (x - r.x_metres).powi(2) + (y - r.y_metres).powi(2) < NEAREST_METRES.powi(2);
+pub fn with_min_distance(sensor: &Sensor, r: &Reflector) -> Reflector {
+    let is_near = |[x, y]: &[f64; 2]| (x - r.x_metres).powi(2) + (y - r.y_metres).powi(2) < MIN_DISTANCE_METRES.powi(2);
     let nearest = sensor.pairs.iter().flat_map(Pair::places_metres).find(is_near);
-    let y_metres = nearest.map_or(r.y_metres, |[_, y]| y + NEAREST_METRES);
+    let y_metres = nearest.map_or(r.y_metres, |[_, y]| y + MIN_DISTANCE_METRES);
     Reflector { y_metres, ..*r }
 }

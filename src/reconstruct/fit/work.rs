@@ -2,17 +2,17 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Work done and granted. The unit is about the time of one reflector's echo in all samples of both ends: ten microseconds.
+/// WorkBudget done and new. The unit is about the time of one reflector's echo in all samples of both ends: ten microseconds.
 #[derive(Debug)]
-pub struct Work {
+pub struct WorkBudget {
     done: AtomicUsize,
-    most: usize,
+    limit: usize,
 }
 
-impl Work {
-    /// A budget of `most` units.
-    pub fn granted(most: usize) -> Self {
-        Work { done: AtomicUsize::new(0), most }
+impl WorkBudget {
+    /// A budget of `limit` units.
+    pub fn new(limit: usize) -> Self {
+        WorkBudget { done: AtomicUsize::new(0), limit }
     }
 
     /// Counts work; any thread may call it.
@@ -22,13 +22,13 @@ impl Work {
 
     /// Grants as much as makes the remaining work at least `units`.
     pub fn grant(&self, units: usize) {
-        let done = self.most.saturating_sub(units);
+        let done = self.limit.saturating_sub(units);
         self.done.fetch_min(done, Ordering::Relaxed);
     }
 
     /// Gives up the remaining work.
-    pub fn give_up(&self) {
-        self.done.fetch_max(self.most, Ordering::Relaxed);
+    pub fn exhaust(&self) {
+        self.done.fetch_max(self.limit, Ordering::Relaxed);
     }
 
     /// The work done; call it where nothing runs in parallel.
@@ -36,9 +36,9 @@ impl Work {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// Whether the granted work is done. Call it where nothing runs in parallel: only there is the answer the same every time.
+    /// Whether the new work is done. Call it where nothing runs in parallel: only there is the answer the same every time.
     pub fn is_spent(&self) -> bool {
-        self.done.load(Ordering::Relaxed) >= self.most
+        self.done.load(Ordering::Relaxed) >= self.limit
     }
 }
 
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn what_is_granted_is_spent() {
-        let work = Work::granted(10);
+        let work = WorkBudget::new(10);
         work.spend(9);
         assert!(!work.is_spent());
         work.spend(1);
@@ -60,7 +60,7 @@ mod tests {
         work.spend(1);
         assert!(work.is_spent());
         work.grant(10);
-        work.give_up();
+        work.exhaust();
         assert!(work.is_spent());
     }
 }

@@ -10,10 +10,10 @@ use super::state::{Search, tried};
 use super::trace::decades;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Profile, Rows, Spectra, rows_of};
+use crate::reconstruct::fit::{Atom, BinSpans, Fit, Profile, Spectra, bin_spans};
 use rayon::prelude::*;
 
-/// Rows that are held against the samples themselves at each look, and points, those first on which the ends agree best, that a wall may begin at
+/// BinSpans that are held against the samples themselves at each look, and points, those first on which the ends agree best, that a wall may begin at
 /// alone: there is one row a point.
 const MOST_TRIED: usize = 24;
 
@@ -54,8 +54,8 @@ struct Left<'a> {
 
 impl Left<'_> {
     /// Energy in the range bins of a row, less that of the noise.
-    fn energy_at(&self, rows: &Rows) -> f64 {
-        self.profile.over_noise(rows, self.noise_a_bin).max(f64::MIN_POSITIVE)
+    fn energy_at(&self, rows: &BinSpans) -> f64 {
+        self.profile.energy_over_noise(rows, self.noise_a_bin).max(f64::MIN_POSITIVE)
     }
 }
 
@@ -71,14 +71,14 @@ impl Search<'_> {
     /// A wall that begins at one of `points` (x, y; metres), followed to its ends in what `fit` leaves, that is borne out by how much it explains.
     /// Points on the walls of `fit` are taken from `points`.
     pub fn next_wall(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {
-        let flat = fit.residual.flat(&self.bench.sensor);
+        let flat = fit.residual.flat(&self.fitter.sensor);
         let profile = Profile::new(self.radar, &flat);
-        let noise_a_bin = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
-        let left = Left { fit, profile, noise_a_bin, spectra: Spectra::new(self.radar, self.bench, &fit.residual) };
+        let noise_a_bin = beam_noise_power(self.radar, self.fitter.noise_model.noise_variance(self.radar, &flat));
+        let left = Left { fit, profile, noise_a_bin, spectra: Spectra::new(self.radar, self.fitter, &fit.residual) };
         points.retain(|&[x_metres, y_metres]| {
             !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
         });
-        self.bench.work.spend(LOOK_ECHOES / 10 * points.len());
+        self.fitter.work.spend(LOOK_ECHOES / 10 * points.len());
         let beams = PhasedBeams::new(self.radar, &flat);
         // Looks from one point alone take longest.
         self.borne_out(&left, &rows_over_pairs(&beams, points, self.task)).or_else(|| {
@@ -91,9 +91,9 @@ impl Search<'_> {
 
     /// The row with the part that it explains, where it is, of the energy in its range bins.
     fn begun(&self, left: &Left, atom: Atom) -> Begun {
-        let rows = rows_of(self.radar, &atom);
-        let near = left.spectra.around(&rows, 0.0);
-        let energy = near.energy - near.bench.solve_alone(&near.samples, atom).cost();
+        let rows = bin_spans(self.radar, &atom);
+        let near = left.spectra.gate(&rows, 0.0);
+        let energy = near.energy - near.fitter.solve_alone(&near.samples, atom).cost();
         Begun { atom, part: energy / left.energy_at(&rows) }
     }
 
@@ -109,7 +109,7 @@ impl Search<'_> {
         let fit = left.fit;
         let best = self.best_begun(left, rows).filter(|row| row.part > LEAST_BEGUN)?;
         let wall = self.followed_to_its_ends(&fit.residual, best.atom);
-        let explained = (fit.cost() - wall.cost()) / left.energy_at(&rows_of(self.radar, &wall.atoms[0]));
+        let explained = (fit.cost() - wall.cost()) / left.energy_at(&bin_spans(self.radar, &wall.atoms[0]));
         tracing::debug!(?best, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
         let part = best.part.max(explained);
         if is_borne_out(self.radar, &wall.atoms[0], part) {

@@ -12,7 +12,7 @@ use super::state::NEARLY_NOTHING;
 use super::trace::{CALIBRATION, MOST_ATTEMPTS, decades};
 use crate::radar::{Radar, hann};
 use crate::reconstruct::attempt::{Attempt, Verdict};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, Samples, Tie};
 use crate::reconstruct::hearing::range_energy;
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::signal::TwoEnds;
@@ -135,8 +135,8 @@ impl Calibration<'_> {
     fn fitted(&self) -> Result<Option<Fitted>, ReconstructError> {
         let &Calibration { radar, ends, request, plain, .. } = self;
         let window = hann(radar.samples);
-        let bench = Workbench::new(radar, &window, &request.task, usize::MAX).hearing(&ends.flat());
-        let quick = Settings { most_work: self.settings.most_work / WORK_SHARE, ..*self.settings };
+        let fitter = Fitter::new(radar, &window, &request.task, usize::MAX).with_channels_of(&ends.flat());
+        let quick = Settings { max_work: self.settings.max_work / WORK_SHARE, ..*self.settings };
         let noise = if request.noise.is_white() { plain.noise_variance / plain.sample_power } else { 0.0 };
         let mut gains = ElementGains::ones(radar);
         let mut last = None;
@@ -147,7 +147,7 @@ impl Calibration<'_> {
                 return Ok(None);
             }
             for _ in 0..TURNS {
-                let turned = turned(radar, &bench, ends, &atoms, &gains, false);
+                let turned = turned(radar, &fitter, ends, &atoms, &gains, false);
                 gains = turned.gains.clone().normalised(*level >= NOISE_LEVELS[1]);
                 last = Some(turned);
             }
@@ -162,7 +162,7 @@ impl Calibration<'_> {
         for _ in 0..MAX_LAST_TURNS {
             request.task.check()?;
             let before = last.left;
-            last = turned(radar, &bench, ends, &last.fit.atoms, &last.gains.normalised(false), true);
+            last = turned(radar, &fitter, ends, &last.fit.atoms, &last.gains.normalised(false), true);
             if last.left > WORTH_ANOTHER * before {
                 break;
             }
@@ -180,26 +180,19 @@ fn strongest(found: &Found) -> Vec<Atom> {
 }
 
 /// The gains of elements that fit `atoms` best. The atoms' own gains, and with `moves` their places, are fitted to samples without `gains`.
-fn turned(
-    radar: &Radar,
-    bench: &Workbench,
-    ends: &TwoEnds,
-    atoms: &[Atom],
-    gains: &ElementGains,
-    moves: bool,
-) -> Fitted {
+fn turned(radar: &Radar, fitter: &Fitter, ends: &TwoEnds, atoms: &[Atom], gains: &ElementGains, moves: bool) -> Fitted {
     let corrected = gains.taken_from(ends).flat();
-    let samples = Samples::new(&bench.sensor, &corrected);
+    let samples = Samples::new(&fitter.sensor, &corrected);
     let fit = match moves {
-        false => bench.solve(&samples, atoms.to_vec(), Tie::Both, OBJECT_RIDGE),
-        true => bench.refine(&samples, atoms.to_vec(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH),
+        false => fitter.solve(&samples, atoms.to_vec(), Tie::Both, OBJECT_RIDGE),
+        true => fitter.refine(&samples, atoms.to_vec(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH),
     };
-    let residual = fit.residual.flat(&bench.sensor);
+    let residual = fit.residual.flat(&fitter.sensor);
     let drawn: Vec<Complex64> = corrected.iter().zip(&residual).map(|(c, r)| c - r).collect();
     let price = fit.cost() / gains.0.len() as f64 / independent_bins(radar, &residual) / EXPECTED_SQUARE;
     let raw = ends.flat();
     let of_element = |(raw, drawn): (&[Complex64], &[Complex64])| {
-        let weighted = raw.iter().zip(drawn).zip(&bench.squared);
+        let weighted = raw.iter().zip(drawn).zip(&fitter.squared);
         let (product, power) = weighted.fold((Complex64::ZERO, 0.0), |(product, power), ((d, m), w)| {
             (product + m.conj() * d * w, power + m.norm_sqr() * w)
         });
@@ -207,7 +200,7 @@ fn turned(
         if gain.norm_sqr() > 0.0 { gain } else { Complex64::ONE }
     };
     let gains = raw.chunks(radar.samples).zip(drawn.chunks(radar.samples)).map(of_element).collect();
-    let all = bench.energy(&samples);
+    let all = fitter.energy(&samples);
     Fitted { gains: ElementGains(gains), left: fit.cost() / all.max(f64::MIN_POSITIVE), fit }
 }
 

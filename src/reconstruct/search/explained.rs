@@ -13,7 +13,7 @@ use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Rows and beams to each side over which powers are averaged.
+/// BinSpans and beams to each side over which powers are averaged.
 const MEAN_SIDE_CELLS: usize = 2;
 
 /// Power of a residual, over that of the noise measured in it, up to which it counts as noise: averaged so, white noise exceeds it in one cell

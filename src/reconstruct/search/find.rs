@@ -8,7 +8,7 @@ use super::settings::Settings;
 use super::state::{Search, State};
 use super::trace::Trace;
 use crate::radar::{Radar, hann};
-use crate::reconstruct::fit::{Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Fitter, Samples, Tie};
 use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
@@ -65,22 +65,22 @@ fn found_in(
 ) -> Result<Found, ReconstructError> {
     let flat = ends.flat();
     let window = hann(radar.samples);
-    let bench = Workbench::new(radar, &window, &request.task, settings.most_work)
-        .hearing(&flat)
-        .over(Hearing::beneath(radar, ends, request.noise));
-    let samples = Samples::new(&bench.sensor, &flat);
+    let fitter = Fitter::new(radar, &window, &request.task, settings.max_work)
+        .with_channels_of(&flat)
+        .with_noise(Hearing::beneath(radar, ends, request.noise));
+    let samples = Samples::new(&fitter.sensor, &flat);
     let detector = Detector::of(radar);
     let trace = Trace::default();
     let (in_noise, task) = (request.noise.is_white(), &request.task);
-    let (bench, detector, samples) = (&bench, &detector, &samples);
-    let search = Search { radar, bench, detector, samples, in_noise, settings, task, trace: &trace };
+    let (fitter, detector, samples) = (&fitter, &detector, &samples);
+    let search = Search { radar, fitter, detector, samples, in_noise, settings, task, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
     let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
-    let nothing = || State::of(bench.solve(samples, Vec::new(), Tie::PerEnd, 0.0));
+    let nothing = || State::of(fitter.solve(samples, Vec::new(), Tie::PerEnd, 0.0));
     let answer = search.ordered(followed.map_or_else(|| climbed(&search, LADDER, nothing()), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
-    let found = finish(radar, bench, samples, answer, request, scale)?;
+    let found = finish(radar, fitter, samples, answer, request, scale)?;
     let left_by_search = measure.unwrap_or(found.left_by_search);
     Ok(Found { left_by_search, trace: trace.into_attempts(), ..found })
 }

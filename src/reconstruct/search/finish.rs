@@ -5,7 +5,7 @@ use super::propose::end_beams::beam_noise_power;
 use super::state::State;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Attempt;
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, Workbench, rows_of};
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, Profile, Samples, Tie, bin_spans};
 use crate::reconstruct::{ReconstructError, Request};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -25,7 +25,7 @@ const MAX_UNWINDOWED_REFLECTORS: usize = 40;
 /// Work granted to the refinement without a window.
 const UNWINDOWED_WORK: usize = 50_000;
 
-const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
+const TIED: Limits = Limits { max_steps: 20, min_decrease: 1e-6, ridge: 0.0 };
 
 /// Largest reflectivity over the largest that any of the objects has when it is fitted alone, as a ratio: beyond, neighbours cancel each other.
 const MAX_OVER_ALONE: f64 = 1.5;
@@ -89,7 +89,7 @@ impl Found {
 /// [`ReconstructError::Cancelled`].
 pub(super) fn finish(
     radar: &Radar,
-    bench: &Workbench,
+    fitter: &Fitter,
     samples: &Samples,
     answer: State,
     request: &Request,
@@ -97,30 +97,30 @@ pub(super) fn finish(
 ) -> Result<Found, ReconstructError> {
     let State { fit, is_sure: complete, .. } = answer;
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
-    let hearing = bench.hearing;
+    let noise_model = fitter.noise_model;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
-    let flat_bench = (complete && reflectors <= MAX_UNWINDOWED_REFLECTORS)
-        .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, UNWINDOWED_WORK))
-        .map(|flat| flat.hearing(&samples.flat(&bench.sensor)).over(hearing));
-    let bench = flat_bench.as_ref().unwrap_or(bench);
-    let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
-    let best = if complete { tied(bench, samples, apart, request.noise.is_white()) } else { apart };
-    let best = if request.noise.is_white() { merged(radar, bench, samples, best) } else { best };
+    let flat_fitter = (complete && reflectors <= MAX_UNWINDOWED_REFLECTORS)
+        .then(|| Fitter::new(radar, &vec![1.0; radar.samples], &request.task, UNWINDOWED_WORK))
+        .map(|flat| flat.with_channels_of(&samples.flat(&fitter.sensor)).with_noise(noise_model));
+    let fitter = flat_fitter.as_ref().unwrap_or(fitter);
+    let apart = if flat_fitter.is_some() { fitter.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
+    let best = if complete { tied(fitter, samples, apart, request.noise.is_white()) } else { apart };
+    let best = if request.noise.is_white() { merged(radar, fitter, samples, best) } else { best };
     let is_certain = complete && !request.noise.is_white();
-    let best = if is_certain { best } else { bounded(bench, samples, best) };
+    let best = if is_certain { best } else { bounded(fitter, samples, best) };
     request.task.check()?;
-    let residual = best.residual.flat(&bench.sensor);
-    let noise_variance = hearing.noise_variance(radar, &residual);
-    let all = bench.energy(samples);
-    let weight = bench.squared.iter().sum::<f64>() * bench.sensor.element_x.len() as f64;
+    let residual = best.residual.flat(&fitter.sensor);
+    let noise_variance = noise_model.noise_variance(radar, &residual);
+    let all = fitter.energy(samples);
+    let weight = fitter.squared.iter().sum::<f64>() * fitter.sensor.element_x.len() as f64;
     Ok(Found {
         reflectivities: reflectivities(&best.gains),
         left_by_search: best.cost() / all,
         sample_power: all / weight,
         residual_variance: best.cost() / weight,
         noise_variance,
-        needed_decades: needed_decades(radar, bench, &best, noise_variance),
-        left_when_drawn: left_when_drawn(bench, samples, &best),
+        needed_decades: needed_decades(radar, fitter, &best, noise_variance),
+        left_when_drawn: left_when_drawn(fitter, samples, &best),
         atoms: best.atoms,
         gains: best.gains,
         scale,
@@ -130,7 +130,7 @@ pub(super) fn finish(
 }
 
 /// `fit` without the weaker of two points that no end tells apart.
-fn merged(radar: &Radar, bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
+fn merged(radar: &Radar, fitter: &Fitter, samples: &Samples, fit: Fit) -> Fit {
     let places: Vec<Option<[f64; 2]>> = fit
         .atoms
         .iter()
@@ -153,7 +153,7 @@ fn merged(radar: &Radar, bench: &Workbench, samples: &Samples, fit: Fit) -> Fit 
     if kept.len() == n {
         return fit;
     }
-    bench.solve(samples, kept.into_iter().map(|i| fit.atoms[i]).collect(), tie_of(&fit), 0.0)
+    fitter.solve(samples, kept.into_iter().map(|i| fit.atoms[i]).collect(), tie_of(&fit), 0.0)
 }
 
 /// Whether the gains of a fit are tied.
@@ -167,56 +167,57 @@ fn size(gains: &Gains) -> f64 {
 }
 
 /// `fit` with a ridge on its gains that grows until none exceeds [`MAX_OVER_ALONE`].
-fn bounded(bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
-    let alone = fit.atoms.par_iter().map(|atom| size(&bench.solve_alone(samples, *atom).gains[0]));
+fn bounded(fitter: &Fitter, samples: &Samples, mut fit: Fit) -> Fit {
+    let alone = fit.atoms.par_iter().map(|atom| size(&fitter.solve_alone(samples, *atom).gains[0]));
     let most = MAX_OVER_ALONE * alone.reduce(|| 0.0, f64::max);
     let tie = tie_of(&fit);
     for ridge in RIDGES {
         if fit.gains.iter().all(|gains| size(gains) <= most) {
             break;
         }
-        fit = bench.solve(samples, fit.atoms, tie, ridge);
+        fit = fitter.solve(samples, fit.atoms, tie, ridge);
     }
     fit
 }
 
 /// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.
-pub fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
+pub fn tied(fitter: &Fitter, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     if reflectors > MAX_TIED_REFLECTORS {
         return fit;
     }
-    let mut tied = bench.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
+    let mut tied = fitter.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
     if in_noise && tied.atoms.len() <= MAX_COMBED_ATOMS {
-        tied = combed(bench, samples, tied);
+        tied = combed(fitter, samples, tied);
     }
     // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
     if tied.cost() <= TIED_COST_RATIO * fit.cost() { tied } else { fit }
 }
 
 /// For each atom of `fit` the energy that would be left more without it, over what `fit` leaves or noise holds around its range, in decades.
-fn needed_decades(radar: &Radar, bench: &Workbench, fit: &Fit, noise_variance: f64) -> Vec<f64> {
-    let profile = Profile::new(radar, &fit.residual.flat(&bench.sensor));
+fn needed_decades(radar: &Radar, fitter: &Fitter, fit: &Fit, noise_variance: f64) -> Vec<f64> {
+    let profile = Profile::new(radar, &fit.residual.flat(&fitter.sensor));
     // Both energies as they are under the radar's window.
     let noise = 2.0 * beam_noise_power(radar, noise_variance);
     let window = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
-    let worths = bench.worths(fit).into_iter().map(|worth| worth * window / bench.squared.iter().sum::<f64>());
+    let marginal_energies =
+        fitter.marginal_energies(fit).into_iter().map(|worth| worth * window / fitter.squared.iter().sum::<f64>());
     let of_atom = |(worth, atom): (f64, &Atom)| {
-        let left = profile.at(&rows_of(radar, atom)).max(noise).max(f64::MIN_POSITIVE);
+        let left = profile.energy(&bin_spans(radar, atom)).max(noise).max(f64::MIN_POSITIVE);
         (worth / left).max(f64::MIN_POSITIVE).log10()
     };
-    worths.zip(&fit.atoms).map(of_atom).collect()
+    marginal_energies.zip(&fit.atoms).map(of_atom).collect()
 }
 
 /// The residual of the objects with one gain for both ends: it keeps an echo whose strength differs between the ends.
-fn left_when_drawn(bench: &Workbench, samples: &Samples, fit: &Fit) -> Vec<Complex64> {
+fn left_when_drawn(fitter: &Fitter, samples: &Samples, fit: &Fit) -> Vec<Complex64> {
     let tied: Vec<Gains> = fit.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
-    bench.without(samples, &fit.atoms, &tied).residual.flat(&bench.sensor)
+    fitter.subtract(samples, &fit.atoms, &tied).residual.flat(&fitter.sensor)
 }
 
 /// Each point tried on the neighbouring teeth of the comb, the others staying where they are.
-fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
-    let sensor = &bench.sensor;
+fn combed(fitter: &Fitter, samples: &Samples, fit: Fit) -> Fit {
+    let sensor = &fitter.sensor;
     let between_ends = sensor.element_x[sensor.end_elements] - sensor.element_x[0];
     let tooth = sensor.wavelength_metres() / between_ends;
     let mut best = fit;
@@ -224,7 +225,7 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
         let Atom::Point { x_metres: x, y_metres: y } = best.atoms[i] else { continue };
         let range = x.hypot(y);
         let own = best.gains[i];
-        let base = bench.without(&best.residual, &best.atoms[i..=i], &[[-own[0], -own[1]]]).residual;
+        let base = fitter.subtract(&best.residual, &best.atoms[i..=i], &[[-own[0], -own[1]]]).residual;
         let trials: Vec<Fit> = (-MAX_TEETH..=MAX_TEETH)
             .into_par_iter()
             .filter(|k| *k != 0)
@@ -232,7 +233,7 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
                 let cos = x / range + f64::from(k) * tooth;
                 let y_metres = range * (1.0 - cos * cos).max(0.0).sqrt();
                 let atom = Atom::Point { x_metres: range * cos, y_metres };
-                (cos.abs() < 1.0).then(|| bench.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED))
+                (cos.abs() < 1.0).then(|| fitter.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED))
             })
             .collect();
         let trial = trials.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
@@ -241,7 +242,7 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
             (best.residual, best.energy) = (trial.residual, trial.energy);
         }
     }
-    bench.refine(samples, best.atoms, best.gains, Tie::Both, TIED)
+    fitter.refine(samples, best.atoms, best.gains, Tie::Both, TIED)
 }
 
 /// Real reflectivities from complex gains: the phase all share belongs to the receiver, what is left of each gain is its sign.
@@ -249,10 +250,10 @@ fn reflectivities(gains: &[Gains]) -> Vec<f64> {
     let mean: Vec<Complex64> = gains.iter().map(|g| (g[0] + g[1]) / 2.0).collect();
     let doubled: Complex64 = mean.iter().map(|g| g * g).sum();
     let common = Complex64::cis(-doubled.arg() / 2.0);
-    let signed: Vec<f64> =
+    let signed_node: Vec<f64> =
         mean.iter().zip(gains).map(|(m, g)| if (m * common).re < 0.0 { -size(g) } else { size(g) }).collect();
-    let sign = if signed.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
-    signed.into_iter().map(|s| s * sign).collect()
+    let sign = if signed_node.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+    signed_node.into_iter().map(|s| s * sign).collect()
 }
 
 #[cfg(test)]
@@ -268,16 +269,16 @@ mod tests {
         let (radar, task) = (Radar::default(), Task::default());
         let scene = Scene::of_points([(3.0, 11.0), (-6.0, 17.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let bench = Workbench::new(&radar, &hann(radar.samples), &task, usize::MAX);
-        let samples = Samples::new(&bench.sensor, &ends.flat());
+        let fitter = Fitter::new(&radar, &hann(radar.samples), &task, usize::MAX);
+        let samples = Samples::new(&fitter.sensor, &ends.flat());
         let point = |x_metres: f64, y_metres: f64| Atom::Point { x_metres, y_metres };
         // The second is a few millimetres beside the first, the third a range bin.
         let atoms = vec![point(3.0, 11.0), point(3.001, 11.004), point(3.02, 11.08), point(-6.0, 17.0)];
-        let fit = bench.solve(&samples, atoms.clone(), Tie::PerEnd, 0.0);
-        let kept = merged(&radar, &bench, &samples, fit).atoms;
+        let fit = fitter.solve(&samples, atoms.clone(), Tie::PerEnd, 0.0);
+        let kept = merged(&radar, &fitter, &samples, fit).atoms;
         assert_eq!(kept, [atoms[0], atoms[2], atoms[3]]);
-        let alone = bench.solve(&samples, kept.clone(), Tie::PerEnd, 0.0);
-        assert_eq!(merged(&radar, &bench, &samples, alone).atoms, kept);
+        let alone = fitter.solve(&samples, kept.clone(), Tie::PerEnd, 0.0);
+        assert_eq!(merged(&radar, &fitter, &samples, alone).atoms, kept);
     }
 
     #[test]

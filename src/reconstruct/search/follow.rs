@@ -25,9 +25,9 @@ impl Search<'_> {
         let ratio = scale / previous.scale;
         let gains = previous.gains.iter().map(|g| g.map(|g| g * ratio)).collect();
         let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
-        let left = self.bench.without(self.samples, &fit.atoms, &fit.gains);
+        let left = self.fitter.subtract(self.samples, &fit.atoms, &fit.gains);
         (fit.residual, fit.energy) = (left.residual, left.energy);
-        let all = self.bench.energy(self.samples);
+        let all = self.fitter.energy(self.samples);
         if fit.cost() > MOST_CHANGED * all {
             return Ok(None);
         }
@@ -55,7 +55,7 @@ impl Search<'_> {
         let needed = self.in_need(fit);
         let is_moved = |i: &usize| needed[*i] && matches!(fit.atoms[*i], Atom::Point { .. });
         let moved: Vec<usize> = (0..needed.len()).filter(is_moved).collect();
-        let stayed = if moved.is_empty() { fit.clone() } else { self.bench.less(fit.clone(), &moved) };
+        let stayed = if moved.is_empty() { fit.clone() } else { self.fitter.remove(fit.clone(), &moved) };
         let pairs = self.pairs(&stayed);
         if pairs.points.len() > moved.len() + MOST_APPEARING {
             return Ok(None);

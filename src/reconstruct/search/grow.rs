@@ -6,13 +6,13 @@ use super::state::{Search, ends_agree, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Rows, Samples, Tie, groups, rows_of, union_of};
+use crate::reconstruct::fit::{Atom, BinSpans, Fit, Gains, Limits, Profile, Samples, Tie, bin_spans, groups, union_of};
 use crate::scene::Reflector;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Limits of the refinement of a group while more atoms are to come.
-const GROWING: Limits = Limits { iterations: 12, least_gain: 3e-2, ridge: 0.0 };
+const GROWING: Limits = Limits { max_steps: 12, min_decrease: 3e-2, ridge: 0.0 };
 
 /// Atoms this many bins apart at either end are refined together.
 const LINK_BINS: f64 = 6.0;
@@ -47,39 +47,40 @@ const MOST_A_ROUND: usize = 16;
 impl Search<'_> {
     /// Records an attempt that was refused.
     pub fn refuse(&self, tried: Tried, gain_decades: f64, why: Refusal) {
-        self.trace.add(tried, gain_decades, Verdict::Refused(why), self.bench.work.done());
+        self.trace.add(tried, gain_decades, Verdict::Refused(why), self.fitter.work.done());
     }
 
     /// Decades by which the energy that `fit` leaves would grow without this object of it, the others staying as they are.
     pub fn own_decades(&self, fit: &Fit, atom: &Atom, gains: &Gains) -> f64 {
-        let own =
-            |r: Reflector| self.bench.worth_of(r.reflectivity / (r.x_metres.powi(2) + r.y_metres.powi(2)), self.radar);
+        let own = |r: Reflector| {
+            self.fitter.energy_of_amplitude(r.reflectivity / (r.x_metres.powi(2) + r.y_metres.powi(2)), self.radar)
+        };
         let energy: f64 = atom.reflectors((gains[0].norm() + gains[1].norm()) / 2.0).map(own).sum();
         decades(fit.cost() + energy, fit.cost())
     }
 
     /// Whether nothing stands out of the noise of what `fit` leaves.
     pub fn is_explained(&self, fit: &Fit) -> bool {
-        let flat = fit.residual.flat(&self.bench.sensor);
+        let flat = fit.residual.flat(&self.fitter.sensor);
         self.detector.peaks(self.radar, &flat, self.least_power(&flat), 1).is_empty()
     }
 
     /// The power in a beam that stands out of the noise of `flat`.
     fn least_power(&self, flat: &[Complex64]) -> f64 {
-        let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, flat));
+        let noise = beam_noise_power(self.radar, self.fitter.noise_model.noise_variance(self.radar, flat));
         (noise * self.settings.least_prominence).max(self.rounding_power())
     }
 
     /// Whether the residual `flat` has something longer than a few reflectors.
     pub fn is_long(&self, flat: &[Complex64]) -> bool {
-        let variance = self.bench.hearing.noise_variance(self.radar, flat);
+        let variance = self.fitter.noise_model.noise_variance(self.radar, flat);
         longest_run_bins(self.radar, flat, variance) >= LONG_RUN_BINS
     }
 
     /// Amplitude of the error by rounding a reflector's place to f64, if its samples are 1: many reflectors of one wall are each off
     /// by that.
     pub fn rounding_amplitude(&self) -> f64 {
-        let [radians_per_metre, _] = self.bench.sensor.radians_per_metre_over_chirp();
+        let [radians_per_metre, _] = self.fitter.sensor.radians_per_metre_over_chirp();
         radians_per_metre * f64::EPSILON * self.radar.max_range_metres()
     }
 
@@ -95,11 +96,11 @@ impl Search<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let mut look_back = (self.bench.work.done(), fit.cost());
-        while fit.atoms.len() < self.settings.most_atoms && !self.bench.work.is_spent() {
+        let mut look_back = (self.fitter.work.done(), fit.cost());
+        while fit.atoms.len() < self.settings.most_atoms && !self.fitter.work.is_spent() {
             self.task.check()?;
-            self.bench.work.spend(LOOK_ECHOES);
-            let flat = fit.residual.flat(&self.bench.sensor);
+            self.fitter.work.spend(LOOK_ECHOES);
+            let flat = fit.residual.flat(&self.fitter.sensor);
             let room = self.settings.most_atoms - fit.atoms.len();
             let points = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
             if points.is_empty() {
@@ -108,12 +109,12 @@ impl Search<'_> {
             fit = self.with_points(fit, &points)?;
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = points.len(), "grown");
             let (done, cost) = look_back;
-            if self.bench.work.done() > done + LOOK_BACK {
+            if self.fitter.work.done() > done + LOOK_BACK {
                 if fit.cost() > WORTH_GOING_ON * cost {
                     // Too dense to be told apart: what more there is to gain is small and dear.
-                    self.bench.work.give_up();
+                    self.fitter.work.exhaust();
                 }
-                look_back = (self.bench.work.done(), fit.cost());
+                look_back = (self.fitter.work.done(), fit.cost());
             }
         }
         Ok(fit)
@@ -157,7 +158,7 @@ impl Search<'_> {
             fit.gains.push(gains);
         }
         let new = &fit.atoms[known..];
-        let left = self.bench.without(&fit.residual, new, &fit.gains[known..]);
+        let left = self.fitter.subtract(&fit.residual, new, &fit.gains[known..]);
         (fit.residual, fit.energy) = (left.residual, left.energy);
         let marked: Vec<bool> = (0..fit.atoms.len()).map(|i| i >= known).collect();
         self.refined(fit, &marked, LINK_BINS, GROWING)
@@ -169,7 +170,7 @@ impl Search<'_> {
         let wrap = self.radar.max_range_metres();
         let is_near = x_metres.hypot(y_metres) <= wrap;
         let alone = |atom: Atom| {
-            self.bench.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, Limits::ROUGH)
+            self.fitter.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, Limits::ROUGH)
         };
         let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
@@ -195,20 +196,20 @@ impl Search<'_> {
         link_bins: f64,
         limits: Limits,
     ) -> Result<Fit, ReconstructError> {
-        let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
-        for group in groups(self.radar.samples, &rows, marked, link_bins, MOST_TOGETHER) {
+        let spans: Vec<BinSpans> = fit.atoms.iter().map(|a| bin_spans(self.radar, a)).collect();
+        for group in groups(self.radar.samples, &spans, marked, link_bins, MOST_TOGETHER) {
             self.task.check()?;
-            if self.bench.work.is_spent() {
+            if self.fitter.work.is_spent() {
                 break;
             }
-            self.bench.work.spend(LOOK_ECHOES / 2);
+            self.fitter.work.spend(LOOK_ECHOES / 2);
             let atoms: Vec<Atom> = group.iter().map(|&i| fit.atoms[i]).collect();
             let gains: Vec<Gains> = group.iter().map(|&i| fit.gains[i]).collect();
             let back: Vec<Gains> = gains.iter().map(|g| [-g[0], -g[1]]).collect();
-            let base = self.bench.without(&fit.residual, &atoms, &back).residual;
-            let own = union_of(group.iter().map(|&i| rows[i]));
+            let base = self.fitter.subtract(&fit.residual, &atoms, &back).residual;
+            let own = union_of(group.iter().map(|&i| spans[i]));
             let ridge = own.map_or(0.0, |own| self.ridge(&fit, &base, &own) / group.len() as f64);
-            let refined = self.bench.refine(&base, atoms, gains, Tie::PerEnd, Limits { ridge, ..limits });
+            let refined = self.fitter.refine(&base, atoms, gains, Tie::PerEnd, Limits { ridge, ..limits });
             for (k, &i) in group.iter().enumerate() {
                 (fit.atoms[i], fit.gains[i]) = (refined.atoms[k], refined.gains[k]);
             }
@@ -217,25 +218,25 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    /// Part of the energy of `base` in these rows that is left unexplained: what the gains of atoms there may cost.
-    fn ridge(&self, fit: &Fit, base: &Samples, rows: &Rows) -> f64 {
-        let of = |samples: &Samples| Profile::new(self.radar, &samples.flat(&self.bench.sensor)).at(rows);
+    /// Part of the energy of `base` in these spans that is left unexplained: what the gains of atoms there may cost.
+    fn ridge(&self, fit: &Fit, base: &Samples, spans: &BinSpans) -> f64 {
+        let of = |samples: &Samples| Profile::new(self.radar, &samples.flat(&self.fitter.sensor)).energy(spans);
         let (left, all) = rayon::join(|| of(&fit.residual), || of(base));
         if all > 0.0 { self.settings.gain_price * (left / all).min(1.0) } else { 0.0 }
     }
 
-    /// For every atom whether more is left in its rows than noise, and than the side lobes of what is left in others.
+    /// For every atom whether more is left in its spans than noise, and than the side lobes of what is left in others.
     pub fn in_need(&self, fit: &Fit) -> Vec<bool> {
-        let flat = fit.residual.flat(&self.bench.sensor);
+        let flat = fit.residual.flat(&self.fitter.sensor);
         let profile = Profile::new(self.radar, &flat);
-        let noise = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
-        let left: Vec<f64> = fit.atoms.iter().map(|atom| profile.strongest(&rows_of(self.radar, atom))).collect();
+        let noise = beam_noise_power(self.radar, self.fitter.noise_model.noise_variance(self.radar, &flat));
+        let left: Vec<f64> = fit.atoms.iter().map(|atom| profile.peak_energy(&bin_spans(self.radar, atom))).collect();
         let strongest = left.iter().copied().fold(0.0, f64::max);
         let least = (ABOVE_NOISE * noise.max(self.rounding_power())).max(SIDE_LOBE * strongest);
         left.into_iter().map(|left| left > least).collect()
     }
 
-    /// The atoms refined in whose rows more is left than noise, with their neighbours.
+    /// The atoms refined in whose spans more is left than noise, with their neighbours.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].

@@ -4,7 +4,7 @@
 //! noise, or after the last. What was found is then read off as objects (`finish`): one gain for both
 //! ends, one reflectivity an object.
 //!
-//! Within a rung, work is counted ([`Settings::most_work`](super::Settings)): where it is spent, each loop ends with the best it has.
+//! Within a rung, work is counted ([`Settings::max_work`](super::Settings)): where it is spent, each loop ends with the best it has.
 
 use super::state::{Search, State};
 use crate::reconstruct::ReconstructError;

@@ -5,7 +5,7 @@ use super::state::{Search, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
+use crate::reconstruct::fit::{Atom, BinSpans, Fit, Limits, bin_spans, distance_bins};
 
 /// Energy that an atom must explain over what noise gives to one more gain, as a ratio.
 pub const MIN_WORTH_RATIO: f64 = 16.0;
@@ -25,19 +25,19 @@ impl Search<'_> {
     pub fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MOST_ROUNDS {
             self.task.check()?;
-            if self.bench.work.is_spent() {
+            if self.fitter.work.is_spent() {
                 break;
             }
-            let rounding = self.bench.worth_of(self.rounding_amplitude(), self.radar);
-            let least = rounding.max(MIN_WORTH_RATIO * self.bench.gain_noise(self.radar, &fit));
-            let worth = self.bench.worths(&fit);
-            let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
+            let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude(), self.radar);
+            let least = rounding.max(MIN_WORTH_RATIO * self.fitter.noise_energy(self.radar, &fit));
+            let worth = self.fitter.marginal_energies(&fit);
+            let spans: Vec<BinSpans> = fit.atoms.iter().map(|a| bin_spans(self.radar, a)).collect();
             let is_needless = |i: &usize| worth[*i] < least || self.ran_away(&fit.atoms[*i]);
             let mut order: Vec<usize> = (0..fit.atoms.len()).filter(is_needless).collect();
             order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
             let mut gone: Vec<usize> = Vec::new();
             for i in order {
-                let is_apart = |j: &usize| distance_bins(self.radar.samples, &rows[i], &rows[*j]) > APART_BINS;
+                let is_apart = |j: &usize| distance_bins(self.radar.samples, &spans[i], &spans[*j]) > APART_BINS;
                 if gone.iter().all(is_apart) {
                     gone.push(i);
                 }
@@ -48,10 +48,10 @@ impl Search<'_> {
             for &i in &gone {
                 self.refuse(tried(&fit.atoms[i]), decades(fit.cost() + worth[i], fit.cost()), Refusal::RestDoesWithout);
             }
-            fit = self.bench.less(fit, &gone);
-            let kept = (0..rows.len()).filter(|i| !gone.contains(i));
+            fit = self.fitter.remove(fit, &gone);
+            let kept = (0..spans.len()).filter(|i| !gone.contains(i));
             let beside = |i: usize| {
-                gone.iter().any(|&j| distance_bins(self.radar.samples, &rows[i], &rows[j]) < 2.0 * APART_BINS)
+                gone.iter().any(|&j| distance_bins(self.radar.samples, &spans[i], &spans[j]) < 2.0 * APART_BINS)
             };
             let marked: Vec<bool> = kept.map(beside).collect();
             fit = self.refined(fit, &marked, APART_BINS, Limits::ROUGH)?;

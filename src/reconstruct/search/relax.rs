@@ -12,7 +12,7 @@ use super::state::{Search, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Rows, Samples, Tie, groups, rows_of, union_of};
+use crate::reconstruct::fit::{Atom, BinSpans, Fit, Gains, Limits, Samples, Tie, bin_spans, groups, union_of};
 
 /// Echoes this near in range at either end hide each other, range bins: the half of a Hann window's main lobe.
 const HIDING_BINS: f64 = 1.5;
@@ -30,11 +30,11 @@ impl Search<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn relaxed(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        let rows: Vec<Rows> = fit.atoms.iter().map(|atom| rows_of(self.radar, atom)).collect();
+        let spans: Vec<BinSpans> = fit.atoms.iter().map(|atom| bin_spans(self.radar, atom)).collect();
         let are_points: Vec<bool> = fit.atoms.iter().map(|atom| matches!(atom, Atom::Point { .. })).collect();
-        let found = groups(self.radar.samples, &rows, &are_points, HIDING_BINS, usize::MAX);
-        let rounding = self.bench.worth_of(self.rounding_amplitude(), self.radar);
-        let price = rounding.max(price_of_an_echo(self.radar) * self.bench.gain_noise(self.radar, &fit));
+        let found = groups(self.radar.samples, &spans, &are_points, HIDING_BINS, usize::MAX);
+        let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude(), self.radar);
+        let price = rounding.max(price_of_an_echo(self.radar) * self.fitter.noise_energy(self.radar, &fit));
         let is_sought = |group: &Vec<usize>| {
             let is_crowd = group.len() > 1 || group.iter().any(|&i| self.is_beyond(&fit.atoms[i]));
             is_crowd && group.len() <= MAX_GROUP && group.iter().all(|i| are_points[*i])
@@ -43,11 +43,11 @@ impl Search<'_> {
         let (mut gone, mut new): (Vec<usize>, Vec<(Atom, Gains)>) = (Vec::new(), Vec::new());
         for group in found {
             self.task.check()?;
-            if self.bench.work.is_spent() {
+            if self.fitter.work.is_spent() {
                 break;
             }
-            let Some(own) = union_of(group.iter().map(|&i| rows[i])) else { continue };
-            let base = self.bench.less(fit.clone(), &group).residual;
+            let Some(own) = union_of(group.iter().map(|&i| spans[i])) else { continue };
+            let base = self.fitter.remove(fit.clone(), &group).residual;
             let best = self.sought_anew(&base, &own, price, MAX_SOUGHT.min(group.len() + 1))?;
             let before = price * self.claims(group.iter().map(|&i| &fit.atoms[i]));
             if best.cost() + price * self.claims(best.atoms.iter()) >= fit.cost() + before {
@@ -78,9 +78,9 @@ impl Search<'_> {
         x.hypot(y) > self.radar.max_range_metres()
     }
 
-    /// At most `most` echoes in `own` rows of `base`, as many as each explain `price` more.
-    fn sought_anew(&self, base: &Samples, own: &Rows, price: f64, most: usize) -> Result<Fit, ReconstructError> {
-        let mut fit = self.bench.solve(base, Vec::new(), Tie::PerEnd, 0.0);
+    /// At most `most` echoes in `own` spans of `base`, as many as each explain `price` more.
+    fn sought_anew(&self, base: &Samples, own: &BinSpans, price: f64, most: usize) -> Result<Fit, ReconstructError> {
+        let mut fit = self.fitter.solve(base, Vec::new(), Tie::PerEnd, 0.0);
         let mut best = fit.clone();
         for count in 1..=most {
             self.task.check()?;
@@ -89,7 +89,7 @@ impl Search<'_> {
             for _ in 0..MAX_CYCLES {
                 let before = fit.cost();
                 for i in 0..count {
-                    let others = self.bench.less(fit.clone(), &[i]);
+                    let others = self.fitter.remove(fit.clone(), &[i]);
                     if let Some(anew) = self.with_one_more(&others, base, own).filter(|anew| anew.cost() < fit.cost()) {
                         fit = anew;
                     }
@@ -107,15 +107,15 @@ impl Search<'_> {
         Ok(best)
     }
 
-    /// `fit` with the strongest echo in `own` rows of what it leaves, all moved together.
-    fn with_one_more(&self, fit: &Fit, base: &Samples, own: &Rows) -> Option<Fit> {
-        self.bench.work.spend(LOOK_ECHOES);
-        let flat = fit.residual.flat(&self.bench.sensor);
+    /// `fit` with the strongest echo in `own` spans of what it leaves, all moved together.
+    fn with_one_more(&self, fit: &Fit, base: &Samples, own: &BinSpans) -> Option<Fit> {
+        self.fitter.work.spend(LOOK_ECHOES);
+        let flat = fit.residual.flat(&self.fitter.sensor);
         let place = self.detector.strongest_within(self.radar, &flat, own)?;
         let (atom, gains) = self.placed(fit, place);
         let (mut atoms, mut all) = (fit.atoms.clone(), fit.gains.clone());
         atoms.push(atom);
         all.push(gains);
-        Some(self.bench.refine(base, atoms, all, Tie::PerEnd, Limits::ROUGH))
+        Some(self.fitter.refine(base, atoms, all, Tie::PerEnd, Limits::ROUGH))
     }
 }

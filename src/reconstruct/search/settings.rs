@@ -14,12 +14,12 @@ pub struct Settings {
     /// Price of a gain's energy, over the unexplained part of its neighbourhood: it keeps inexact atoms from large gains that cancel.
     pub gain_price: f64,
     /// Work granted to the search: about ten microseconds a unit, counted and not timed.
-    pub most_work: usize,
+    pub max_work: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { most_atoms: 150, least_prominence: 14.0, rounds: 6, gain_price: 0.3, most_work: 40_000 }
+        Settings { most_atoms: 150, least_prominence: 14.0, rounds: 6, gain_price: 0.3, max_work: 40_000 }
     }
 }
 

@@ -7,7 +7,7 @@ use super::trace::{ORDERING, Trace, decades};
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Samples, Tie};
 use crate::task::Task;
 
 /// Part of the samples' energy that is left where all is found but for its exact place.
@@ -38,7 +38,7 @@ impl State {
 pub struct Search<'a> {
     pub radar: &'a Radar,
     /// Fits under the search's window, and the work that is left.
-    pub bench: &'a Workbench<'a>,
+    pub fitter: &'a Fitter<'a>,
     /// Looks for places.
     pub detector: &'a Detector,
     pub samples: &'a Samples,
@@ -63,7 +63,7 @@ impl Search<'_> {
             return Ok(answer);
         }
         self.trace.enter(ORDERING);
-        self.bench.work.grant(self.settings.most_work / 2);
+        self.fitter.work.grant(self.settings.max_work / 2);
         Ok(self.judged(self.pruned(self.relaxed(answer.fit)?)?))
     }
 
@@ -72,7 +72,7 @@ impl Search<'_> {
         if !self.is_nearly_all(&fit) {
             return Ok(fit);
         }
-        self.bench.work.grant(self.settings.most_work / 4);
+        self.fitter.work.grant(self.settings.max_work / 4);
         self.pruned(self.refined_where_needed(fit)?)
     }
 
@@ -84,7 +84,7 @@ impl Search<'_> {
         }
         for (atom, gains) in fit.atoms.iter().zip(&fit.gains).filter(|(atom, _)| !is_in(atom, before)) {
             let gain_decades = self.own_decades(fit, atom, gains);
-            self.trace.add(tried(atom), gain_decades, Verdict::Kept, self.bench.work.done());
+            self.trace.add(tried(atom), gain_decades, Verdict::Kept, self.fitter.work.done());
         }
     }
 
@@ -101,7 +101,7 @@ impl Search<'_> {
 
     /// Whether `fit` holds all objects, though perhaps not quite where they are.
     pub fn is_nearly_all(&self, fit: &Fit) -> bool {
-        fit.cost() <= NEARLY_NOTHING * self.bench.energy(self.samples)
+        fit.cost() <= NEARLY_NOTHING * self.fitter.energy(self.samples)
     }
 
     /// Points whose tones both ends hear in what `fit` leaves; none where there are too many to tell apart.
@@ -111,8 +111,8 @@ impl Search<'_> {
 
     /// [`Search::pairs`]; `None` where an end has too many tones.
     pub fn pairs_of_tones(&self, fit: &Fit) -> Option<Pairs> {
-        let flat = fit.residual.flat(&self.bench.sensor);
-        let noise = self.bench.hearing.noise_variance(self.radar, &flat);
+        let flat = fit.residual.flat(&self.fitter.sensor);
+        let noise = self.fitter.noise_model.noise_variance(self.radar, &flat);
         paired_points(self.radar, &flat, noise)
     }
 
@@ -125,7 +125,7 @@ impl Search<'_> {
             return Ok(known);
         }
         atoms.truncate(self.settings.most_atoms);
-        let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
+        let mut fit = self.fitter.solve(self.samples, atoms, Tie::PerEnd, 0.0);
         for _ in 0..MOST_ROUNDS {
             let (kept, unlike): (Vec<_>, Vec<_>) =
                 fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MOST_UNLIKE));
@@ -136,7 +136,7 @@ impl Search<'_> {
                 self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
             let kept = kept.into_iter().map(|(atom, _)| *atom).collect();
-            fit = self.bench.solve(self.samples, kept, Tie::PerEnd, 0.0);
+            fit = self.fitter.solve(self.samples, kept, Tie::PerEnd, 0.0);
         }
         if fit.cost() > known.cost() {
             let tried = Tried::Together { count: pairs.points.len() };

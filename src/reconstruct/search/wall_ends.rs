@@ -3,7 +3,7 @@
 use super::on_wall::MOST_REFLECTORS;
 use super::propose::strides::MIN_REFLECTORS;
 use super::state::Search;
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Narrow, Samples, Spectra, Tie, Workbench, rows_of};
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, RangeGate, Samples, Spectra, Tie, bin_spans};
 
 /// Reflectors beyond the best end of a wall that are tried.
 const BEYOND: usize = 8;
@@ -21,7 +21,7 @@ const ROOM: f64 = 0.5;
 impl Search<'_> {
     /// The wall moved to its best place in `samples` and made longer, by turns, until neither helps.
     pub fn followed_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
-        let spectra = Spectra::new(self.radar, self.bench, samples);
+        let spectra = Spectra::new(self.radar, self.fitter, samples);
         let mut near = self.near(&spectra, &seed);
         let seed = trimmed(&near, seed);
         let mut wall = near.moved(seed, Gains::default());
@@ -35,7 +35,7 @@ impl Search<'_> {
             let explained = near.energy - wall.cost();
             let wider = self.near(&spectra, &longer);
             let trial = wider.moved(longer, wall.gains[0]);
-            if wider.energy - trial.cost() <= explained || self.bench.work.is_spent() {
+            if wider.energy - trial.cost() <= explained || self.fitter.work.is_spent() {
                 break;
             }
             (near, wall) = (wider, trial);
@@ -47,42 +47,44 @@ impl Search<'_> {
                 wall = trial;
             }
         }
-        self.bench.refine(samples, wall.atoms, wall.gains, Tie::PerEnd, Limits::ROUGH)
+        self.fitter.refine(samples, wall.atoms, wall.gains, Tie::PerEnd, Limits::ROUGH)
     }
 
     /// The range bins in which `wall` is followed.
-    fn near<'a>(&self, spectra: &Spectra<'a>, wall: &Atom) -> Narrow<'a> {
-        let rows = rows_of(self.radar, wall);
+    fn near<'a>(&self, spectra: &Spectra<'a>, wall: &Atom) -> RangeGate<'a> {
+        let rows = bin_spans(self.radar, wall);
         let longest = rows.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
-        spectra.around(&rows, ROOM_BINS.max(ROOM * longest))
+        spectra.gate(&rows, ROOM_BINS.max(ROOM * longest))
     }
 
     /// Number of reflectors that the wall lacks at its last end, or at its first: as many more as leave least. No more than it
     /// already has, as far as its direction can be trusted.
-    fn more_reflectors(&self, near: &Narrow, wall: &Fit, at_last: bool) -> usize {
+    fn more_reflectors(&self, near: &RangeGate, wall: &Fit, at_last: bool) -> usize {
         let Some(atom) = wall.atoms.first() else { return 0 };
         let count = atom.reflector_count();
         let next = |more: usize| atom.position_metres(if at_last { (count - 1 + more) as f64 } else { -(more as f64) });
         let is_within = |&[x_metres, y_metres]: &[f64; 2]| {
-            y_metres >= 0.0 && near.holds(&rows_of(self.radar, &Atom::Point { x_metres, y_metres }))
+            y_metres >= 0.0 && near.contains(&bin_spans(self.radar, &Atom::Point { x_metres, y_metres }))
         };
-        how_many(&near.bench, wall, &wall.gains, (1..=count).map(next).take_while(is_within))
+        how_many(&near.fitter, wall, &wall.gains, (1..=count).map(next).take_while(is_within))
     }
 }
 
-impl Narrow<'_> {
+impl RangeGate<'_> {
     /// The wall moved to its best place from where its gains may be these.
     fn moved(&self, wall: Atom, gains: Gains) -> Fit {
-        self.bench.refine(&self.samples, vec![wall], vec![gains], Tie::PerEnd, Limits::ROUGH)
+        self.fitter.refine(&self.samples, vec![wall], vec![gains], Tie::PerEnd, Limits::ROUGH)
     }
 }
 
 /// `seed` without the reflectors at its ends whose absence explains the samples better.
-fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
+fn trimmed(near: &RangeGate, mut seed: Atom) -> Atom {
     for _ in 0..MOST_TRIMS {
-        let wall = near.bench.solve_alone(&near.samples, seed);
-        let (first, last) =
-            rayon::join(|| fewer_reflectors(&near.bench, &wall, false), || fewer_reflectors(&near.bench, &wall, true));
+        let wall = near.fitter.solve_alone(&near.samples, seed);
+        let (first, last) = rayon::join(
+            || fewer_reflectors(&near.fitter, &wall, false),
+            || fewer_reflectors(&near.fitter, &wall, true),
+        );
         match resized(seed, first as i64, last as i64) {
             Some(shorter) if first + last > 0 => seed = shorter,
             _ => break,
@@ -92,20 +94,20 @@ fn trimmed(near: &Narrow, mut seed: Atom) -> Atom {
 }
 
 /// Number of reflectors at the wall's last end, or at its first, whose removal leaves less.
-fn fewer_reflectors(bench: &Workbench, wall: &Fit, at_last: bool) -> usize {
+fn fewer_reflectors(fitter: &Fitter, wall: &Fit, at_last: bool) -> usize {
     let Some(atom) = wall.atoms.first() else { return 0 };
     let count = atom.reflector_count();
     let back: Vec<Gains> = wall.gains.iter().map(|g| g.map(|g| -g)).collect();
     let next = |fewer: usize| atom.position_metres(if at_last { (count - fewer) as f64 } else { (fewer - 1) as f64 });
-    how_many(bench, wall, &back, (1..=count / 2).map(next))
+    how_many(fitter, wall, &back, (1..=count / 2).map(next))
 }
 
 /// Number of successive `places` at which reflectors of these gains, subtracted from the residual of `wall`, leave least.
-fn how_many(bench: &Workbench, wall: &Fit, gains: &[Gains], places: impl Iterator<Item = [f64; 2]>) -> usize {
+fn how_many(fitter: &Fitter, wall: &Fit, gains: &[Gains], places: impl Iterator<Item = [f64; 2]>) -> usize {
     let (mut best, mut least) = (0, wall.cost());
     let mut residual = wall.residual.clone();
     for (taken, [x_metres, y_metres]) in (1..).zip(places) {
-        let left = bench.without(&residual, &[Atom::Point { x_metres, y_metres }], gains);
+        let left = fitter.subtract(&residual, &[Atom::Point { x_metres, y_metres }], gains);
         residual = left.residual;
         let cost = left.energy[0] + left.energy[1];
         if cost < least {

@@ -13,10 +13,10 @@ impl Search<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn more_walls(&self, mut fit: Fit, mut points: Vec<[f64; 2]>) -> Result<Fit, ReconstructError> {
-        let (known, before) = (fit.atoms.len(), self.bench.work.done());
+        let (known, before) = (fit.atoms.len(), self.fitter.work.done());
         // Half of the work is for what is no wall.
-        let most = before + self.settings.most_work / 2;
-        while fit.atoms.len() < known + MOST_WALLS && self.bench.work.done() < most {
+        let most = before + self.settings.max_work / 2;
+        while fit.atoms.len() < known + MOST_WALLS && self.fitter.work.done() < most {
             self.task.check()?;
             let Some(wall) = self.next_wall(&fit, &mut points) else { break };
             fit.atoms.push(wall.atoms[0]);
@@ -26,6 +26,6 @@ impl Search<'_> {
         if fit.atoms.len() == known {
             return Ok(fit);
         }
-        Ok(self.bench.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH))
+        Ok(self.fitter.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH))
     }
 }

@@ -1,4 +1,4 @@
-//! Rows of reflectors from their first alone: at the edge of a wall one reflector is heard by itself, however close the next.
+//! BinSpans of reflectors from their first alone: at the edge of a wall one reflector is heard by itself, however close the next.
 //!
 //! From such a point the beams tell whether echoes go on in a direction that walls mostly have. There every step that may be meant is tried
 //! over the first few reflectors, and the best are followed as rows over two points are.
@@ -32,7 +32,7 @@ const LEAST_STEP_METRES: f64 = 0.03;
 /// than over pairs.
 const PITCH_WAVELENGTHS: f64 = 0.5;
 
-/// Rows of one look that are tried over twice as many reflectors, and those that are followed.
+/// BinSpans of one look that are tried over twice as many reflectors, and those that are followed.
 const KEPT_ROWS: [usize; 2] = [40, 4];
 
 /// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
@@ -41,7 +41,7 @@ const LEAST_FROM_EDGE: usize = 24;
 /// Directions that walls mostly have, radians from the array's axis: along it and across it.
 const DIRECTIONS_RADIANS: [f64; 4] = [0.0, FRAC_PI_2, PI, -FRAC_PI_2];
 
-/// Rows that begin at one of `points` (x, y; metres) and lead about along or across the array's axis, best first; one for each point at most.
+/// BinSpans that begin at one of `points` (x, y; metres) and lead about along or across the array's axis, best first; one for each point at most.
 pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
     let strongest = beams.strongest();
     let look = |first: usize, radians: f64| {
@@ -101,7 +101,7 @@ struct Look {
     score: f64,
 }
 
-/// Rows from one point in about one direction, turned from one side to the other, length after length; and the number of lengths.
+/// BinSpans from one point in about one direction, turned from one side to the other, length after length; and the number of lengths.
 fn fan(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> (Vec<Row>, usize) {
     let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES, PITCH_WAVELENGTHS);
     let range = from_metres[0].hypot(from_metres[1]).max(0.1);

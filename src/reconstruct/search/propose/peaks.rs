@@ -7,7 +7,7 @@
 use super::end_beams::{BEAMS_PER_ELEMENT, beam_of_cos, end_beams};
 use super::view::View;
 use crate::radar::{End, Radar};
-use crate::reconstruct::fit::Rows;
+use crate::reconstruct::fit::BinSpans;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -98,7 +98,7 @@ impl Detector {
     }
 
     /// The place (x, y; metres) of the greatest power at both ends in these rows, or at their edges.
-    pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], rows: &Rows) -> Option<[f64; 2]> {
+    pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], rows: &BinSpans) -> Option<[f64; 2]> {
         let powers = self.powers(radar, residual);
         let bins = self.bins as f64;
         let is_within = |end: usize, bin: u32| {

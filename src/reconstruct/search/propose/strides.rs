@@ -1,4 +1,4 @@
-//! Rows of reflectors from their first two: a wall whose points stand too close to be told apart still shows those at its ends.
+//! BinSpans of reflectors from their first two: a wall whose points stand too close to be told apart still shows those at its ends.
 //!
 //! From one point that both ends hear over about another, every step that may be meant is tried over the first few reflectors. The best
 //! are moved to where all their echoes add up, over more and more reflectors: the longer the row, the finer it is known, and the fewer
@@ -53,13 +53,13 @@ const MOVES: usize = 4;
 /// A move that adds less than this part of the power is the last.
 const LEAST_ADDED: f64 = 0.002;
 
-/// Rows and points that reach farther than this many maximum ranges ran away.
+/// BinSpans and points that reach farther than this many maximum ranges ran away.
 pub const MAX_RANGES: f64 = 2.5;
 
 /// A row that adds up to less than this part of the most it did has passed its end.
 const PASSED: f64 = 0.4;
 
-/// Rows from one of `points` (x, y; metres) over another, best first; one for each first point at most.
+/// BinSpans from one of `points` (x, y; metres) over another, best first; one for each first point at most.
 pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
     let neighbours_of = |i: usize| neighbours(points, i).map(move |j| (i, j));
     let pairs: Vec<(usize, usize)> = (0..points.len()).flat_map(neighbours_of).collect();
@@ -117,7 +117,7 @@ fn neighbours(points: &[[f64; 2]], i: usize) -> impl Iterator<Item = usize> {
     near.into_iter().take(NEIGHBOURS).map(|(_, j)| j)
 }
 
-/// Rows from one point over about another: by steps along the line of sight, and for each of these by steps across.
+/// BinSpans from one point over about another: by steps along the line of sight, and for each of these by steps across.
 fn grid(beams: &PhasedBeams, from: [f64; 2], over: [f64; 2]) -> Vec<Row> {
     let step = [over[0] - from[0], over[1] - from[1]];
     let range = from[0].hypot(from[1]).max(0.1);

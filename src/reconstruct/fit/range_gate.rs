@@ -1,82 +1,82 @@
 //! A few neighbouring range bins of a residual, without other ranges; a chirp of so few bins needs no more samples.
 //!
-//! Of each channel's windowed spectrum the bins around an atom are kept and transformed back into as many samples, evenly spaced over the
-//! same chirp. A radar that takes those has the same range bins, repeated sooner, so that everything a [`Workbench`] does holds for it. What
-//! is cut off are the far side lobes, some 1e-3 of an echo: good enough to tell rows apart and to follow a wall, not for the last digits.
+//! Of each channel's windowed spectrum the bins around an atom are decimated and transformed back into as many samples, evenly spaced over the
+//! same chirp. A radar that takes those has the same range bins, repeated sooner, so that everything a [`Fitter`] does holds for it. What
+//! is cut off are the far side lobes, some 1e-3 of an echo: good enough to tell spans apart and to follow a wall, not for the last digits.
 
 use super::echoes::Samples;
-use super::groups::Rows;
-use super::refine::Workbench;
+use super::groups::BinSpans;
+use super::refine::Fitter;
 use crate::radar::{Radar, SPEED_OF_LIGHT, hann_at};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use rustfft::FftPlanner;
 use std::f64::consts::TAU;
 
-/// Range bins of the side lobes that are kept beside an atom's own.
-const MARGIN_BINS: f64 = 8.0;
+/// Range bins of the side lobes that are decimated beside an atom's own.
+const SIDE_LOBE_BINS: f64 = 8.0;
 
-/// A chirp's samples over those that are kept; the first that leaves enough range bins is taken.
-const PARTS: [usize; 2] = [4, 2];
+/// A chirp's samples over those that are decimated; the first that leaves enough range bins is taken.
+const DECIMATIONS: [usize; 2] = [4, 2];
 
 /// The spectra of a residual's channels.
 pub struct Spectra<'a> {
     radar: &'a Radar,
-    bench: &'a Workbench<'a>,
+    fitter: &'a Fitter<'a>,
     samples: &'a Samples,
     /// Spectra of the windowed samples, channel by channel.
     channels: Vec<Vec<Complex64>>,
 }
 
-/// Some range bins of a residual, with a bench for them.
-pub struct Narrow<'a> {
-    /// The bench of the radar with fewer samples.
-    pub bench: Workbench<'a>,
+/// Some range bins of a residual, with a fitter for them.
+pub struct RangeGate<'a> {
+    /// The fitter of the radar with fewer samples.
+    pub fitter: Fitter<'a>,
     pub samples: Samples,
     /// Energy of the windowed samples at both ends.
     pub energy: f64,
-    /// The first and the last range bin of each end that are whole.
-    pub whole: Rows,
+    /// The first and the last range bin of each end that are intact.
+    pub intact: BinSpans,
 }
 
 impl<'a> Spectra<'a> {
-    /// The spectra of `samples` under the Hann window of `bench`.
-    pub fn new(radar: &'a Radar, bench: &'a Workbench<'a>, samples: &'a Samples) -> Self {
+    /// The spectra of `samples` under the Hann window of `fitter`.
+    pub fn new(radar: &'a Radar, fitter: &'a Fitter<'a>, samples: &'a Samples) -> Self {
         let fft = FftPlanner::new().plan_fft_forward(radar.samples);
-        let flat = samples.flat(&bench.sensor);
+        let flat = samples.flat(&fitter.sensor);
         let of_channel = |samples: &[Complex64]| {
             let mut spectrum: Vec<Complex64> =
-                samples.iter().zip(&bench.squared).map(|(v, squared)| v * squared.sqrt()).collect();
+                samples.iter().zip(&fitter.squared).map(|(v, squared)| v * squared.sqrt()).collect();
             fft.process(&mut spectrum);
             spectrum
         };
         let channels = flat.par_chunks_exact(radar.samples).map(of_channel).collect();
-        Spectra { radar, bench, samples, channels }
+        Spectra { radar, fitter, samples, channels }
     }
 
-    /// The range bins around `rows`, and so many beyond to each side; all of them where that is hardly fewer.
-    pub fn around(&self, rows: &Rows, beyond_bins: f64) -> Narrow<'a> {
-        let margin = MARGIN_BINS + beyond_bins;
-        let needed = rows.iter().map(|(low, high)| high - low + 2.0 * margin).fold(0.0, f64::max);
+    /// The range bins around `spans`, and so many beyond to each side; all of them where that is hardly fewer.
+    pub fn gate(&self, spans: &BinSpans, beyond_bins: f64) -> RangeGate<'a> {
+        let margin = SIDE_LOBE_BINS + beyond_bins;
+        let needed = spans.iter().map(|(low, high)| high - low + 2.0 * margin).fold(0.0, f64::max);
         let all = self.radar.samples;
         let fits = |part: &&usize| all.is_multiple_of(**part) && needed <= (all / **part) as f64;
-        let Some(part) = PARTS.iter().find(fits) else {
-            return Narrow {
-                bench: self.bench.clone(),
+        let Some(part) = DECIMATIONS.iter().find(fits) else {
+            return RangeGate {
+                fitter: self.fitter.clone(),
                 samples: self.samples.clone(),
-                energy: self.bench.energy(self.samples),
-                whole: [(f64::NEG_INFINITY, f64::INFINITY); 2],
+                energy: self.fitter.energy(self.samples),
+                intact: [(f64::NEG_INFINITY, f64::INFINITY); 2],
             };
         };
-        self.kept(rows, all / part)
+        self.decimated(spans, all / part)
     }
 
-    /// A fit within `bins` range bins of each end around the middle of `rows`.
-    fn kept(&self, rows: &Rows, bins: usize) -> Narrow<'a> {
+    /// A fit within `bins` range bins of each end around the middle of `spans`.
+    fn decimated(&self, spans: &BinSpans, bins: usize) -> RangeGate<'a> {
         let (all, every) = (self.radar.samples as f64, (self.radar.samples / bins) as f64);
         // Sampled evenly about the middle of the chirp.
         let start = (every - 1.0) / 2.0;
-        let first = rows.map(|(low, high)| ((low + high - bins as f64) / 2.0).round());
+        let first = spans.map(|(low, high)| ((low + high - bins as f64) / 2.0).round());
         let weights: Vec<f64> = (0..bins).map(|m| hann_at(self.radar.samples, m as f64 * every + start)).collect();
         let fft = FftPlanner::new().plan_fft_inverse(bins);
         let end_elements = self.radar.end_elements;
@@ -87,13 +87,13 @@ impl<'a> Spectra<'a> {
         });
         let of_channel = |(channel, spectrum): (usize, &Vec<Complex64>)| {
             let first = first[channel / end_elements] as i64;
-            let mut kept = vec![Complex64::default(); bins];
+            let mut decimated = vec![Complex64::default(); bins];
             for (bin, turned) in (first..).zip(&turned[channel / end_elements]) {
-                kept[bin.rem_euclid(bins as i64) as usize] =
+                decimated[bin.rem_euclid(bins as i64) as usize] =
                     spectrum[bin.rem_euclid(self.radar.samples as i64) as usize] * turned;
             }
-            fft.process(&mut kept);
-            kept
+            fft.process(&mut decimated);
+            decimated
         };
         let windowed: Vec<Vec<Complex64>> = self.channels.par_iter().enumerate().map(of_channel).collect();
         let energy = every * windowed.iter().flatten().map(Complex64::norm_sqr).sum::<f64>();
@@ -103,17 +103,17 @@ impl<'a> Spectra<'a> {
         let turns = self.radar.carrier.turns_per_wavelength();
         let carrier_hz = self.radar.carrier_hz + SPEED_OF_LIGHT * start / (turns * self.radar.max_range_metres());
         let radar = Radar { samples: bins, carrier_hz, ..self.radar.clone() };
-        let bench = self.bench.sampled_as(&radar, weights.iter().map(|w| w * w * every).collect());
-        let samples = Samples::new(&bench.sensor, &flat);
-        let whole = first.map(|first| (first + MARGIN_BINS, first + bins as f64 - MARGIN_BINS));
-        Narrow { bench, samples, energy, whole }
+        let fitter = self.fitter.sampled_as(&radar, weights.iter().map(|w| w * w * every).collect());
+        let samples = Samples::new(&fitter.sensor, &flat);
+        let intact = first.map(|first| (first + SIDE_LOBE_BINS, first + bins as f64 - SIDE_LOBE_BINS));
+        RangeGate { fitter, samples, energy, intact }
     }
 }
 
-impl Narrow<'_> {
-    /// Whether all range bins of these rows are whole.
-    pub fn holds(&self, rows: &Rows) -> bool {
-        rows.iter().zip(&self.whole).all(|(own, whole)| own.0 >= whole.0 && own.1 <= whole.1)
+impl RangeGate<'_> {
+    /// Whether all range bins of these spans are intact.
+    pub fn contains(&self, spans: &BinSpans) -> bool {
+        spans.iter().zip(&self.intact).all(|(own, intact)| own.0 >= intact.0 && own.1 <= intact.1)
     }
 }
 
@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::radar::{Carrier, hann};
     use crate::reconstruct::fit::atom::Atom;
-    use crate::reconstruct::fit::groups::rows_of;
+    use crate::reconstruct::fit::groups::bin_spans;
     use crate::reconstruct::fit::refine::{Gains, Limits, Tie};
     use crate::scene::{Line, Object, Point, Scene};
     use crate::signal::{Floor, simulate};
@@ -145,26 +145,26 @@ mod tests {
             let scene = Scene { objects, ..Scene::default() };
             let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
             let task = Task::default();
-            let bench = Workbench::new(&radar, &hann(radar.samples), &task, usize::MAX);
-            let samples = Samples::new(&bench.sensor, &flat);
+            let fitter = Fitter::new(&radar, &hann(radar.samples), &task, usize::MAX);
+            let samples = Samples::new(&fitter.sensor, &flat);
             let (sin, cos) = DIRECTION_DEGREES.to_radians().sin_cos();
             let [dx_metres, dy_metres] = [cos, sin].map(|v| v * STEP_METRES);
             let truth = Atom::Segment { x_metres: -4.0, y_metres: 14.0, dx_metres, dy_metres, count: 40 };
             let seed = truth.moved(&[0.002, -0.001, 1e-5, -2e-5]);
-            let near = Spectra::new(&radar, &bench, &samples).around(&rows_of(&radar, &seed), 0.0);
-            assert_eq!(near.bench.sensor.samples, 128);
+            let near = Spectra::new(&radar, &fitter, &samples).gate(&bin_spans(&radar, &seed), 0.0);
+            assert_eq!(near.fitter.sensor.samples, 128);
             assert!(
-                near.holds(&rows_of(&radar, &truth))
-                    && !near.holds(&rows_of(&radar, &Atom::Point { x_metres: 9.0, y_metres: 30.0 }))
+                near.contains(&bin_spans(&radar, &truth))
+                    && !near.contains(&bin_spans(&radar, &Atom::Point { x_metres: 9.0, y_metres: 30.0 }))
             );
-            let all = bench.energy(&samples);
+            let all = fitter.energy(&samples);
             let explained = [
-                all - bench.solve_alone(&samples, seed).cost(),
-                near.energy - near.bench.solve_alone(&near.samples, seed).cost(),
+                all - fitter.solve_alone(&samples, seed).cost(),
+                near.energy - near.fitter.solve_alone(&near.samples, seed).cost(),
             ];
             assert!((explained[1] / explained[0] - 1.0).abs() < 2e-3, "{explained:?}");
-            let limits = Limits { iterations: 20, least_gain: 1e-4, ridge: 0.0 };
-            let moved = near.bench.refine(&near.samples, vec![seed], vec![Gains::default()], Tie::PerEnd, limits);
+            let limits = Limits { max_steps: 20, min_decrease: 1e-4, ridge: 0.0 };
+            let moved = near.fitter.refine(&near.samples, vec![seed], vec![Gains::default()], Tie::PerEnd, limits);
             for i in [0.0, 39.0] {
                 let ([x, y], [true_x, true_y]) = (moved.atoms[0].position_metres(i), truth.position_metres(i));
                 assert!((x - true_x).hypot(y - true_y) < 1e-3, "{carrier:?}: {:?}", moved.atoms[0]);
@@ -177,10 +177,10 @@ mod tests {
     fn where_an_atom_fills_most_range_bins_all_are_kept() {
         let radar = Radar::default();
         let task = Task::default();
-        let bench = Workbench::new(&radar, &hann(radar.samples), &task, usize::MAX);
-        let samples = Samples::new(&bench.sensor, &vec![Complex64::from(1.0); bench.sensor.sample_count()]);
-        let near = Spectra::new(&radar, &bench, &samples).around(&[(100.0, 400.0); 2], 0.0);
+        let fitter = Fitter::new(&radar, &hann(radar.samples), &task, usize::MAX);
+        let samples = Samples::new(&fitter.sensor, &vec![Complex64::from(1.0); fitter.sensor.sample_count()]);
+        let near = Spectra::new(&radar, &fitter, &samples).gate(&[(100.0, 400.0); 2], 0.0);
         assert_eq!(near.samples, samples);
-        assert!(near.holds(&[(-1e9, 1e9); 2]));
+        assert!(near.contains(&[(-1e9, 1e9); 2]));
     }
 }
