@@ -1,4 +1,4 @@
-//! The fit of one atom by itself: its echo is computed once, without inner products of its reflectors.
+//! The fit of a single atom: the echo of all its reflectors is computed once, without inner products of the reflectors.
 
 use super::atom::Atom;
 use super::echoes::{Samples, echo_of_all};
@@ -8,27 +8,30 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 impl Fitter<'_> {
-    /// The result of [`Fitter::solve`] for a single atom, many times faster.
+    /// The result of [`Fitter::solve`] for a single atom with a gain for each end and without a ridge, many times faster.
     pub fn solve_alone(&self, samples: &Samples, atom: Atom) -> Fit {
         let reflectors: Vec<Reflector> = atom.reflectors(1.0).collect();
         self.work.spend(reflectors.len() + 1);
         let sensor = &self.sensor;
         let blocks = (0..samples.blocks.len()).into_par_iter().map(|block| echo_of_all(sensor, &reflectors, block));
         let echo = Samples { blocks: blocks.collect() }.flat(sensor);
-        let mut left = samples.flat(sensor);
-        let of_end = sensor.end_elements * sensor.samples;
+        let mut residual = samples.flat(sensor);
+        let end_samples = sensor.end_elements * sensor.samples;
         let (mut gains, mut energy) = ([Complex64::ZERO; 2], [0.0; 2]);
-        for (end, (left, echo)) in left.chunks_exact_mut(of_end).zip(echo.chunks_exact(of_end)).enumerate() {
+        for (end, (residual, echo)) in
+            residual.chunks_exact_mut(end_samples).zip(echo.chunks_exact(end_samples)).enumerate()
+        {
             let weights = || self.squared.iter().cycle();
-            let weighted = left.iter().zip(echo).zip(weights());
-            let (shared, power) = weighted.fold((Complex64::ZERO, 0.0), |(shared, power), ((v, echo), w)| {
-                (shared + echo.conj() * v * w, power + echo.norm_sqr() * w)
-            });
-            gains[end] = if power > 0.0 { shared / power } else { Complex64::ZERO };
-            left.iter_mut().zip(echo).for_each(|(v, echo)| *v -= echo * gains[end]);
-            energy[end] = left.iter().zip(weights()).map(|(v, w)| v.norm_sqr() * w).sum();
+            let weighted = residual.iter().zip(echo).zip(weights());
+            let (product, energy_of_echo) = weighted
+                .fold((Complex64::ZERO, 0.0), |(product, of_echo), ((v, echo), w)| {
+                    (product + echo.conj() * v * w, of_echo + echo.norm_sqr() * w)
+                });
+            gains[end] = if energy_of_echo > 0.0 { product / energy_of_echo } else { Complex64::ZERO };
+            residual.iter_mut().zip(echo).for_each(|(v, echo)| *v -= echo * gains[end]);
+            energy[end] = residual.iter().zip(weights()).map(|(v, w)| v.norm_sqr() * w).sum();
         }
-        Fit { atoms: vec![atom], gains: vec![gains], residual: Samples::new(sensor, &left), energy }
+        Fit { atoms: vec![atom], gains: vec![gains], residual: Samples::new(sensor, &residual), energy }
     }
 }
 

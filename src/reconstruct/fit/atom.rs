@@ -1,8 +1,8 @@
-//! The dictionary: the atoms into which a scene is decomposed.
+//! Atoms: single reflectors and rows of them, without their gains.
 
 use crate::scene::Reflector;
 
-/// One object without its gain. Distances in metres; y and -y have the same echoes at a line array, so that y is kept at 0 or above.
+/// One object without its gain. At a line array y and -y have the same echoes, so that a point's y is 0 or more.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Atom {
     Point {
@@ -11,7 +11,7 @@ pub enum Atom {
         /// Position ahead of the array.
         y_metres: f64,
     },
-    /// Reflectors of equal strength at equal steps along a straight line of any slant.
+    /// A row: reflectors of equal strength at equal steps along a straight line of any direction.
     Segment {
         /// Position of the first reflector along the array.
         x_metres: f64,
@@ -27,10 +27,9 @@ pub enum Atom {
 }
 
 impl Atom {
-    /// Number of continuous parameters: (x, y^2) or (x, y, dx, dy).
+    /// Number of continuous parameters: (x, y^2) of a point, (x, y, dx, dy) of a row.
     ///
-    /// A point's distance from the array follows the square of its y: near the array's axis y itself hardly changes anything, its
-    /// square does.
+    /// Near the array's axis a point's distance hardly depends on y, but linearly on its square.
     pub fn parameter_count(&self) -> usize {
         match self {
             Atom::Point { .. } => 2,
@@ -38,7 +37,7 @@ impl Atom {
         }
     }
 
-    /// The atom with its continuous parameters moved by `step`, in the order of [`Atom::parameter_count`].
+    /// The atom with `step` added to its parameters, in the order of [`Atom::parameter_count`], metres or square metres.
     pub fn moved(&self, step: &[f64]) -> Atom {
         match *self {
             Atom::Point { x_metres, y_metres } => {
@@ -61,7 +60,7 @@ impl Atom {
         }
     }
 
-    /// Position (x, y) of reflector `i`, metres; beyond the segment's ends where `i` is.
+    /// Position (x, y) of reflector `i`, metres. Beyond the row's ends it goes on at the same steps.
     pub fn position_metres(&self, i: f64) -> [f64; 2] {
         match *self {
             Atom::Point { x_metres, y_metres } => [x_metres, y_metres],
@@ -71,7 +70,7 @@ impl Atom {
         }
     }
 
-    /// Derivatives of reflector `i`'s x and of half the square of its y by the parameter.
+    /// Derivatives of reflector `i`'s x and of half the square of its y by a parameter, numbered as in [`Atom::parameter_count`].
     pub fn derivatives(&self, i: usize, parameter: usize) -> [f64; 2] {
         let i = i as f64;
         let [_, y] = self.position_metres(i);

@@ -1,4 +1,4 @@
-//! Reflectors at the channels of both ends: the factors of inner products of echoes.
+//! Frequency, phase, amplitude and derivatives of a reflector's echo at each channel: the factors of inner products of echoes.
 
 use super::sensor::{MIN_DISTANCE_METRES, Sensor, W, with_min_distance};
 use crate::radar::Pair;
@@ -6,25 +6,25 @@ use crate::scene::Reflector;
 use crate::signal::path::PairBlocks;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, phasor};
 
-/// A reflector's echo at some neighbouring channels of one end, a lane a channel. Lanes beyond the end are silent.
+/// A reflector's echo at neighbouring channels of one end, a channel in each lane. Lanes beyond the end are 0.
 #[derive(Debug, Clone, Copy)]
 pub struct EchoBlock {
-    /// Frequency in range bins, wrapped.
+    /// Beat frequency, range bins, wrapped.
     pub bins: Lanes<f64, W>,
-    /// Value at the middle of the chirp.
+    /// Complex amplitude at the middle of the chirp.
     pub middle: ComplexLanes<f64, W>,
     /// Derivative of the distance by the reflector's x.
     pub by_x: Lanes<f64, W>,
     /// Derivative of the distance by half the square of the reflector's y, per metre.
     pub by_half_square: Lanes<f64, W>,
-    /// Relative loss of amplitude by distance, per metre.
+    /// Relative decrease of the amplitude with distance, per metre.
     pub decay: Lanes<f64, W>,
 }
 
 /// A reflector's echo at both ends.
 #[derive(Debug, Clone)]
 pub struct Echo {
-    /// The first end's blocks, then as many of the last end's.
+    /// Blocks of the first end, then as many of the last.
     blocks: Vec<EchoBlock>,
 }
 
@@ -36,7 +36,7 @@ impl Echo {
     }
 }
 
-/// The echoes of some reflectors.
+/// Kernel of the echoes of `reflectors`.
 pub struct Echoes<'a> {
     pub sensor: &'a Sensor,
     pub reflectors: &'a [Reflector],
@@ -97,8 +97,8 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// The slopes for pairs. The loss of amplitude is the mean of both legs: that of legs of very different lengths differs, but little beside
-    /// the change of phase.
+    /// The slopes for transmitters and receivers apart. The decrease of the amplitude is taken as that of equal legs; for unequal ones the error is
+    /// small beside the change of phase.
     #[inline(always)]
     fn of_pairs(pairs: [Pair; W], r: &Reflector) -> Self {
         let of = Lanes::<f64, W>::splat;
@@ -108,14 +108,14 @@ impl Slopes {
             let by_distance = (dx * dx + ahead * ahead).sqrt().map(f64::recip);
             (dx * by_distance, by_distance, by_distance * ahead)
         };
-        let ((there_x, there, out), (back_x, back, home)) = (leg(0), leg(1));
+        let ((x_out, out, ahead_out), (x_back, back, ahead_back)) = (leg(0), leg(1));
         let half = of(0.5);
-        // The derivative of half the square of y by y is y; beside the line's end, where y is 0, the antennas count as on the line.
+        // The derivative of half the square of y by y is y. Where y is 0, the antennas count as on the array's line.
         let by_half_square = if pairs.iter().all(Pair::is_on_line) || r.y_metres.abs() < MIN_DISTANCE_METRES {
-            (there + back) * half
+            (out + back) * half
         } else {
-            (out + home) * of(0.5 / r.y_metres)
+            (ahead_out + ahead_back) * of(0.5 / r.y_metres)
         };
-        Slopes { by_x: (there_x + back_x) * half, by_half_square, decay: there + back }
+        Slopes { by_x: (x_out + x_back) * half, by_half_square, decay: out + back }
     }
 }

@@ -1,4 +1,4 @@
-//! Echoes of many reflectors at every channel of both ends: sums of them, and their products with a residual.
+//! The residual of samples without the echoes of many reflectors, and the products of the echoes with it.
 
 use super::sensor::{Sensor, W, with_min_distance};
 use crate::scene::Reflector;
@@ -8,35 +8,34 @@ use crate::signal::split::{Product, STRIDE, add_products, fill_factors, rows_of}
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Samples of both ends, neighbouring channels side by side: `[block of channels][sample]`, samples padded with zeros.
+/// Samples of both ends: `[block of channels][sample]`, a channel in each lane. Samples are padded with zeros.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
-    /// One lane a channel.
     pub blocks: Vec<Vec<ComplexLanes<f64, W>>>,
 }
 
-/// Products of one echo and of its echo times time with a residual, channel by channel.
+/// Inner products of one reflector's echo with a residual, one for each channel of both ends.
 #[derive(Debug, Clone)]
 pub struct Products {
-    /// `sum w^2 conj(echo) residual`.
+    /// `sum w^2 conj(echo) residual` over the samples, for the window `w`.
     pub zeroth: Vec<Complex64>,
-    /// `zeroth` with a factor `tau = (t - middle) / samples` in the sum.
+    /// The same sum with a factor `tau = (t - middle) / samples`.
     pub first: Vec<Complex64>,
 }
 
-/// The residual of samples without some echoes.
+/// Samples without some echoes.
 #[derive(Debug, Clone)]
 pub struct Remainder {
-    /// Samples less the echoes times their gains.
+    /// Samples minus the echoes times their gains, not windowed.
     pub residual: Samples,
     /// Energy of the windowed residual at each end.
     pub energy: [f64; 2],
-    /// Products of every echo with the residual.
+    /// Products of each echo with the residual, as requested.
     pub products: Vec<Products>,
 }
 
 impl Samples {
-    /// The samples of `flat`, laid out channel by channel.
+    /// From samples channel by channel, `[channels * samples]`.
     pub fn new(sensor: &Sensor, flat: &[Complex64]) -> Self {
         let padded = rows_of(sensor.samples) * STRIDE;
         let channels: Vec<&[Complex64]> = flat.chunks_exact(sensor.samples).collect();
@@ -52,7 +51,7 @@ impl Samples {
         Samples { blocks: channels.chunks(W).map(block).collect() }
     }
 
-    /// The samples, laid out channel by channel.
+    /// The samples channel by channel, `[channels * samples]`.
     pub fn flat(&self, sensor: &Sensor) -> Vec<Complex64> {
         let mut out = Vec::with_capacity(sensor.sample_count());
         for channel in 0..sensor.element_x.len() {
@@ -63,25 +62,24 @@ impl Samples {
     }
 }
 
-/// Fewest reflectors that are divided among processors, block by block of channels; there are few blocks.
+/// Least number of reflectors that are split into parts for processors. There are few blocks of channels, which are for processors too.
 const MIN_SPLIT_REFLECTORS: usize = 12;
 
-/// Number of parts into which they are divided.
+/// Number of these parts.
 const SPLIT_PARTS: usize = 2;
 
-/// The requested products of echoes with the residual.
+/// The products of echoes with a residual that are requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProductKind {
-    /// None.
     None,
-    /// Products of the echoes themselves.
+    /// [`Products::zeroth`].
     Values,
-    /// Products of the echoes and of echoes times time.
+    /// Both.
     Slopes,
 }
 
-/// `samples` less the echoes of `reflectors` times their gains at the first and at the last end, under the squared window `squared`; with the
-/// requested products of all echoes with the residual.
+/// `samples` without the echoes of `reflectors`, each with its gains at the first and at the last end. Energy and products are under the window whose
+/// squares are `squared`, `[samples]`.
 pub fn remainder(
     sensor: &Sensor,
     squared: &[f64],
@@ -127,7 +125,7 @@ pub fn remainder(
     Remainder { residual: Samples { blocks: left.into_iter().map(|l| l.residual).collect() }, energy, products }
 }
 
-/// Echoes of all `reflectors` together, of gain 1, at one block of channels.
+/// Sum of the echoes of all `reflectors` of gain 1 at one block of channels, `[padded samples]`.
 pub fn echo_of_all(sensor: &Sensor, reflectors: &[Reflector], block: usize) -> Vec<ComplexLanes<f64, W>> {
     let negative = [Complex64::from(-1.0); 2];
     let reflectors: Vec<(Reflector, [Complex64; 2])> = reflectors.iter().map(|r| (*r, negative)).collect();
@@ -136,7 +134,7 @@ pub fn echo_of_all(sensor: &Sensor, reflectors: &[Reflector], block: usize) -> V
     Simd::chosen().run(sum).sum
 }
 
-/// Products of every echo, from those of each block of channels.
+/// Products of each echo at all channels, from those of each block of channels, `[block][echo]`.
 fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Products> {
     let channels = sensor.element_x.len();
     let of_echo = |i: usize| {
@@ -150,44 +148,44 @@ fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Pro
     (0..blocks.first().map_or(0, Vec::len)).map(of_echo).collect()
 }
 
-/// Number of echoes subtracted together: their phasors fit the first-level cache.
+/// Number of reflectors whose echoes are subtracted together: their phasors fit into the first-level cache.
 const BATCH_REFLECTORS: usize = 4;
 
-/// The start of a sum of echoes.
+/// Initial value of a sum of echoes.
 enum Start<'a> {
     Silence,
     Samples(&'a [ComplexLanes<f64, W>]),
 }
 
-/// Echoes of some reflectors at one block of channels.
+/// Kernel of the echoes of some reflectors at one block of channels.
 struct Sum<'a> {
     sensor: &'a Sensor,
     first_channel: usize,
     reflectors: &'a [(Reflector, [Complex64; 2])],
     start: Start<'a>,
-    /// Whether the echoes of gain 1 are kept, too.
+    /// Whether the phasors of all echoes are part of the output.
     keeps_echoes: bool,
 }
 
-/// Phasors of some reflectors, see [`Factors`](crate::signal::split::Factors).
+/// Factors of the echoes of some reflectors ([`Factors`](crate::signal::split::Factors)).
 struct Phasors {
-    /// One reflector's phasors after another's.
+    /// `[reflector * rows + row]`.
     rows: Vec<ComplexLanes<f64, W>>,
     columns: Vec<[ComplexLanes<f64, W>; STRIDE]>,
 }
 
 impl Phasors {
     #[inline(always)]
-    fn room(reflectors: usize, rows: usize) -> Self {
+    fn zero(reflectors: usize, rows: usize) -> Self {
         let zero = ComplexLanes::zero();
         Phasors { rows: vec![zero; reflectors * rows], columns: vec![[zero; STRIDE]; reflectors] }
     }
 }
 
 struct BlockSum {
-    /// The echoes of the reflectors, of gain 1; not all of them unless they are kept.
+    /// The echoes of gain 1: of all reflectors if they are requested, else of the last batch.
     echoes: Phasors,
-    /// The sum of all echoes times minus their gains, added to the start.
+    /// The initial value minus all echoes times their gains.
     sum: Vec<ComplexLanes<f64, W>>,
 }
 
@@ -202,13 +200,13 @@ impl Kernel for Sum<'_> {
         let pairs = PairBlocks::new(|lane| sensor.pairs[channel(lane)]);
         let many = rows_of(sensor.samples);
         let mut echoes =
-            Phasors::room(if keeps_echoes { reflectors.len() } else { reflectors.len().min(BATCH_REFLECTORS) }, many);
+            Phasors::zero(if keeps_echoes { reflectors.len() } else { reflectors.len().min(BATCH_REFLECTORS) }, many);
         let mut scaled = vec![ComplexLanes::zero(); BATCH_REFLECTORS * many];
         let mut sum = match self.start {
             Start::Silence => vec![ComplexLanes::zero(); many * STRIDE],
             Start::Samples(samples) => samples.to_vec(),
         };
-        // Gains mostly start at 0.
+        // The gains of a fit begin at 0.
         let is_silent = reflectors.iter().all(|(_, gains)| *gains == [Complex64::default(); 2]);
         for (at, reflectors) in reflectors.chunks(BATCH_REFLECTORS).enumerate() {
             let first = if keeps_echoes { at * BATCH_REFLECTORS } else { 0 };
@@ -241,18 +239,17 @@ impl Kernel for Sum<'_> {
     }
 }
 
-/// All sums of one block of channels together.
+/// Kernel of the residual at one block of channels, from the sums of all parts of the reflectors.
 struct Subtract<'a> {
     squared: &'a [f64],
-    /// Samples less some echoes, and sums of other echoes times minus their gains. The first becomes the residual.
+    /// The first contains the samples; its sum is moved out.
     sums: &'a mut [BlockSum],
-    /// Whether the weighted residual is requested.
     weighted: bool,
 }
 
 struct BlockResidual {
     residual: Vec<ComplexLanes<f64, W>>,
-    /// The residual times the squared window; empty where it isn't requested.
+    /// The residual times the squared window; empty unless requested.
     weighted: Vec<ComplexLanes<f64, W>>,
     energy: Lanes<f64, W>,
 }
@@ -287,10 +284,10 @@ impl Kernel for Subtract<'_> {
     }
 }
 
-/// Products of an echo, and of the echo times time, with the residual at one block of channels.
+/// [`Products`] at one block of channels: order 0, order 1.
 type BlockProducts = [ComplexLanes<f64, W>; 2];
 
-/// Products of some echoes of one block of channels with the residual there, plain and, if requested, times time.
+/// Kernel of the products of echoes with the weighted residual at one block of channels, `[echo]`.
 struct Multiply<'a> {
     samples: usize,
     echoes: &'a Phasors,
@@ -320,7 +317,7 @@ impl Kernel for Multiply<'_> {
                     continue;
                 }
                 let (mut plain, mut timed) = (ComplexLanes::zero(), ComplexLanes::zero());
-                // The sum of b times what comes at b is that of all sums from 1, from 2, and so on.
+                // The sum of b times the product of column b is the sum of all partial sums from column 1, 2, … on.
                 for (column, v) in columns.iter().zip(part).skip(1).rev() {
                     plain = plain.plus_product::<FMA>(column.conj(), *v);
                     timed = timed + plain;

@@ -14,29 +14,30 @@ use faer::Mat;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Atoms with the echoes of all their reflectors.
+/// Columns of a linear model: the echo of each atom of gain 1, and its derivatives.
 pub struct Dictionary<'a> {
     sensor: &'a Sensor,
     moments: &'a Moments,
     pub atoms: &'a [Atom],
     echoes: Vec<Vec<Echo>>,
-    /// Column of each atom's value; its derivatives follow, where there are any.
+    /// Column of each atom's echo. Its derivatives follow if they are requested.
     pub first_column: Vec<usize>,
+    /// Number of columns.
     pub columns: usize,
     derivatives: bool,
 }
 
-/// Parameters an atom may have, and its value.
+/// Largest number of columns of an atom.
 const MAX_COLUMNS: usize = 5;
 
-/// Inner products of the columns of two atoms at one end.
+/// Inner products of the columns of two atoms at one end, `[column of the first][column of the second]`.
 type AtomProducts = [[Complex64; MAX_COLUMNS]; MAX_COLUMNS];
 
-/// Value, derivative by x and derivative by half the square of y of one echo against those of another.
+/// Inner products of two echoes at one end. In each dimension: the echo, its derivative by x, its derivative by half the square of y.
 type EchoProducts = [[Complex64; 3]; 3];
 
 impl<'a> Dictionary<'a> {
-    /// The dictionary of `atoms`, with a column for every parameter of each if `derivatives` are wanted.
+    /// The columns of `atoms`, with `derivatives` by all parameters or without.
     pub fn new(sensor: &'a Sensor, moments: &'a Moments, atoms: &'a [Atom], derivatives: bool) -> Self {
         let simd = Simd::chosen();
         let echoes_of = |atom: &Atom| {
@@ -53,7 +54,7 @@ impl<'a> Dictionary<'a> {
         Dictionary { sensor, moments, atoms, echoes, first_column, columns, derivatives }
     }
 
-    /// Inner products of all columns at the first and at the last end.
+    /// Gram matrices of the first and of the last end, `[columns, columns]`.
     pub fn grams(&self) -> [Mat<Complex64>; 2] {
         let n = self.atoms.len();
         let rows: Vec<Vec<(usize, AtomProducts)>> = (0..2 * n)
@@ -76,7 +77,7 @@ impl<'a> Dictionary<'a> {
         grams
     }
 
-    /// Inner products of all columns with a residual at the first and at the last end, from those of the reflectors' echoes.
+    /// Inner products of the columns with a residual at the first and at the last end, `[columns]`, from `products`, those of each reflector's echo.
     pub fn slopes(&self, products: &[Products]) -> [Vec<Complex64>; 2] {
         let mut slopes = [vec![Complex64::default(); self.columns], vec![Complex64::default(); self.columns]];
         let [rate, drift] = self.sensor.radians_per_metre_over_chirp();
@@ -108,7 +109,7 @@ impl<'a> Dictionary<'a> {
         1 + if self.derivatives { self.atoms[atom].parameter_count() } else { 0 }
     }
 
-    /// Whether two echoes at one end are so far apart in range that they are orthogonal.
+    /// Whether two echoes are so far apart in range at one end that they count as orthogonal.
     #[inline(always)]
     fn are_apart(&self, a: &Echo, b: &Echo, end: usize) -> bool {
         let middle =
@@ -117,10 +118,9 @@ impl<'a> Dictionary<'a> {
         bins.min((self.sensor.samples as f64 - bins).abs()) > self.moments.reach_bins
     }
 
-    /// Inner products of two echoes and their derivatives at one end.
     #[inline(always)]
     fn block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> EchoProducts {
-        if self.derivatives { self.whole_block::<FMA>(a, b, end) } else { self.value_block::<FMA>(a, b, end) }
+        if self.derivatives { self.derivative_block::<FMA>(a, b, end) } else { self.value_block::<FMA>(a, b, end) }
     }
 
     #[inline(always)]
@@ -136,7 +136,7 @@ impl<'a> Dictionary<'a> {
     }
 
     #[inline(always)]
-    fn whole_block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> EchoProducts {
+    fn derivative_block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> EchoProducts {
         let [rate, drift] = self.sensor.radians_per_metre_over_chirp().map(Lanes::<f64, W>::splat);
         let mut sums = [[ComplexLanes::zero(); 3]; 3];
         for (a, b) in a.end(end).iter().zip(b.end(end)) {
@@ -170,7 +170,7 @@ fn total(v: ComplexLanes<f64, W>) -> Complex64 {
     Complex64::new(v.re.total(), v.im.total())
 }
 
-/// Inner products of one atom with all before it and with itself, at one end.
+/// Kernel of the inner products of atom `i` with those up to itself at one end; orthogonal ones are left out.
 struct GramRow<'a, 'b> {
     dictionary: &'a Dictionary<'b>,
     i: usize,
@@ -186,15 +186,15 @@ impl Kernel for GramRow<'_, '_> {
         let mut row = Vec::new();
         for j in 0..=i {
             let mut sums = AtomProducts::default();
-            let mut touched = false;
+            let mut is_coupled = false;
             for (k, a) in d.echoes[i].iter().enumerate() {
-                // Of an atom with itself every two reflectors are visited once; the other order is the conjugate transpose.
+                // In an atom each two reflectors are visited once: the other order is the conjugate transpose.
                 let others = if j == i { k } else { d.echoes[j].len() };
                 for (l, b) in d.echoes[j][..others].iter().enumerate() {
                     if d.are_apart(a, b, end) {
                         continue;
                     }
-                    touched = true;
+                    is_coupled = true;
                     add_by_parameters(
                         &mut sums,
                         &d.block::<FMA>(a, b, end),
@@ -216,7 +216,7 @@ impl Kernel for GramRow<'_, '_> {
                     );
                 }
             }
-            if touched || j == i {
+            if is_coupled || j == i {
                 row.push((j, sums));
             }
         }
@@ -229,7 +229,7 @@ fn plus_adjoint(block: AtomProducts) -> AtomProducts {
     std::array::from_fn(|p| std::array::from_fn(|q| block[p][q] + block[q][p].conj()))
 }
 
-/// Adds a block of two reflectors to that of their atoms' parameters.
+/// Adds the products of two reflectors, numbers `k` and `l` of their atoms, to those of the atoms by the chain rule.
 #[inline(always)]
 fn add_by_parameters(
     sums: &mut AtomProducts,

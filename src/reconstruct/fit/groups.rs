@@ -1,11 +1,12 @@
-//! Groups of atoms that influence each other: neighbours in range at either end.
+//! Groups of atoms that are near each other in range at either end, so that their gains and places depend on each other.
 
 use super::atom::Atom;
 use crate::radar::{End, Radar};
 
-/// Range bins that an atom fills at each end: (first, last), not wrapped.
+/// The first and the last range bin of an atom at each end, not wrapped at the maximum range.
 pub type BinSpans = [(f64, f64); 2];
 
+/// The range bins of `atom`. Those of a row are of nine places along it.
 pub fn bin_spans(radar: &Radar, atom: &Atom) -> BinSpans {
     End::BOTH.map(|end| {
         let centre = radar.end_centre_metres(end);
@@ -23,7 +24,7 @@ pub fn bin_spans(radar: &Radar, atom: &Atom) -> BinSpans {
     })
 }
 
-/// Range bins between two atoms at the end where they are nearer, wraps of the range taken off; 0 where they overlap.
+/// Distance of two atoms in range, range bins, at the end where it is smaller; 0 where they overlap. The range wraps after `bins`.
 pub fn distance_bins(bins: usize, a: &BinSpans, b: &BinSpans) -> f64 {
     let bins = bins as f64;
     (0..2)
@@ -38,9 +39,9 @@ pub fn distance_bins(bins: usize, a: &BinSpans, b: &BinSpans) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Groups of atoms, each within `link_bins` of another of its group; only those with a marked atom. A group larger than `most`
-/// is cut to the atoms nearest to its marked ones.
-pub fn groups(bins: usize, spans: &[BinSpans], marked: &[bool], link_bins: f64, most: usize) -> Vec<Vec<usize>> {
+/// Groups of atom numbers that contain a marked atom. Each atom is within `link_bins` of another one of its group. A group has at most `max_atoms`,
+/// those nearest to a marked one.
+pub fn groups(bins: usize, spans: &[BinSpans], marked: &[bool], link_bins: f64, max_atoms: usize) -> Vec<Vec<usize>> {
     let n = spans.len();
     let mut seen = vec![false; n];
     let mut found = Vec::new();
@@ -52,14 +53,14 @@ pub fn groups(bins: usize, spans: &[BinSpans], marked: &[bool], link_bins: f64, 
         let mut group = vec![start];
         seen[start] = true;
         let mut at = 0;
-        while at < group.len() && group.len() < most {
+        while at < group.len() && group.len() < max_atoms {
             let mut near: Vec<(f64, usize)> = (0..n)
                 .filter(|&j| !group.contains(&j))
                 .map(|j| (distance_bins(bins, &spans[group[at]], &spans[j]), j))
                 .filter(|(d, _)| *d <= link_bins)
                 .collect();
             near.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (_, j) in near.into_iter().take(most - group.len()) {
+            for (_, j) in near.into_iter().take(max_atoms - group.len()) {
                 group.push(j);
                 seen[j] = true;
             }

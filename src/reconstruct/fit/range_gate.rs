@@ -1,8 +1,8 @@
-//! A few neighbouring range bins of a residual, without other ranges; a chirp of so few bins needs no more samples.
+//! A fit within a few neighbouring range bins, by as few samples.
 //!
-//! Of each channel's windowed spectrum the bins around an atom are decimated and transformed back into as many samples, evenly spaced over the
-//! same chirp. A radar that takes those has the same range bins, repeated sooner, so that everything a [`Fitter`] does holds for it. What
-//! is cut off are the far side lobes, some 1e-3 of an echo: good enough to tell spans apart and to follow a wall, not for the last digits.
+//! The range bins around an atom are taken from the spectrum of each windowed channel, and transformed back into as many samples, which are spaced
+//! evenly over the same chirp. A radar with those samples has the same range bins and a smaller maximum range, so that a [`Fitter`] works for it. The
+//! far side lobes are cut off, some 1e-3 of an echo: enough to compare rows and to find their ends, not for the last digits.
 
 use super::echoes::Samples;
 use super::groups::BinSpans;
@@ -13,29 +13,29 @@ use rayon::prelude::*;
 use rustfft::FftPlanner;
 use std::f64::consts::TAU;
 
-/// Range bins of the side lobes that are decimated beside an atom's own.
+/// Range bins beside an atom's own that are part of the gate, for its side lobes.
 const SIDE_LOBE_BINS: f64 = 8.0;
 
-/// A chirp's samples over those that are decimated; the first that leaves enough range bins is taken.
+/// Ratios of the numbers of samples of a chirp and of a gate. The first that leaves enough range bins is used.
 const DECIMATIONS: [usize; 2] = [4, 2];
 
-/// The spectra of a residual's channels.
+/// Samples with the spectra of their channels.
 pub struct Spectra<'a> {
     radar: &'a Radar,
     fitter: &'a Fitter<'a>,
     samples: &'a Samples,
-    /// Spectra of the windowed samples, channel by channel.
+    /// Spectrum of each windowed channel, `[channel][range bin]`.
     channels: Vec<Vec<Complex64>>,
 }
 
-/// Some range bins of a residual, with a fitter for them.
+/// Neighbouring range bins of samples, and a fitter for them.
 pub struct RangeGate<'a> {
-    /// The fitter of the radar with fewer samples.
+    /// A fitter for a radar with fewer samples; it counts work in the same budget.
     pub fitter: Fitter<'a>,
     pub samples: Samples,
     /// Energy of the windowed samples at both ends.
     pub energy: f64,
-    /// The first and the last range bin of each end that are intact.
+    /// The first and the last range bin of each end whose side lobes are in the gate.
     pub intact: BinSpans,
 }
 
@@ -54,7 +54,7 @@ impl<'a> Spectra<'a> {
         Spectra { radar, fitter, samples, channels }
     }
 
-    /// The range bins around `spans`, and so many beyond to each side; all of them where that is hardly fewer.
+    /// The range bins of `spans` and `beyond_bins` to each side; all range bins where more than half of them are needed.
     pub fn gate(&self, spans: &BinSpans, beyond_bins: f64) -> RangeGate<'a> {
         let margin = SIDE_LOBE_BINS + beyond_bins;
         let needed = spans.iter().map(|(low, high)| high - low + 2.0 * margin).fold(0.0, f64::max);
@@ -71,10 +71,10 @@ impl<'a> Spectra<'a> {
         self.decimated(spans, all / part)
     }
 
-    /// A fit within `bins` range bins of each end around the middle of `spans`.
+    /// The `bins` range bins around the middle of `spans` at each end.
     fn decimated(&self, spans: &BinSpans, bins: usize) -> RangeGate<'a> {
         let (all, every) = (self.radar.samples as f64, (self.radar.samples / bins) as f64);
-        // Sampled evenly about the middle of the chirp.
+        // The first sample; all are symmetric about the middle of the chirp.
         let start = (every - 1.0) / 2.0;
         let first = spans.map(|(low, high)| ((low + high - bins as f64) / 2.0).round());
         let weights: Vec<f64> = (0..bins).map(|m| hann_at(self.radar.samples, m as f64 * every + start)).collect();
@@ -99,7 +99,7 @@ impl<'a> Spectra<'a> {
         let energy = every * windowed.iter().flatten().map(Complex64::norm_sqr).sum::<f64>();
         let flat: Vec<Complex64> =
             windowed.iter().flat_map(|samples| samples.iter().zip(&weights).map(|(v, w)| v / w)).collect();
-        // The middle of the chirp stays in place if the phase of the first sample is that of a slightly higher carrier.
+        // A slightly higher carrier has the phase of the first sample, so that the middle of the chirp keeps its phase.
         let turns = self.radar.carrier.turns_per_wavelength();
         let carrier_hz = self.radar.carrier_hz + SPEED_OF_LIGHT * start / (turns * self.radar.max_range_metres());
         let radar = Radar { samples: bins, carrier_hz, ..self.radar.clone() };
@@ -111,7 +111,7 @@ impl<'a> Spectra<'a> {
 }
 
 impl RangeGate<'_> {
-    /// Whether all range bins of these spans are intact.
+    /// Whether all range bins of `spans` are intact.
     pub fn contains(&self, spans: &BinSpans) -> bool {
         spans.iter().zip(&self.intact).all(|(own, intact)| own.0 >= intact.0 && own.1 <= intact.1)
     }

@@ -1,8 +1,8 @@
-//! A bound on the work of a search: counted and not timed, so that the search ends at the same place on every machine.
+//! A budget of work, counted and not timed, so that a search ends with the same result on every machine.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// WorkBudget done and new. The unit is about the time of one reflector's echo in all samples of both ends: ten microseconds.
+/// Work done and its limit. The unit is about ten microseconds, the time of one reflector's echo in all samples of both ends.
 #[derive(Debug)]
 pub struct WorkBudget {
     done: AtomicUsize,
@@ -10,33 +10,32 @@ pub struct WorkBudget {
 }
 
 impl WorkBudget {
-    /// A budget of `limit` units.
     pub fn new(limit: usize) -> Self {
         WorkBudget { done: AtomicUsize::new(0), limit }
     }
 
-    /// Counts work; any thread may call it.
+    /// Adds `units` to the work done; any thread may call it.
     pub fn spend(&self, units: usize) {
         self.done.fetch_add(units, Ordering::Relaxed);
     }
 
-    /// Grants as much as makes the remaining work at least `units`.
+    /// Lowers the work done so far that `units` remain at least.
     pub fn grant(&self, units: usize) {
         let done = self.limit.saturating_sub(units);
         self.done.fetch_min(done, Ordering::Relaxed);
     }
 
-    /// Gives up the remaining work.
+    /// Uses up the budget.
     pub fn exhaust(&self) {
         self.done.fetch_max(self.limit, Ordering::Relaxed);
     }
 
-    /// The work done; call it where nothing runs in parallel.
+    /// The work done. It is the same each time only where nothing runs in parallel.
     pub fn done(&self) -> usize {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// Whether the new work is done. Call it where nothing runs in parallel: only there is the answer the same every time.
+    /// Whether the budget is used up. The result is the same each time only where nothing runs in parallel.
     pub fn is_spent(&self) -> bool {
         self.done.load(Ordering::Relaxed) >= self.limit
     }
