@@ -1,7 +1,7 @@
 //! A search that draws its objects, a network, and the rule that weighs them cell by cell.
 
 use super::error::Result;
-use super::judge::scales_joined;
+use super::judge::stretch_to_common_scale;
 use super::own_threshold::own_threshold;
 use super::search::{Found, Settings, find, find_from};
 use super::{About, Family, Reconstruction, Reconstructor, Request, Weights, blended, network_weight};
@@ -46,12 +46,12 @@ impl Hybrid {
         let whole = Request { normalisation: shown.whole, ..request.clone() };
         let (mut expected, mut network) =
             (found.expected(radar, &whole), self.network.reconstruct(radar, ends, &whole)?);
-        let left = found.left_decades(radar, ends, &expected);
+        let left = found.residual_decades(radar, ends, &expected);
         let mut least_etas = [expected.least_eta, network.least_eta.unwrap_or(0.0)];
         // A dynamic range is no guess, and cuts off most of what noise hides.
         let is_hidden = request.noise.is_white() && shown.part == 1.0;
         if is_hidden {
-            least_etas = scales_joined([&mut expected.map, &mut network.lambda], least_etas);
+            least_etas = stretch_to_common_scale([&mut expected.map, &mut network.lambda], least_etas);
         }
         let doubt = network.doubt.as_ref();
         let weight = network_weight(&expected.map, &network.lambda, doubt, &left, shown.part, is_hidden);
@@ -179,7 +179,7 @@ mod tests {
         let ends = ends_of(&radar, &scene);
         let request = Request::default();
         // One point can't explain a cloud.
-        let few = Settings { most_atoms: 1, ..Settings::default() };
+        let few = Settings { max_atoms: 1, ..Settings::default() };
         let hybrid = Hybrid::new(Arc::new(Baseline)).with_settings(few).reconstruct(&radar, &ends, &request).unwrap();
         let drawn = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
         let network = Baseline.reconstruct(&radar, &ends, &request).unwrap().lambda;

@@ -143,5 +143,5 @@ pub(in crate::reconstruct) fn explained(
             break;
         }
     }
-    settled.ordered()?.found(ends)
+    settled.with_model_order()?.found(ends)
 }

@@ -9,7 +9,9 @@ use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::fit::{Atom, BinSpans, Fit, Fitter, Samples, Tie, bin_spans, distance_bins};
-use crate::reconstruct::search::{APART_BINS, Detector, MIN_WORTH_RATIO, Search, Settings, Trace, tied};
+use crate::reconstruct::search::{
+    Detector, MIN_DISTANCE_BINS, MIN_ENERGY_OVER_NOISE, Search, Settings, Trace, with_tied_gains,
+};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
@@ -31,7 +33,7 @@ const LEAST_OF_STRONGEST: f64 = 0.03;
 const LEFT_OF_EXPLAINED: f64 = 0.05;
 
 /// Largest part of the energy that the last look may leave for another look to follow.
-const WORTH_ANOTHER: f64 = 0.9;
+const MAX_ROUND_RESIDUAL_PART: f64 = 0.9;
 
 /// Part of the energy that may be left unexplained: 130 dB down, above the residual of rounding, which is no white noise.
 const AS_GOOD_AS_NOTHING: f64 = 1e-13;
@@ -80,7 +82,7 @@ impl<'a> Settled<'a> {
 
     fn search(&self) -> Search<'_> {
         let Settled { radar, task, fitter, detector, settings, samples, trace, .. } = self;
-        Search { radar, fitter, detector, samples, in_noise: false, settings, task, trace }
+        Search { radar, fitter, detector, samples, has_white_noise: false, settings, task, trace }
     }
 
     pub fn left(&self) -> TwoEnds {
@@ -98,7 +100,7 @@ impl<'a> Settled<'a> {
         waiting.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
         for _ in 0..ROUNDS_A_LOOK {
             self.task.check()?;
-            let noise = MIN_WORTH_RATIO * self.fitter.noise_energy(self.radar, &self.fit);
+            let noise = MIN_ENERGY_OVER_NOISE * self.fitter.noise_energy(self.radar, &self.fit);
             let now = self.heard(&waiting);
             let mut left: Vec<(f64, Waiting)> = now.into_iter().zip(waiting).collect();
             left.retain(|(now, w)| *now > noise.max(LEFT_OF_EXPLAINED * w.energy));
@@ -111,11 +113,11 @@ impl<'a> Settled<'a> {
                 break;
             }
             let search = self.search();
-            self.fit = search.settled(search.with_points(self.fit.clone(), &taken)?)?;
+            self.fit = search.refined_in_sweeps(search.with_points(self.fit.clone(), &taken)?)?;
             waiting = left.into_iter().map(|(_, w)| w).collect();
         }
         self.fit = self.search().pruned(self.fit.clone())?;
-        let is_better = self.fit.cost() < WORTH_ANOTHER * before.cost();
+        let is_better = self.fit.cost() < MAX_ROUND_RESIDUAL_PART * before.cost();
         if self.fit.cost() > before.cost() {
             self.fit = before;
         }
@@ -126,7 +128,7 @@ impl<'a> Settled<'a> {
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn ordered(mut self) -> Result<Self, ReconstructError> {
+    pub fn with_model_order(mut self) -> Result<Self, ReconstructError> {
         if !self.is_done() {
             let search = self.search();
             self.fit = search.pruned(search.relaxed(self.fit.clone())?)?;
@@ -154,7 +156,7 @@ impl<'a> Settled<'a> {
     /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
         let Settled { radar, task, fitter, samples, mut fit, enough, .. } = self;
-        fit = tied(&fitter, &samples, fit, false);
+        fit = with_tied_gains(&fitter, &samples, fit, false);
         let is_certain = fit.cost() <= enough * CERTAIN;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
@@ -192,7 +194,7 @@ impl Waiting {
 fn strongest_apart(radar: &Radar, left: &mut Vec<(f64, Waiting)>) -> Vec<[f64; 2]> {
     let mut taken: Vec<(BinSpans, [f64; 2])> = Vec::new();
     left.retain(|(_, w)| {
-        let is_apart = taken.iter().all(|(spans, _)| distance_bins(radar.samples, spans, &w.spans) > APART_BINS);
+        let is_apart = taken.iter().all(|(spans, _)| distance_bins(radar.samples, spans, &w.spans) > MIN_DISTANCE_BINS);
         if is_apart {
             taken.push((w.spans, [w.echo.reflector.x_metres, w.echo.reflector.y_metres]));
         }

@@ -6,10 +6,10 @@
 
 use super::element_gains::ElementGains;
 use super::finish::Found;
-use super::rungs::WORTH_ANOTHER;
+use super::rungs::MAX_ROUND_RESIDUAL_PART;
 use super::settings::Settings;
-use super::state::NEARLY_NOTHING;
-use super::trace::{CALIBRATION, MOST_ATTEMPTS, decades};
+use super::state::NEARLY_COMPLETE_RESIDUAL_PART;
+use super::trace::{CALIBRATION, MAX_ATTEMPTS, decades};
 use crate::radar::{Radar, hann};
 use crate::reconstruct::attempt::{Attempt, Verdict};
 use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, Samples, Tie};
@@ -61,19 +61,19 @@ const MAX_PLAIN_RATIO: f64 = 0.1;
 
 /// Whether the residual of objects found in samples is larger than equal elements would leave.
 pub(super) fn asks_for_gains(plain: &Found) -> bool {
-    !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > NEARLY_NOTHING
+    !plain.complete && !plain.atoms.is_empty() && plain.drawn_residual_part() > NEARLY_COMPLETE_RESIDUAL_PART
 }
 
 /// The objects in samples of equal elements, starting from those of an answer where there is one.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub type SearchEnds<'a> = &'a dyn Fn(Option<&Found>, &TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
+pub type SearchFn<'a> = &'a dyn Fn(Option<&Found>, &TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
 
 /// The input of an estimate of the elements' gains.
 pub(super) struct Calibration<'a> {
     /// Searches without gains.
-    pub search: SearchEnds<'a>,
+    pub search: SearchFn<'a>,
     pub radar: &'a Radar,
     /// Samples of a peak between 1 and 2.
     pub ends: &'a TwoEnds,
@@ -109,7 +109,7 @@ impl Calibration<'_> {
         };
         let start = Found { complete: true, atoms: fit.atoms, gains: fit.gains, ..self.plain.clone() };
         let found = (self.search)(Some(&start), &gains.taken_from(self.ends), &told, self.settings)?;
-        let (left, before) = (found.drawn_left(), self.plain.drawn_left());
+        let (left, before) = (found.drawn_residual_part(), self.plain.drawn_residual_part());
         tracing::debug!(left, before, deviation = gains.deviation(), complete = found.complete, "calibrated");
         let is_certain = found.complete || self.request.noise.is_white();
         if !is_certain || left >= MAX_ENERGY_RATIO.min(MAX_PLAIN_RATIO * before) {
@@ -122,7 +122,7 @@ impl Calibration<'_> {
             verdict: Verdict::Kept,
             work: 0,
         };
-        let trace = std::iter::once(kept).chain(found.trace).take(MOST_ATTEMPTS).collect();
+        let trace = std::iter::once(kept).chain(found.trace).take(MAX_ATTEMPTS).collect();
         Ok(Some(Found { element_gains: Some(gains), trace, ..found }))
     }
 
@@ -163,7 +163,7 @@ impl Calibration<'_> {
             request.task.check()?;
             let before = last.left;
             last = turned(radar, &fitter, ends, &last.fit.atoms, &last.gains.normalised(false), true);
-            if last.left > WORTH_ANOTHER * before {
+            if last.left > MAX_ROUND_RESIDUAL_PART * before {
                 break;
             }
         }
@@ -230,7 +230,7 @@ mod tests {
         let gains = found.element_gains.as_ref().expect("gains");
         assert!((0.02..0.09).contains(&gains.deviation()), "{}", gains.deviation());
         assert_eq!(found.atoms.len(), 4);
-        assert!(found.drawn_left() < 1e-4, "{}", found.drawn_left());
+        assert!(found.drawn_residual_part() < 1e-4, "{}", found.drawn_residual_part());
     }
 
     #[test]

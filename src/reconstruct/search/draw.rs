@@ -27,7 +27,7 @@ pub enum Noise {
     /// The rounding of the thesis' program, as it follows from the objects themselves.
     Rounding,
     /// The same profile over the elements, scaled to this measured variance a sample, the mean of both ends.
-    RoundingHeard(f64),
+    RoundingScaled(f64),
     /// White noise of this variance a sample.
     Variance(f64),
 }
@@ -56,7 +56,7 @@ pub fn expected_lambda(
         .collect();
     let snr = match noise {
         Noise::Variance(variance) => snr_over(radar, &reflectors, variance),
-        Noise::Rounding | Noise::RoundingHeard(_) => None,
+        Noise::Rounding | Noise::RoundingScaled(_) => None,
     };
     let tolerance = request.noise.tolerance(request.normalisation, snr);
     let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance);
@@ -67,7 +67,7 @@ pub fn expected_lambda(
     let variance = match noise {
         Noise::Variance(v) => vec![v; radar.elements],
         Noise::Rounding => thesis_noise_variance(radar, &reflectors),
-        Noise::RoundingHeard(v) => scaled_to(radar, v, thesis_noise_variance(radar, &reflectors)),
+        Noise::RoundingScaled(v) => scaled_to(radar, v, thesis_noise_variance(radar, &reflectors)),
     };
     over_noise(map, cell_noise(radar, &variance).max(f64::MIN_POSITIVE), request.normalisation)
 }
@@ -94,7 +94,7 @@ fn over_noise(mut map: FastLogMap, cell_noise: f64, normalisation: Normalisation
     let over = OverNoise::new(cell_noise);
     // The smallest of all cells: near zero each |Y|^2 has density exp(-s/N)/N, so the minimum of |Y|^2 is exponential with the sum of these.
     let rate = map.cells.as_slice().map_or(0.0, |cells| {
-        let rows = cells.par_chunks(ROW_CELLS).map(|row| row.iter().map(|d| over.cell(*d).emptiness).sum::<f32>());
+        let rows = cells.par_chunks(ROW_CELLS).map(|row| row.iter().map(|d| over.cell(*d).zero_density).sum::<f32>());
         rows.map(f64::from).sum::<f64>()
     }) / cell_noise;
     let [weakest, strongest] = [map.min, map.max].map(|decades| f64::from(over.cell(decades).decades));

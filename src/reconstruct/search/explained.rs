@@ -21,20 +21,20 @@ const MEAN_SIDE_CELLS: usize = 2;
 const NOISE_MARGIN: f64 = 3.0;
 
 /// Least power that is left, over that of the strongest cell.
-const LEAST_LEFT: f64 = 1e-36;
+const MIN_RESIDUAL_RATIO: f64 = 1e-36;
 
 /// Columns of the map that share one look at the ends.
-const COLUMNS_TOGETHER: usize = 4;
+const COLUMNS_PER_LOOKUP: usize = 4;
 
 impl Found {
     /// Power of the residual of the drawn objects, over the drawn power in each cell of the whole array's map, in decades: `[range bins,
     /// columns]`. 0 where the residual is as strong as the drawn map; of both ends the smaller residual counts. `ends` are the searched samples,
     /// `expected` is the map of the objects found in them.
-    pub fn left_decades(&self, radar: &Radar, ends: &TwoEnds, expected: &Expected) -> Array2<f32> {
+    pub fn residual_decades(&self, radar: &Radar, ends: &TwoEnds, expected: &Expected) -> Array2<f32> {
         let samples: Vec<Complex64> = ends.flat().iter().map(|v| v * self.scale).collect();
         let beams = BEAMS_PER_ELEMENT * radar.end_elements;
-        let powers = |flat: &[Complex64]| end_beams(radar, flat, beams).map(|b| smoothed(&b.mapv(|v| v.norm_sqr())));
-        let (all, left) = rayon::join(|| powers(&samples), || powers(&self.left_when_drawn));
+        let powers = |flat: &[Complex64]| end_beams(radar, flat, beams).map(|b| moving_mean(&b.mapv(|v| v.norm_sqr())));
+        let (all, left) = rayon::join(|| powers(&samples), || powers(&self.drawn_residual));
         let noise = NOISE_MARGIN * beam_noise_power(radar, self.noise_variance);
         let drawn = &expected.map.lambda;
         let decades = (2.0 * expected.decades) as f32;
@@ -51,14 +51,15 @@ impl Found {
         let peak = [0, 1].map(|end: usize| all[end][seen_at(&views[end], peak_bin, cos_of(peak_column))]);
         let mut over = Array2::zeros((radar.samples, radar.elements));
         over.axis_iter_mut(Axis(0)).into_par_iter().enumerate().for_each(|(bin, mut row)| {
-            for first in (0..radar.elements).step_by(COLUMNS_TOGETHER) {
-                let cos = cos_of(first + COLUMNS_TOGETHER / 2);
+            for first in (0..radar.elements).step_by(COLUMNS_PER_LOOKUP) {
+                let cos = cos_of(first + COLUMNS_PER_LOOKUP / 2);
                 let of_end = |end: usize| {
                     let left = (left[end][seen_at(&views[end], bin, cos)] - noise).max(0.0);
                     left / peak[end].max(f64::MIN_POSITIVE)
                 };
-                let left = of_end(0).min(of_end(1)).clamp(LEAST_LEFT, LEAST_LEFT.recip()).log10() as f32;
-                for column in first..(first + COLUMNS_TOGETHER).min(radar.elements) {
+                let left =
+                    of_end(0).min(of_end(1)).clamp(MIN_RESIDUAL_RATIO, MIN_RESIDUAL_RATIO.recip()).log10() as f32;
+                for column in first..(first + COLUMNS_PER_LOOKUP).min(radar.elements) {
                     row[column] = left - decades * (drawn[[bin, column]] - 1.0);
                 }
             }
@@ -68,7 +69,7 @@ impl Found {
 }
 
 /// Means over neighbouring beams and rows, `[beam, range bin]`; the rows wrap.
-fn smoothed(powers: &Array2<f64>) -> Array2<f64> {
+fn moving_mean(powers: &Array2<f64>) -> Array2<f64> {
     let (beams, bins) = powers.dim();
     let width = (2 * MEAN_SIDE_CELLS + 1) as f64;
     let over_rows = Array2::from_shape_fn((beams, bins), |(beam, bin)| {
@@ -98,7 +99,7 @@ mod tests {
         let flat = simulate(&radar, &Scene::default(), floor, 1).unwrap().two_ends(&radar).flat();
         let beams = end_beams(&radar, &flat, BEAMS_PER_ELEMENT * radar.end_elements);
         let level = NOISE_MARGIN * beam_noise_power(&radar, DecibelMilliwatts(-20.0).watts());
-        for of_end in beams.map(|b| smoothed(&b.mapv(|v| v.norm_sqr()))) {
+        for of_end in beams.map(|b| moving_mean(&b.mapv(|v| v.norm_sqr()))) {
             let above = of_end.iter().filter(|power| **power > level).count() as f64 / of_end.len() as f64;
             assert!(above < 1.0 / 300.0, "{above}");
         }
@@ -111,17 +112,17 @@ mod tests {
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let mut found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
         let expected = found.expected(&radar, &Request::default());
-        let left = found.left_decades(&radar, &ends, &expected);
+        let left = found.residual_decades(&radar, &ends, &expected);
         assert!(left.iter().all(|decades| *decades < -1.0), "{left:?}");
         // Without the far reflector in the answer, its own surroundings are unexplained and the near one's are not.
         let far = Scene::of_points([(-9.0, 20.0)]);
         let missing = simulate(&radar, &far, Floor::Exact, 0).unwrap().two_ends(&radar).flat();
-        found.left_when_drawn.iter_mut().zip(&missing).for_each(|(r, m)| *r += m * found.scale);
+        found.drawn_residual.iter_mut().zip(&missing).for_each(|(r, m)| *r += m * found.scale);
         let near = found.atoms.iter().position(|atom| atom.position_metres(0.0)[0] > 0.0).unwrap();
         found.atoms = vec![found.atoms[near]];
         found.reflectivities = vec![found.reflectivities[near]];
         let expected = found.expected(&radar, &Request::default());
-        let left = found.left_decades(&radar, &ends, &expected);
+        let left = found.residual_decades(&radar, &ends, &expected);
         let cell = |x: f64, y: f64| {
             let at = radar.polar_of(x, y);
             [radar.bin_of_range(at.range_metres) as usize, radar.column_of_cos(at.cos_theta) as usize]

@@ -2,7 +2,7 @@
 
 use super::calibrate::{Calibration, asks_for_gains};
 use super::finish::{Found, finish};
-use super::ladder::{LADDER, climbed};
+use super::ladder::{LADDER, after_rungs};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
 use super::state::{Search, State};
@@ -42,7 +42,7 @@ pub fn find_from(
     // Gains of the elements outlast a moved object.
     if let Some((previous, gains)) = previous.and_then(|previous| Some((previous, previous.element_gains.clone()?))) {
         let found = search(Some(previous), &gains.taken_from(&ends), request, settings)?;
-        if found.complete || found.left_by_search <= previous.left_by_search {
+        if found.complete || found.search_residual_part <= previous.search_residual_part {
             return Ok(Found { element_gains: Some(gains), ..found });
         }
     }
@@ -71,16 +71,16 @@ fn found_in(
     let samples = Samples::new(&fitter.sensor, &flat);
     let detector = Detector::of(radar);
     let trace = Trace::default();
-    let (in_noise, task) = (request.noise.is_white(), &request.task);
+    let (has_white_noise, task) = (request.noise.is_white(), &request.task);
     let (fitter, detector, samples) = (&fitter, &detector, &samples);
-    let search = Search { radar, fitter, detector, samples, in_noise, settings, task, trace: &trace };
+    let search = Search { radar, fitter, detector, samples, has_white_noise, settings, task, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
-    let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
+    let measure = followed.as_ref().filter(|f| !f.is_complete).and(previous).map(|p| p.search_residual_part);
     let nothing = || State::of(fitter.solve(samples, Vec::new(), Tie::PerEnd, 0.0));
-    let answer = search.ordered(followed.map_or_else(|| climbed(&search, LADDER, nothing()), Ok)?)?;
+    let answer = search.with_model_order(followed.map_or_else(|| after_rungs(&search, LADDER, nothing()), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
     let found = finish(radar, fitter, samples, answer, request, scale)?;
-    let left_by_search = measure.unwrap_or(found.left_by_search);
-    Ok(Found { left_by_search, trace: trace.into_attempts(), ..found })
+    let search_residual_part = measure.unwrap_or(found.search_residual_part);
+    Ok(Found { search_residual_part, trace: trace.into_attempts(), ..found })
 }

@@ -16,7 +16,7 @@ const MAX_TEETH: i32 = 6;
 /// Most atoms whose teeth are tried one by one.
 const MAX_COMBED_ATOMS: usize = 12;
 
-/// Most reflectors of atoms whose gains are tied: beyond, all against all takes too long.
+/// Most reflectors of atoms whose gains are with_tied_gains: beyond, all against all takes too long.
 const MAX_TIED_REFLECTORS: usize = 64;
 
 /// Most reflectors that are fitted without a window, where all of them know of each other.
@@ -25,7 +25,7 @@ const MAX_UNWINDOWED_REFLECTORS: usize = 40;
 /// Work granted to the refinement without a window.
 const UNWINDOWED_WORK: usize = 50_000;
 
-const TIED: Limits = Limits { max_steps: 20, min_decrease: 1e-6, ridge: 0.0 };
+const TIED_LIMITS: Limits = Limits { max_steps: 20, min_decrease: 1e-6, ridge: 0.0 };
 
 /// Largest reflectivity over the largest that any of the objects has when it is fitted alone, as a ratio: beyond, neighbours cancel each other.
 const MAX_OVER_ALONE: f64 = 1.5;
@@ -36,7 +36,7 @@ const RIDGES: [f64; 7] = [0.0002, 0.0006, 0.002, 0.006, 0.02, 0.06, 0.2];
 /// Range bins and columns below which two points over white noise are one.
 const SAME_PLACE: [f64; 2] = [0.25, 1.0];
 
-/// Energy that tied gains may leave over what each end's own leave, as a ratio: at a wrong place they leave more.
+/// Energy that with_tied_gains gains may leave over what each end's own leave, as a ratio: at a wrong place they leave more.
 const TIED_COST_RATIO: f64 = 4.0;
 
 /// The objects found in the samples.
@@ -48,7 +48,7 @@ pub struct Found {
     /// Factor by which the samples were multiplied to have a peak between 1 and 2.
     pub scale: f64,
     /// Part of the samples' energy that was left by the last search from scratch: answers that follow it are measured by it.
-    pub left_by_search: f64,
+    pub search_residual_part: f64,
     /// Mean power of the scaled samples.
     pub sample_power: f64,
     /// Mean power of the residual of the scaled samples.
@@ -60,20 +60,20 @@ pub struct Found {
     /// For each object the energy that would be left more without it, over what is left around its range, in decades.
     pub needed_decades: Vec<f64>,
     /// Samples times `scale` less the objects as they are drawn, with one gain for both ends, channel by channel, first end first.
-    pub left_when_drawn: Vec<Complex64>,
+    pub drawn_residual: Vec<Complex64>,
     /// Whether nothing stands out of the residual any more.
     pub complete: bool,
     /// Gains of the elements, where the samples ask for them: the objects are those of samples without them.
     pub element_gains: Option<ElementGains>,
-    /// The attempts of the search, in their order; at most [`MOST_ATTEMPTS`](super::MOST_ATTEMPTS).
+    /// The attempts of the search, in their order; at most [`MAX_ATTEMPTS`](super::MAX_ATTEMPTS).
     pub trace: Vec<Attempt>,
 }
 
 impl Found {
     /// Part of the samples' energy that the objects leave as they are drawn, less noise.
-    pub(super) fn drawn_left(&self) -> f64 {
-        let count = self.left_when_drawn.len().max(1) as f64;
-        let left = self.left_when_drawn.iter().map(Complex64::norm_sqr).sum::<f64>() / count;
+    pub(super) fn drawn_residual_part(&self) -> f64 {
+        let count = self.drawn_residual.len().max(1) as f64;
+        let left = self.drawn_residual.iter().map(Complex64::norm_sqr).sum::<f64>() / count;
         (left - self.noise_variance).max(0.0) / self.sample_power.max(f64::MIN_POSITIVE)
     }
 
@@ -95,7 +95,7 @@ pub(super) fn finish(
     request: &Request,
     scale: f64,
 ) -> Result<Found, ReconstructError> {
-    let State { fit, is_sure: complete, .. } = answer;
+    let State { fit, is_complete: complete, .. } = answer;
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     let noise_model = fitter.noise_model;
     // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
@@ -104,7 +104,7 @@ pub(super) fn finish(
         .map(|flat| flat.with_channels_of(&samples.flat(&fitter.sensor)).with_noise(noise_model));
     let fitter = flat_fitter.as_ref().unwrap_or(fitter);
     let apart = if flat_fitter.is_some() { fitter.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
-    let best = if complete { tied(fitter, samples, apart, request.noise.is_white()) } else { apart };
+    let best = if complete { with_tied_gains(fitter, samples, apart, request.noise.is_white()) } else { apart };
     let best = if request.noise.is_white() { merged(radar, fitter, samples, best) } else { best };
     let is_certain = complete && !request.noise.is_white();
     let best = if is_certain { best } else { bounded(fitter, samples, best) };
@@ -115,12 +115,12 @@ pub(super) fn finish(
     let weight = fitter.squared.iter().sum::<f64>() * fitter.sensor.element_x.len() as f64;
     Ok(Found {
         reflectivities: reflectivities(&best.gains),
-        left_by_search: best.cost() / all,
+        search_residual_part: best.cost() / all,
         sample_power: all / weight,
         residual_variance: best.cost() / weight,
         noise_variance,
         needed_decades: needed_decades(radar, fitter, &best, noise_variance),
-        left_when_drawn: left_when_drawn(fitter, samples, &best),
+        drawn_residual: drawn_residual(fitter, samples, &best),
         atoms: best.atoms,
         gains: best.gains,
         scale,
@@ -156,7 +156,7 @@ fn merged(radar: &Radar, fitter: &Fitter, samples: &Samples, fit: Fit) -> Fit {
     fitter.solve(samples, kept.into_iter().map(|i| fit.atoms[i]).collect(), tie_of(&fit), 0.0)
 }
 
-/// Whether the gains of a fit are tied.
+/// Whether the gains of a fit are with_tied_gains.
 fn tie_of(fit: &Fit) -> Tie {
     if fit.gains.iter().all(|g| g[0] == g[1]) { Tie::Both } else { Tie::PerEnd }
 }
@@ -181,17 +181,17 @@ fn bounded(fitter: &Fitter, samples: &Samples, mut fit: Fit) -> Fit {
 }
 
 /// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.
-pub fn tied(fitter: &Fitter, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
+pub fn with_tied_gains(fitter: &Fitter, samples: &Samples, fit: Fit, has_white_noise: bool) -> Fit {
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     if reflectors > MAX_TIED_REFLECTORS {
         return fit;
     }
-    let mut tied = fitter.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
-    if in_noise && tied.atoms.len() <= MAX_COMBED_ATOMS {
-        tied = combed(fitter, samples, tied);
+    let mut with_tied_gains = fitter.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED_LIMITS);
+    if has_white_noise && with_tied_gains.atoms.len() <= MAX_COMBED_ATOMS {
+        with_tied_gains = combed(fitter, samples, with_tied_gains);
     }
     // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
-    if tied.cost() <= TIED_COST_RATIO * fit.cost() { tied } else { fit }
+    if with_tied_gains.cost() <= TIED_COST_RATIO * fit.cost() { with_tied_gains } else { fit }
 }
 
 /// For each atom of `fit` the energy that would be left more without it, over what `fit` leaves or noise holds around its range, in decades.
@@ -210,9 +210,9 @@ fn needed_decades(radar: &Radar, fitter: &Fitter, fit: &Fit, noise_variance: f64
 }
 
 /// The residual of the objects with one gain for both ends: it keeps an echo whose strength differs between the ends.
-fn left_when_drawn(fitter: &Fitter, samples: &Samples, fit: &Fit) -> Vec<Complex64> {
-    let tied: Vec<Gains> = fit.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
-    fitter.subtract(samples, &fit.atoms, &tied).residual.flat(&fitter.sensor)
+fn drawn_residual(fitter: &Fitter, samples: &Samples, fit: &Fit) -> Vec<Complex64> {
+    let with_tied_gains: Vec<Gains> = fit.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
+    fitter.subtract(samples, &fit.atoms, &with_tied_gains).residual.flat(&fitter.sensor)
 }
 
 /// Each point tried on the neighbouring teeth of the comb, the others staying where they are.
@@ -233,7 +233,8 @@ fn combed(fitter: &Fitter, samples: &Samples, fit: Fit) -> Fit {
                 let cos = x / range + f64::from(k) * tooth;
                 let y_metres = range * (1.0 - cos * cos).max(0.0).sqrt();
                 let atom = Atom::Point { x_metres: range * cos, y_metres };
-                (cos.abs() < 1.0).then(|| fitter.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED))
+                (cos.abs() < 1.0)
+                    .then(|| fitter.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED_LIMITS))
             })
             .collect();
         let trial = trials.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
@@ -242,7 +243,7 @@ fn combed(fitter: &Fitter, samples: &Samples, fit: Fit) -> Fit {
             (best.residual, best.energy) = (trial.residual, trial.energy);
         }
     }
-    fitter.refine(samples, best.atoms, best.gains, Tie::Both, TIED)
+    fitter.refine(samples, best.atoms, best.gains, Tie::Both, TIED_LIMITS)
 }
 
 /// Real reflectivities from complex gains: the phase all share belongs to the receiver, what is left of each gain is its sign.

@@ -12,41 +12,41 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Limits of the refinement of a group while more atoms are to come.
-const GROWING: Limits = Limits { max_steps: 12, min_decrease: 3e-2, ridge: 0.0 };
+const GROWING_LIMITS: Limits = Limits { max_steps: 12, min_decrease: 3e-2, ridge: 0.0 };
 
 /// Atoms this many bins apart at either end are refined together.
 const LINK_BINS: f64 = 6.0;
 
 /// Most rounds of refinement where more is left than noise.
-const MOST_SWEEPS: usize = 5;
+const MAX_SWEEPS: usize = 5;
 
 /// Another round needs that this part of the energy at most is left by the last.
-const WORTH_ANOTHER_SWEEP: f64 = 0.3;
+const MAX_SWEEP_RESIDUAL_PART: f64 = 0.3;
 
 /// A point that both ends see has the same gain at both, within this factor while its neighbours are not known.
-const MOST_UNLIKE: f64 = 3.0;
+const MAX_NEW_GAIN_RATIO: f64 = 3.0;
 
 /// Power in a range bin, over that in the bin of which most is left, up to which it may be a side lobe.
-const SIDE_LOBE: f64 = 1e-4;
+const MAX_SIDE_LOBE_POWER_RATIO: f64 = 1e-4;
 
 /// Echoes that a look at the residual takes as long as.
-pub const LOOK_ECHOES: usize = 200;
+pub const DETECTION_WORK: usize = 200;
 
 /// Work after which growing is checked for its worth.
-const LOOK_BACK: usize = 3000;
+const PROGRESS_WORK: usize = 3000;
 
 /// Largest part of the energy that this work may leave for growing to continue.
-const WORTH_GOING_ON: f64 = 1.0 / 3.0;
+const MAX_PROGRESS_RESIDUAL_PART: f64 = 1.0 / 3.0;
 
 /// Most atoms refined together.
-const MOST_TOGETHER: usize = 48;
+const MAX_GROUP_ATOMS: usize = 48;
 
 /// Candidates taken from one look at the residual.
-const MOST_A_ROUND: usize = 16;
+const MAX_NEW_POINTS: usize = 16;
 
 impl Search<'_> {
     /// Records an attempt that was refused.
-    pub fn refuse(&self, tried: Tried, gain_decades: f64, why: Refusal) {
+    pub fn record_refusal(&self, tried: Tried, gain_decades: f64, why: Refusal) {
         self.trace.add(tried, gain_decades, Verdict::Refused(why), self.fitter.work.done());
     }
 
@@ -68,11 +68,11 @@ impl Search<'_> {
     /// The power in a beam that stands out of the noise of `flat`.
     fn least_power(&self, flat: &[Complex64]) -> f64 {
         let noise = beam_noise_power(self.radar, self.fitter.noise_model.noise_variance(self.radar, flat));
-        (noise * self.settings.least_prominence).max(self.rounding_power())
+        (noise * self.settings.min_prominence).max(self.rounding_power())
     }
 
     /// Whether the residual `flat` has something longer than a few reflectors.
-    pub fn is_long(&self, flat: &[Complex64]) -> bool {
+    pub fn has_long_run(&self, flat: &[Complex64]) -> bool {
         let variance = self.fitter.noise_model.noise_variance(self.radar, flat);
         longest_run_bins(self.radar, flat, variance) >= LONG_RUN_BINS
     }
@@ -97,20 +97,20 @@ impl Search<'_> {
     /// [`ReconstructError::Cancelled`].
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         let mut look_back = (self.fitter.work.done(), fit.cost());
-        while fit.atoms.len() < self.settings.most_atoms && !self.fitter.work.is_spent() {
+        while fit.atoms.len() < self.settings.max_atoms && !self.fitter.work.is_spent() {
             self.task.check()?;
-            self.fitter.work.spend(LOOK_ECHOES);
+            self.fitter.work.spend(DETECTION_WORK);
             let flat = fit.residual.flat(&self.fitter.sensor);
-            let room = self.settings.most_atoms - fit.atoms.len();
-            let points = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MOST_A_ROUND.min(room));
+            let room = self.settings.max_atoms - fit.atoms.len();
+            let points = self.detector.peaks(self.radar, &flat, self.least_power(&flat), MAX_NEW_POINTS.min(room));
             if points.is_empty() {
                 break;
             }
             fit = self.with_points(fit, &points)?;
             tracing::debug!(atoms = fit.atoms.len(), cost = fit.cost(), new = points.len(), "grown");
             let (done, cost) = look_back;
-            if self.fitter.work.done() > done + LOOK_BACK {
-                if fit.cost() > WORTH_GOING_ON * cost {
+            if self.fitter.work.done() > done + PROGRESS_WORK {
+                if fit.cost() > MAX_PROGRESS_RESIDUAL_PART * cost {
                     // Too dense to be told apart: what more there is to gain is small and dear.
                     self.fitter.work.exhaust();
                 }
@@ -124,12 +124,12 @@ impl Search<'_> {
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn settled(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_SWEEPS {
+    pub fn refined_in_sweeps(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for _ in 0..MAX_SWEEPS {
             let before = fit.cost();
             let all = vec![true; fit.atoms.len()];
-            fit = self.refined(fit, &all, LINK_BINS, GROWING)?;
-            if fit.cost() > WORTH_ANOTHER_SWEEP * before {
+            fit = self.refined(fit, &all, LINK_BINS, GROWING_LIMITS)?;
+            if fit.cost() > MAX_SWEEP_RESIDUAL_PART * before {
                 break;
             }
         }
@@ -142,18 +142,18 @@ impl Search<'_> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn with_points(&self, mut fit: Fit, points: &[[f64; 2]]) -> Result<Fit, ReconstructError> {
-        let mut placed: Vec<(Atom, Gains)> = points.par_iter().map(|p| self.placed(&fit, *p)).collect();
+        let mut refined_point: Vec<(Atom, Gains)> = points.par_iter().map(|p| self.refined_point(&fit, *p)).collect();
         // The strongest is taken as it is; of the others those that both ends believe in.
         let mut strongest = true;
-        placed.retain(|(atom, gains)| {
-            let is_kept = std::mem::take(&mut strongest) || ends_agree(gains, MOST_UNLIKE);
+        refined_point.retain(|(atom, gains)| {
+            let is_kept = std::mem::take(&mut strongest) || ends_agree(gains, MAX_NEW_GAIN_RATIO);
             if !is_kept {
-                self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
+                self.record_refusal(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
             is_kept
         });
         let known = fit.atoms.len();
-        for (atom, gains) in placed {
+        for (atom, gains) in refined_point {
             fit.atoms.push(atom);
             fit.gains.push(gains);
         }
@@ -161,18 +161,18 @@ impl Search<'_> {
         let left = self.fitter.subtract(&fit.residual, new, &fit.gains[known..]);
         (fit.residual, fit.energy) = (left.residual, left.energy);
         let marked: Vec<bool> = (0..fit.atoms.len()).map(|i| i >= known).collect();
-        self.refined(fit, &marked, LINK_BINS, GROWING)
+        self.refined(fit, &marked, LINK_BINS, GROWING_LIMITS)
     }
 
     /// A point moved to its best place, at its own range or one wrap nearer or further out: ranges repeat, curvature does not.
-    pub fn placed(&self, fit: &Fit, [x_metres, y_metres]: [f64; 2]) -> (Atom, Gains) {
+    pub fn refined_point(&self, fit: &Fit, [x_metres, y_metres]: [f64; 2]) -> (Atom, Gains) {
         let own = Atom::Point { x_metres, y_metres };
         let wrap = self.radar.max_range_metres();
         let is_near = x_metres.hypot(y_metres) <= wrap;
         let alone = |atom: Atom| {
             self.fitter.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, Limits::ROUGH)
         };
-        let (own, other) = rayon::join(|| alone(own), || alone(wrapped([x_metres, y_metres], wrap)));
+        let (own, other) = rayon::join(|| alone(own), || alone(at_other_wrap([x_metres, y_metres], wrap)));
         // The nearer one unless the other is clearly better.
         let (near, far) = if is_near { (own, other) } else { (other, own) };
         if far.cost() >= 0.5 * near.cost() {
@@ -180,7 +180,7 @@ impl Search<'_> {
         }
         // The nearer one may only not have got there: where the array is small, both places sound alike.
         let [x, y] = far.atoms[0].position_metres(0.0);
-        let back = if x.hypot(y) > wrap { alone(wrapped([x, y], wrap)) } else { near };
+        let back = if x.hypot(y) > wrap { alone(at_other_wrap([x, y], wrap)) } else { near };
         let better = if far.cost() < 0.5 * back.cost() { far } else { back };
         (better.atoms[0], better.gains[0])
     }
@@ -197,12 +197,12 @@ impl Search<'_> {
         limits: Limits,
     ) -> Result<Fit, ReconstructError> {
         let spans: Vec<BinSpans> = fit.atoms.iter().map(|a| bin_spans(self.radar, a)).collect();
-        for group in groups(self.radar.samples, &spans, marked, link_bins, MOST_TOGETHER) {
+        for group in groups(self.radar.samples, &spans, marked, link_bins, MAX_GROUP_ATOMS) {
             self.task.check()?;
             if self.fitter.work.is_spent() {
                 break;
             }
-            self.fitter.work.spend(LOOK_ECHOES / 2);
+            self.fitter.work.spend(DETECTION_WORK / 2);
             let atoms: Vec<Atom> = group.iter().map(|&i| fit.atoms[i]).collect();
             let gains: Vec<Gains> = group.iter().map(|&i| fit.gains[i]).collect();
             let back: Vec<Gains> = gains.iter().map(|g| [-g[0], -g[1]]).collect();
@@ -226,13 +226,13 @@ impl Search<'_> {
     }
 
     /// For every atom whether more is left in its spans than noise, and than the side lobes of what is left in others.
-    pub fn in_need(&self, fit: &Fit) -> Vec<bool> {
+    pub fn have_residual(&self, fit: &Fit) -> Vec<bool> {
         let flat = fit.residual.flat(&self.fitter.sensor);
         let profile = Profile::new(self.radar, &flat);
         let noise = beam_noise_power(self.radar, self.fitter.noise_model.noise_variance(self.radar, &flat));
         let left: Vec<f64> = fit.atoms.iter().map(|atom| profile.peak_energy(&bin_spans(self.radar, atom))).collect();
         let strongest = left.iter().copied().fold(0.0, f64::max);
-        let least = (ABOVE_NOISE * noise.max(self.rounding_power())).max(SIDE_LOBE * strongest);
+        let least = (ABOVE_NOISE * noise.max(self.rounding_power())).max(MAX_SIDE_LOBE_POWER_RATIO * strongest);
         left.into_iter().map(|left| left > least).collect()
     }
 
@@ -240,10 +240,10 @@ impl Search<'_> {
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn refined_where_needed(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for sweep in 0..MOST_SWEEPS {
+    pub fn refined_by_residual(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        for sweep in 0..MAX_SWEEPS {
             let before = fit.cost();
-            let marked = self.in_need(&fit);
+            let marked = self.have_residual(&fit);
             if !marked.contains(&true) {
                 break;
             }
@@ -256,7 +256,7 @@ impl Search<'_> {
                 marked = marked.iter().filter(|m| **m).count(),
                 "refined where needed"
             );
-            if fit.cost() > WORTH_ANOTHER_SWEEP * before {
+            if fit.cost() > MAX_SWEEP_RESIDUAL_PART * before {
                 break;
             }
         }
@@ -267,7 +267,7 @@ impl Search<'_> {
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn polished(&self, mut fit: Fit, rounds: usize) -> Result<Fit, ReconstructError> {
+    pub fn converged(&self, mut fit: Fit, rounds: usize) -> Result<Fit, ReconstructError> {
         for _ in 0..rounds {
             let before = fit.cost();
             let all = vec![true; fit.atoms.len()];
@@ -281,7 +281,7 @@ impl Search<'_> {
 }
 
 /// The place one wrap of the range further out, or nearer if it lies beyond the maximum range.
-fn wrapped([x_metres, y_metres]: [f64; 2], max_range_metres: f64) -> Atom {
+fn at_other_wrap([x_metres, y_metres]: [f64; 2], max_range_metres: f64) -> Atom {
     let range = x_metres.hypot(y_metres).max(1e-3);
     let other = if range > max_range_metres { -1.0 } else { 1.0 };
     let far = 1.0 + other * max_range_metres / range;

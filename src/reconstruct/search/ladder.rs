@@ -11,7 +11,7 @@ use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 
 /// The change that a rung makes to the state of a search.
-type Climb = fn(&Search, State) -> Result<State, ReconstructError>;
+type RungWork = fn(&Search, State) -> Result<State, ReconstructError>;
 
 /// One step of the search.
 pub struct Rung {
@@ -19,7 +19,7 @@ pub struct Rung {
     pub name: &'static str,
     /// The effect of the rung, in a sentence.
     pub does: &'static str,
-    climb: Climb,
+    work: RungWork,
 }
 
 /// Every rung, in their order.
@@ -27,17 +27,17 @@ pub const LADDER: &[Rung] = &[
     Rung {
         name: "tones",
         does: "Pairs the tones that each end hears into points. Keeps them only if they are all there is.",
-        climb: |search, state| search.climb_tones(state),
+        work: |search, state| search.tone_points(state),
     },
     Rung {
         name: "lines",
         does: "Looks for lines of any direction that begin where both ends may hear a point.",
-        climb: |search, state| search.climb_lines(state),
+        work: |search, state| search.rows_of_any_direction(state),
     },
     Rung {
         name: "pairs",
         does: "Pairs the tones that the lines leave into points, and puts lines in place of points at equal steps.",
-        climb: |search, state| search.climb_pairs(state),
+        work: |search, state| search.paired_in_rounds(state),
     },
     POINTS,
 ];
@@ -46,23 +46,23 @@ pub const LADDER: &[Rung] = &[
 pub(super) const POINTS: Rung = Rung {
     name: "points",
     does: "Adds points where the residual of both ends stands out, refines them, and takes away those that explain too little.",
-    climb: |search, state| search.climb_points(state),
+    work: |search, state| search.points_in_residual(state),
 };
 
 /// `state` after `rungs`, one after another until nothing stands out.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub(super) fn climbed(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
+pub(super) fn after_rungs(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
     for rung in rungs {
         search.trace.enter(rung.name);
         let (before, attempts) = (state.fit.atoms.clone(), search.trace.count());
-        state = (rung.climb)(search, state)?;
-        search.tell_of(&before, &state.fit);
+        state = (rung.work)(search, state)?;
+        search.record_changes(&before, &state.fit);
         if search.trace.count() == attempts {
-            search.refuse(Tried::Nothing, 0.0, Refusal::NothingFound);
+            search.record_refusal(Tried::Nothing, 0.0, Refusal::NothingFound);
         }
-        if state.is_sure {
+        if state.is_complete {
             break;
         }
     }

@@ -14,9 +14,9 @@
 //! | `state` | the input and the state of a search |
 //! | `propose` | sources of candidates, one a file |
 //! | `begin` | the test of proposed lines against the samples |
-//! | `on_wall` | the test for points on a line |
-//! | `walls` | all lines together |
-//! | `wall_ends` | a line followed to its ends |
+//! | `on_row` | the test for points on a line |
+//! | `rows` | all lines together |
+//! | `row_ends` | a line followed to its ends |
 //! | `grow` | the greedy loop over points |
 //! | `trace` | the attempts of the search, and their verdicts |
 //! | `prune` | the removal of needless atoms |
@@ -42,11 +42,13 @@ mod grow;
 mod ladder;
 #[cfg(test)]
 mod noise_tests;
-mod on_wall;
+mod on_row;
 mod over_noise;
 mod propose;
 mod prune;
 mod relax;
+mod row_ends;
+mod rows;
 mod rungs;
 mod settings;
 mod state;
@@ -57,22 +59,20 @@ mod trace;
 mod trace_tests;
 #[cfg(test)]
 mod tracking_tests;
-mod wall_ends;
-mod walls;
 
 pub use super::fit::Atom;
 pub use draw::Expected;
 pub use element_gains::ElementGains;
 pub use find::{find, find_from};
 pub use finish::Found;
-pub(super) use finish::tied;
+pub(super) use finish::with_tied_gains;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
-pub(super) use prune::{APART_BINS, MIN_WORTH_RATIO};
+pub(super) use prune::{MIN_DISTANCE_BINS, MIN_ENERGY_OVER_NOISE};
 pub use settings::Settings;
 pub(super) use state::Search;
 pub(super) use trace::Trace;
-pub use trace::{CALIBRATION, FOLLOWING, MOST_ATTEMPTS, ORDERING};
+pub use trace::{CALIBRATION, FOLLOWING, MAX_ATTEMPTS, ORDERING};
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
@@ -181,7 +181,7 @@ impl Found {
         let noise = match request.noise {
             NoisePrior::Rounding if self.complete => Noise::Rounding,
             // Incomplete objects give a wrong rounding, so that the measured one is used.
-            NoisePrior::Rounding => Noise::RoundingHeard(self.noise_variance),
+            NoisePrior::Rounding => Noise::RoundingScaled(self.noise_variance),
             NoisePrior::Nothing => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
             NoisePrior::White { .. } if self.complete => Noise::Variance(self.residual_variance),
             NoisePrior::White { .. } => Noise::Variance(self.noise_variance),

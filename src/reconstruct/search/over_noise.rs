@@ -7,20 +7,20 @@ use std::sync::LazyLock;
 pub const EULER: f64 = 0.577_215_664_901_532_9;
 
 /// Power over noise from which the noise no longer shows in the mean of the logarithm.
-const LARGE_RATIO: f64 = 40.0;
+const MAX_NOISY_POWER_RATIO: f64 = 40.0;
 
 /// Decades beneath the noise from which a cell no longer shows.
-const DEEPEST_DECADES: f64 = 3.0;
+const MAX_DEPTH_DECADES: f64 = 3.0;
 
 /// Entries of the table for each decade; a straight line between them is off by at most 1e-6 decades.
 const NODES_PER_DECADE: f64 = 1024.0;
 
 /// Mean lift of a cell by the noise, in decades, and density of the power near zero, as a part of noise's own, over the cell's decades above the
-/// noise, from [`DEEPEST_DECADES`] beneath it on.
+/// noise, from [`MAX_DEPTH_DECADES`] beneath it on.
 static TABLE: LazyLock<Vec<[f32; 2]>> = LazyLock::new(|| {
-    let nodes = (NODES_PER_DECADE * (DEEPEST_DECADES + 0.5 * LARGE_RATIO.log10())) as usize + 2;
+    let nodes = (NODES_PER_DECADE * (MAX_DEPTH_DECADES + 0.5 * MAX_NOISY_POWER_RATIO.log10())) as usize + 2;
     let node = |i: usize| {
-        let decades = i as f64 / NODES_PER_DECADE - DEEPEST_DECADES;
+        let decades = i as f64 / NODES_PER_DECADE - MAX_DEPTH_DECADES;
         let ratio = 10f64.powf(2.0 * decades);
         [(0.5 * ln_plus_e1(ratio) / LN_10 - decades) as f32, (-ratio).exp() as f32]
     };
@@ -40,7 +40,7 @@ pub struct NoisyCell {
     /// Mean decades of its amplitude.
     pub decades: f32,
     /// Density of its power near zero, as a part of that of noise alone: the rate at which it is the smallest cell.
-    pub emptiness: f32,
+    pub zero_density: f32,
 }
 
 impl OverNoise {
@@ -53,21 +53,21 @@ impl OverNoise {
     #[inline(always)]
     pub fn cell(&self, decades: f32) -> NoisyCell {
         let over = decades - self.noise_decades;
-        let at = (over + DEEPEST_DECADES as f32) * NODES_PER_DECADE as f32;
+        let at = (over + MAX_DEPTH_DECADES as f32) * NODES_PER_DECADE as f32;
         // A float cast saturates: deeper cells take the first node.
         let node = at as usize;
-        let Some(&[[lift, emptiness], [next_lift, next_emptiness]]) =
+        let Some(&[[lift, zero_density], [next_lift, next_emptiness]]) =
             self.table.get(node..node + 2).and_then(|n| n.first_chunk())
         else {
-            return NoisyCell { decades, emptiness: 0.0 };
+            return NoisyCell { decades, zero_density: 0.0 };
         };
         let part = at.fract();
         if at <= 0.0 {
-            return NoisyCell { decades: self.noise_decades - DEEPEST_DECADES as f32 + lift, emptiness };
+            return NoisyCell { decades: self.noise_decades - MAX_DEPTH_DECADES as f32 + lift, zero_density };
         }
         NoisyCell {
             decades: decades + lift + part * (next_lift - lift),
-            emptiness: emptiness + part * (next_emptiness - emptiness),
+            zero_density: zero_density + part * (next_emptiness - zero_density),
         }
     }
 }
@@ -114,7 +114,7 @@ mod tests {
             let mean = if ratio < 600.0 { ln_plus_e1(ratio) } else { ratio.ln() };
             let expected = 0.5 * (noise.log10() + mean / LN_10);
             assert!((f64::from(found.decades) - expected).abs() < 1e-5, "{ratio}: {found:?} {expected}");
-            assert!((f64::from(found.emptiness) - (-ratio).exp()).abs() < 1e-5, "{ratio}: {found:?}");
+            assert!((f64::from(found.zero_density) - (-ratio).exp()).abs() < 1e-5, "{ratio}: {found:?}");
         }
     }
 }

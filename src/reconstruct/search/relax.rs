@@ -6,8 +6,8 @@
 //! one more explains less than it costs. What an echo costs is the price of its four numbers, a place and a complex gain, in the
 //! likelihood (P. Stoica and Y. Selén, "Model-order selection: a review of information criterion rules", IEEE Signal Process. Mag. 21, 2004).
 
-use super::grow::LOOK_ECHOES;
-use super::settings::price_of_an_echo;
+use super::grow::DETECTION_WORK;
+use super::settings::min_echo_energy_ratio;
 use super::state::{Search, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
@@ -19,7 +19,7 @@ const HIDING_BINS: f64 = 1.5;
 
 /// Most echoes of a group that is sought anew, and most that are sought in it: the time grows with the cube of their number.
 const MAX_GROUP: usize = 20;
-const MAX_SOUGHT: usize = 8;
+const MAX_GROUP_ECHOES: usize = 8;
 
 /// Times that every echo of a group is taken out and sought anew.
 const MAX_CYCLES: usize = 2;
@@ -34,7 +34,7 @@ impl Search<'_> {
         let are_points: Vec<bool> = fit.atoms.iter().map(|atom| matches!(atom, Atom::Point { .. })).collect();
         let found = groups(self.radar.samples, &spans, &are_points, HIDING_BINS, usize::MAX);
         let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude(), self.radar);
-        let price = rounding.max(price_of_an_echo(self.radar) * self.fitter.noise_energy(self.radar, &fit));
+        let price = rounding.max(min_echo_energy_ratio(self.radar) * self.fitter.noise_energy(self.radar, &fit));
         let is_sought = |group: &Vec<usize>| {
             let is_crowd = group.len() > 1 || group.iter().any(|&i| self.is_beyond(&fit.atoms[i]));
             is_crowd && group.len() <= MAX_GROUP && group.iter().all(|i| are_points[*i])
@@ -48,13 +48,13 @@ impl Search<'_> {
             }
             let Some(own) = union_of(group.iter().map(|&i| spans[i])) else { continue };
             let base = self.fitter.remove(fit.clone(), &group).residual;
-            let best = self.sought_anew(&base, &own, price, MAX_SOUGHT.min(group.len() + 1))?;
-            let before = price * self.claims(group.iter().map(|&i| &fit.atoms[i]));
-            if best.cost() + price * self.claims(best.atoms.iter()) >= fit.cost() + before {
+            let best = self.relaxed_group(&base, &own, price, MAX_GROUP_ECHOES.min(group.len() + 1))?;
+            let before = price * self.echo_count(group.iter().map(|&i| &fit.atoms[i]));
+            if best.cost() + price * self.echo_count(best.atoms.iter()) >= fit.cost() + before {
                 continue;
             }
             for &i in &group {
-                self.refuse(tried(&fit.atoms[i]), decades(fit.cost(), best.cost()), Refusal::RestDoesWithout);
+                self.record_refusal(tried(&fit.atoms[i]), decades(fit.cost(), best.cost()), Refusal::RestDoesWithout);
             }
             // Numbers stay as they are until all groups are through: what is exchanged leaves silence in its place.
             (fit.residual, fit.energy) = (best.residual, best.energy);
@@ -69,7 +69,7 @@ impl Search<'_> {
     }
 
     /// Number of prices for `atoms`: two for a place beyond the maximum range, since its echo is like that of a nearer one.
-    fn claims<'b>(&self, atoms: impl Iterator<Item = &'b Atom>) -> f64 {
+    fn echo_count<'b>(&self, atoms: impl Iterator<Item = &'b Atom>) -> f64 {
         atoms.map(|atom| if self.is_beyond(atom) { 2.0 } else { 1.0 }).sum()
     }
 
@@ -79,7 +79,7 @@ impl Search<'_> {
     }
 
     /// At most `most` echoes in `own` spans of `base`, as many as each explain `price` more.
-    fn sought_anew(&self, base: &Samples, own: &BinSpans, price: f64, most: usize) -> Result<Fit, ReconstructError> {
+    fn relaxed_group(&self, base: &Samples, own: &BinSpans, price: f64, most: usize) -> Result<Fit, ReconstructError> {
         let mut fit = self.fitter.solve(base, Vec::new(), Tie::PerEnd, 0.0);
         let mut best = fit.clone();
         for count in 1..=most {
@@ -109,10 +109,10 @@ impl Search<'_> {
 
     /// `fit` with the strongest echo in `own` spans of what it leaves, all moved together.
     fn with_one_more(&self, fit: &Fit, base: &Samples, own: &BinSpans) -> Option<Fit> {
-        self.fitter.work.spend(LOOK_ECHOES);
+        self.fitter.work.spend(DETECTION_WORK);
         let flat = fit.residual.flat(&self.fitter.sensor);
         let place = self.detector.strongest_within(self.radar, &flat, own)?;
-        let (atom, gains) = self.placed(fit, place);
+        let (atom, gains) = self.refined_point(fit, place);
         let (mut atoms, mut all) = (fit.atoms.clone(), fit.gains.clone());
         atoms.push(atom);
         all.push(gains);

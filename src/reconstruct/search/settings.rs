@@ -6,9 +6,9 @@ use crate::radar::Radar;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Most atoms of one scene.
-    pub most_atoms: usize,
+    pub max_atoms: usize,
     /// A place must stand this far above the noise of the residual, as a ratio of powers. Noise alone reaches about 7.
-    pub least_prominence: f64,
+    pub min_prominence: f64,
     /// Rounds of refinement once all atoms are there.
     pub rounds: usize,
     /// Price of a gain's energy, over the unexplained part of its neighbourhood: it keeps inexact atoms from large gains that cancel.
@@ -19,12 +19,12 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { most_atoms: 150, least_prominence: 14.0, rounds: 6, gain_price: 0.3, max_work: 40_000 }
+        Settings { max_atoms: 150, min_prominence: 14.0, rounds: 6, gain_price: 0.3, max_work: 40_000 }
     }
 }
 
 /// Energy that an echo must explain, over what noise gives to one gain, as a ratio: four numbers an echo at the natural logarithm of the count
 /// of samples each, twice the Bayesian criterion, since the best of many thousand places is taken.
-pub fn price_of_an_echo(radar: &Radar) -> f64 {
+pub fn min_echo_energy_ratio(radar: &Radar) -> f64 {
     4.0 * ((2 * radar.end_elements * radar.samples) as f64).ln()
 }

@@ -4,7 +4,7 @@ use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
 use std::sync::{Mutex, PoisonError};
 
 /// Most attempts that are kept, the first ones: a crowded scene makes thousands.
-pub const MOST_ATTEMPTS: usize = 400;
+pub const MAX_ATTEMPTS: usize = 400;
 
 /// Name in place of a rung's where the search began with the last answer.
 pub const FOLLOWING: &str = "last answer";
@@ -43,7 +43,7 @@ impl Trace {
         let mut kept = self.kept();
         let work = done.saturating_sub(kept.done);
         kept.done = done;
-        if kept.attempts.len() < MOST_ATTEMPTS {
+        if kept.attempts.len() < MAX_ATTEMPTS {
             let rung = kept.rung;
             kept.attempts.push(Attempt { rung, tried, gain_decades, verdict, work });
         }
@@ -71,11 +71,11 @@ mod tests {
     fn a_trace_keeps_the_first_attempts_of_many() {
         let trace = Trace::default();
         trace.enter("first rung");
-        for i in 0..MOST_ATTEMPTS + 5 {
+        for i in 0..MAX_ATTEMPTS + 5 {
             trace.add(Tried::Together { count: i }, 0.0, Verdict::Kept, 3 * i);
         }
         let attempts = trace.into_attempts();
-        assert_eq!(attempts.len(), MOST_ATTEMPTS);
+        assert_eq!(attempts.len(), MAX_ATTEMPTS);
         assert_eq!(
             (attempts[1].rung, attempts[1].tried, attempts[1].work),
             ("first rung", Tried::Together { count: 1 }, 3)

@@ -1,9 +1,9 @@
 //! BinSpans of reflectors from their first alone: at the edge of a wall one reflector is heard by itself, however close the next.
 //!
-//! From such a point the beams tell whether echoes go on in a direction that walls mostly have. There every step that may be meant is tried
+//! From such a point the beams tell whether echoes go on in a direction that rows mostly have. There every step that may be meant is tried
 //! over the first few reflectors, and the best are followed as rows over two points are.
 
-use super::phased::{PhasedBeams, Presence, Row};
+use super::phased::{PhasedBeams, PlacePower, Row};
 use super::strides::{MIN_REFLECTORS, MOST_STEP_METRES, Start, best_of_each, pitches_metres, summits};
 use crate::reconstruct::fit::Atom;
 use crate::task::Task;
@@ -13,7 +13,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Range bins over which echoes must go on, and beyond which it no longer matters.
 const BINS: [u32; 2] = [20, 100];
 
-/// Part of the strongest beam that echoes in the right direction have in the mean, in power and at both ends.
+/// Part of the peak_powers beam that echoes in the right direction have in the mean, in power and at both ends.
 const LEAST_ALONG: f64 = 0.3;
 
 /// Power of echoes that go on, evened out over range, as a part of the point's own.
@@ -38,15 +38,15 @@ const KEPT_ROWS: [usize; 2] = [40, 4];
 /// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
 const LEAST_FROM_EDGE: usize = 24;
 
-/// Directions that walls mostly have, radians from the array's axis: along it and across it.
+/// Directions that rows mostly have, radians from the array's axis: along it and across it.
 const DIRECTIONS_RADIANS: [f64; 4] = [0.0, FRAC_PI_2, PI, -FRAC_PI_2];
 
 /// BinSpans that begin at one of `points` (x, y; metres) and lead about along or across the array's axis, best first; one for each point at most.
 pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
-    let strongest = beams.strongest();
+    let peak_powers = beams.peak_powers();
     let look = |first: usize, radians: f64| {
-        let presence = |place| beams.presence(&strongest, place);
-        let score = going_on(presence, beams.bin_metres(), points[first], radians)?;
+        let place_power = |place| beams.place_power(&peak_powers, place);
+        let score = going_on(place_power, beams.bin_metres(), points[first], radians)?;
         Some(Look { first, radians, score })
     };
     let mut looks: Vec<Look> = (0..points.len())
@@ -57,9 +57,9 @@ pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
     looks.truncate(MOST_LOOKS);
     let rows_of = |look: &Look| {
         let (rows, lengths) = fan(beams, points[look.first], look.radians);
-        let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
+        let parts = beams.coherent_parts(&rows, MIN_REFLECTORS);
         let kept: Vec<Row> = summits(&parts, lengths, KEPT_ROWS[0]).into_iter().map(|at| rows[at]).collect();
-        let parts = beams.parts_adding_up(&kept, 2 * MIN_REFLECTORS);
+        let parts = beams.coherent_parts(&kept, 2 * MIN_REFLECTORS);
         let mut longer: Vec<(f64, Row)> = parts.into_iter().zip(kept).collect();
         longer.sort_by(|a, b| b.0.total_cmp(&a.0));
         longer.truncate(KEPT_ROWS[1]);
@@ -76,15 +76,20 @@ pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
 }
 
 /// Clarity and length of the echoes from `from` on in a direction; `None` where they soon end.
-fn going_on(presence: impl Fn([f64; 2]) -> Presence, bin_metres: f64, from: [f64; 2], radians: f64) -> Option<f64> {
+fn going_on(
+    place_power: impl Fn([f64; 2]) -> PlacePower,
+    bin_metres: f64,
+    from: [f64; 2],
+    radians: f64,
+) -> Option<f64> {
     let (sin, cos) = radians.sin_cos();
-    let least_power = LEAST_EVEN * presence(from).even_power;
+    let least_power = LEAST_EVEN * place_power(from).range_compensated_power;
     let (mut bins, mut sum) = (0, 0.0);
     while bins < BINS[1] {
         let distance = f64::from(bins + 1) * bin_metres;
         let place = [from[0] + distance * cos, from[1] + distance * sin];
-        let there = presence(place);
-        if place[1] <= 0.0 || there.even_power < least_power {
+        let there = place_power(place);
+        if place[1] <= 0.0 || there.range_compensated_power < least_power {
             break;
         }
         (bins, sum) = (bins + 1, sum + there.part);

@@ -4,7 +4,7 @@
 //! are moved to where all their echoes add up, over more and more reflectors: the longer the row, the finer it is known, and the fewer
 //! wrong ones go along.
 
-use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
+use super::phased::{PhasedBeams, ReflectorEcho, Row, RowSums, row_sums};
 use crate::reconstruct::fit::{Atom, damped_step};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -66,7 +66,7 @@ pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
     // The best rows of every pair, with the part of the beams' power that adds up in each.
     let glance = |&(first, over): &(usize, usize)| {
         let rows = if task.is_cancelled() { Vec::new() } else { grid(beams, points[first], points[over]) };
-        let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
+        let parts = beams.coherent_parts(&rows, MIN_REFLECTORS);
         let best = summits(&parts, (2 * REACH[0] + 1) as usize, KEPT_STEPS).into_iter();
         best.map(|at| (parts[at], Start { first, row: rows[at] })).collect::<Vec<_>>()
     };
@@ -206,7 +206,7 @@ struct Slope {
     hessian: [[f64; 4]; 4],
 }
 
-/// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it leaves what is heard.
+/// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it leaves what is echoes.
 fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<(Row, Slope)> {
     let mut slope = slope(beams, &row, count)?;
     let mut damping = 1e-2;
@@ -233,7 +233,7 @@ fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<(Row, Slop
     Some((row, slope))
 }
 
-/// Gauss-Newton equations of the phases against that of their sum, weighted by how much each adds to it; `None` where the row leaves what is heard.
+/// Gauss-Newton equations of the phases against that of their sum, weighted by how much each adds to it; `None` where the row leaves what is echoes.
 fn slope(beams: &PhasedBeams, row: &Row, count: usize) -> Option<Slope> {
     let is_heard = |i: f64| {
         let [x, y] = row.place_metres(i);
@@ -242,15 +242,15 @@ fn slope(beams: &PhasedBeams, row: &Row, count: usize) -> Option<Slope> {
     if !is_heard(0.0) || !is_heard((count - 1) as f64) {
         return None;
     }
-    let mut heard = vec![Heard::default(); count];
-    Some(Simd::chosen().run(SlopeOf { beams, row, heard: &mut heard }))
+    let mut echoes = vec![ReflectorEcho::default(); count];
+    Some(Simd::chosen().run(SlopeOf { beams, row, echoes: &mut echoes }))
 }
 
-/// The equations of a row of as many reflectors as `heard` has room for.
+/// The equations of a row of as many reflectors as `echoes` has room for.
 struct SlopeOf<'a> {
     beams: &'a PhasedBeams,
     row: &'a Row,
-    heard: &'a mut [Heard],
+    echoes: &'a mut [ReflectorEcho],
 }
 
 impl Kernel for SlopeOf<'_> {
@@ -258,16 +258,16 @@ impl Kernel for SlopeOf<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Slope {
-        let SlopeOf { beams, row, heard } = self;
+        let SlopeOf { beams, row, echoes } = self;
         let mut out = Slope { added: 0.0, all: 0.0, gradient: [0.0; 4], hessian: [[0.0; 4]; 4] };
         for (end, view) in beams.views.iter().enumerate() {
-            beams.listen::<FMA>(end, row, heard);
-            let AddedUp { sum, weight, power } = added_up(heard);
+            beams.reflector_echoes::<FMA>(end, row, echoes);
+            let RowSums { sum, weight, power } = row_sums(echoes);
             (out.added, out.all) = (out.added + sum.norm_sqr() / weight, out.all + power);
             let (mut total, mut mean) = (0.0, [0.0; 4]);
             let mut products = [[0.0; 4]; 4];
             let towards = sum.conj() * weight.recip();
-            for (i, h) in heard.iter().enumerate() {
+            for (i, h) in echoes.iter().enumerate() {
                 let i = i as f64;
                 let share = h.weighted * towards;
                 // Phases as they were taken off: by minus the turns of the distance.

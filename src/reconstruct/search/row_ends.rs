@@ -1,0 +1,131 @@
+//! The ends of a row: it is followed reflector by reflector, and moved, until neither leaves less of the samples.
+
+use super::on_row::MAX_ROW_REFLECTORS;
+use super::propose::strides::MIN_REFLECTORS;
+use super::state::Search;
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, RangeGate, Samples, Spectra, Tie, bin_spans};
+
+/// Reflectors beyond the best end of a row that are tried.
+const MAX_FAILED_REFLECTORS: usize = 8;
+
+/// Most times reflectors are taken from a row's ends.
+const MAX_TRIMS: usize = 2;
+
+/// Most times a row is followed further and moved to its best place.
+const MAX_EXTENSIONS: usize = 8;
+
+/// Range bins beyond a row's own in which it is followed, at least, and as a part of its own.
+const MIN_MARGIN_BINS: f64 = 12.0;
+const MARGIN_PART: f64 = 0.5;
+
+impl Search<'_> {
+    /// The row moved to its best place in `samples` and made longer, by turns, until neither helps.
+    pub fn extended_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
+        let spectra = Spectra::new(self.radar, self.fitter, samples);
+        let mut gate = self.gate(&spectra, &seed);
+        let seed = trimmed(&gate, seed);
+        let mut row = gate.moved(seed, Gains::default());
+        for _ in 0..MAX_EXTENSIONS {
+            let (before, after) = rayon::join(
+                || self.missing_reflectors(&gate, &row, false),
+                || self.missing_reflectors(&gate, &row, true),
+            );
+            if before + after == 0 {
+                break;
+            }
+            let Some(longer) = resized(row.atoms[0], -(before as i64), -(after as i64)) else { break };
+            let explained = gate.energy - row.cost();
+            let wider = self.gate(&spectra, &longer);
+            let trial = wider.moved(longer, row.gains[0]);
+            if wider.energy - trial.cost() <= explained || self.fitter.work.is_spent() {
+                break;
+            }
+            (gate, row) = (wider, trial);
+        }
+        let shorter = trimmed(&gate, row.atoms[0]);
+        if shorter != row.atoms[0] {
+            let trial = gate.moved(shorter, row.gains[0]);
+            if trial.cost() < row.cost() {
+                row = trial;
+            }
+        }
+        self.fitter.refine(samples, row.atoms, row.gains, Tie::PerEnd, Limits::ROUGH)
+    }
+
+    /// The range bins in which `row` is followed.
+    fn gate<'a>(&self, spectra: &Spectra<'a>, row: &Atom) -> RangeGate<'a> {
+        let rows = bin_spans(self.radar, row);
+        let longest = rows.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
+        spectra.gate(&rows, MIN_MARGIN_BINS.max(MARGIN_PART * longest))
+    }
+
+    /// Number of reflectors that the row lacks at its last end, or at its first: as many more as leave least. No more than it
+    /// already has, as far as its direction can be trusted.
+    fn missing_reflectors(&self, gate: &RangeGate, row: &Fit, at_last: bool) -> usize {
+        let Some(atom) = row.atoms.first() else { return 0 };
+        let count = atom.reflector_count();
+        let next = |more: usize| atom.position_metres(if at_last { (count - 1 + more) as f64 } else { -(more as f64) });
+        let is_within = |&[x_metres, y_metres]: &[f64; 2]| {
+            y_metres >= 0.0 && gate.contains(&bin_spans(self.radar, &Atom::Point { x_metres, y_metres }))
+        };
+        best_count(&gate.fitter, row, &row.gains, (1..=count).map(next).take_while(is_within))
+    }
+}
+
+impl RangeGate<'_> {
+    /// The row moved to its best place from where its gains may be these.
+    fn moved(&self, row: Atom, gains: Gains) -> Fit {
+        self.fitter.refine(&self.samples, vec![row], vec![gains], Tie::PerEnd, Limits::ROUGH)
+    }
+}
+
+/// `seed` without the reflectors at its ends whose absence explains the samples better.
+fn trimmed(gate: &RangeGate, mut seed: Atom) -> Atom {
+    for _ in 0..MAX_TRIMS {
+        let row = gate.fitter.solve_alone(&gate.samples, seed);
+        let (first, last) = rayon::join(
+            || excess_reflectors(&gate.fitter, &row, false),
+            || excess_reflectors(&gate.fitter, &row, true),
+        );
+        match resized(seed, first as i64, last as i64) {
+            Some(shorter) if first + last > 0 => seed = shorter,
+            _ => break,
+        }
+    }
+    seed
+}
+
+/// Number of reflectors at the row's last end, or at its first, whose removal leaves less.
+fn excess_reflectors(fitter: &Fitter, row: &Fit, at_last: bool) -> usize {
+    let Some(atom) = row.atoms.first() else { return 0 };
+    let count = atom.reflector_count();
+    let back: Vec<Gains> = row.gains.iter().map(|g| g.map(|g| -g)).collect();
+    let next = |fewer: usize| atom.position_metres(if at_last { (count - fewer) as f64 } else { (fewer - 1) as f64 });
+    best_count(fitter, row, &back, (1..=count / 2).map(next))
+}
+
+/// Number of successive `places` at which reflectors of these gains, subtracted from the residual of `row`, leave least.
+fn best_count(fitter: &Fitter, row: &Fit, gains: &[Gains], places: impl Iterator<Item = [f64; 2]>) -> usize {
+    let (mut best, mut least) = (0, row.cost());
+    let mut residual = row.residual.clone();
+    for (taken, [x_metres, y_metres]) in (1..).zip(places) {
+        let left = fitter.subtract(&residual, &[Atom::Point { x_metres, y_metres }], gains);
+        residual = left.residual;
+        let cost = left.energy[0] + left.energy[1];
+        if cost < least {
+            (best, least) = (taken, cost);
+        } else if taken >= best + MAX_FAILED_REFLECTORS {
+            break;
+        }
+    }
+    best
+}
+
+/// `row` without this many reflectors at its first and at its last end; with more of them where the numbers are negative.
+fn resized(row: Atom, first: i64, last: i64) -> Option<Atom> {
+    let Atom::Segment { dx_metres, dy_metres, count, .. } = row else { return None };
+    let [x_metres, y_metres] = row.position_metres(first as f64);
+    let count = usize::try_from(count as i64 - first - last).ok()?;
+    let is_valid = (MIN_REFLECTORS..=MAX_ROW_REFLECTORS).contains(&count);
+    is_valid.then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
+}
