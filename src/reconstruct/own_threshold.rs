@@ -11,38 +11,39 @@ const TARGET_ETA: f32 = 0.9;
 
 /// Part of the answer's cells at or below [`TARGET_ETA`] that may exceed the threshold: P_FA of the answer against itself. A little below the 1 %
 /// that is wanted against the target.
-const FALSE_ALARM: f64 = 0.0092;
+const MAX_FALSE_ALARM_PART: f64 = 0.0092;
 
 /// Cells whose doubt decides how far below [`TARGET_ETA`] the threshold lies: those whose own Lambda is as near to it.
 const DOUBT_LAMBDAS: std::ops::Range<f32> = 0.75..0.95;
 
 /// The part of those cells whose doubt is covered.
-const COVERED: f64 = 0.9;
+const COVERED_PART: f64 = 0.9;
 
 /// Highest threshold, for a map without doubt.
-const EXACT_ETA: f32 = 0.896;
+const MAX_ETA: f32 = 0.896;
 
 /// Steps of Lambda, in which both quantiles are taken.
-const STEPS: usize = 4096;
+const HISTOGRAM_STEPS: usize = 4096;
 
 /// The threshold for an answer: at most 0.92 % of its own cells at or below 0.9 exceed it, and it is no lower than the answer's doubt requires.
 /// Rounded to three decimals, for readers. `examples/experts.rs` prints the resulting rates.
 pub(crate) fn own_threshold(answer: &RangeAngleMap, doubt: Option<&RangeAngleMap>) -> f32 {
-    let below = quantile(answer.lambda.iter().copied().filter(|v| *v <= TARGET_ETA), 1.0 - FALSE_ALARM).unwrap_or(0.0);
+    let below =
+        quantile(answer.lambda.iter().copied().filter(|v| *v <= TARGET_ETA), 1.0 - MAX_FALSE_ALARM_PART).unwrap_or(0.0);
     let doubtful = doubt.map(|doubt| {
         let near = answer.lambda.iter().zip(&doubt.lambda).filter(|(v, _)| DOUBT_LAMBDAS.contains(*v));
-        TARGET_ETA - quantile(near.map(|(_, doubt)| *doubt), COVERED).unwrap_or(0.0)
+        TARGET_ETA - quantile(near.map(|(_, doubt)| *doubt), COVERED_PART).unwrap_or(0.0)
     });
-    let eta = doubtful.unwrap_or(0.0).max(below).min(EXACT_ETA);
+    let eta = doubtful.unwrap_or(0.0).max(below).min(MAX_ETA);
     (eta * 1e3).round() / 1e3
 }
 
 /// The value that this part of `values`, 0 to 1 each, doesn't exceed; `None` without any.
 fn quantile(values: impl Iterator<Item = f32>, part: f64) -> Option<f32> {
-    let mut counts = [0u32; STEPS + 1];
+    let mut counts = [0u32; HISTOGRAM_STEPS + 1];
     let mut all = 0u32;
     for value in values {
-        counts[(value.clamp(0.0, 1.0) * STEPS as f32) as usize] += 1;
+        counts[(value.clamp(0.0, 1.0) * HISTOGRAM_STEPS as f32) as usize] += 1;
         all += 1;
     }
     let wanted = (part * f64::from(all)).ceil() as u32;
@@ -51,7 +52,7 @@ fn quantile(values: impl Iterator<Item = f32>, part: f64) -> Option<f32> {
         sum += count;
         sum >= wanted
     })?;
-    (all > 0).then(|| (step as f32 + 1.0).min(STEPS as f32) / STEPS as f32)
+    (all > 0).then(|| (step as f32 + 1.0).min(HISTOGRAM_STEPS as f32) / HISTOGRAM_STEPS as f32)
 }
 
 #[cfg(test)]
@@ -94,7 +95,7 @@ mod tests {
             }
         });
         let with = |doubt: f32| own_threshold(&few, Some(&map(|_| doubt)));
-        assert_eq!((with(0.0), with(0.05)), (EXACT_ETA, 0.85));
+        assert_eq!((with(0.0), with(0.05)), (MAX_ETA, 0.85));
         let bright = map(|i| i as f32 / 10_000.0);
         assert_eq!(own_threshold(&bright, Some(&map(|_| 0.5))), own_threshold(&bright, None));
     }

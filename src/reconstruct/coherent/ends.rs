@@ -11,7 +11,7 @@ use num_complex::Complex64;
 const PROFILE_ROWS_PER_BIN: usize = 16;
 
 /// Least distance of a place from an element, metres: amplitudes are divided by it.
-const NEAREST_METRES: f64 = 1e-6;
+const MIN_DISTANCE_METRES: f64 = 1e-6;
 
 /// Elements side by side.
 const W: usize = LANES_F64;
@@ -57,13 +57,13 @@ impl Ends {
         self.x_metres.len()
     }
 
-    /// Writes into `heard` the profile of each element at a place in the centre's polar grid, without the phase of the element's distance: the
-    /// profiles of a reflector there differ by the distance alone. `heard` has an entry an element.
+    /// Writes into `snapshot` the profile of each element at a place in the centre's polar grid, without the phase of the element's distance: the
+    /// profiles of a reflector there differ by the distance alone. `snapshot` has an entry an element.
     #[inline(always)]
-    pub fn listen<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, heard: &mut [Complex64]) {
-        for (i, (pairs, heard)) in self.lanes.iter().zip(heard.chunks_mut(W)).enumerate() {
+    pub fn fill_snapshot<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, snapshot: &mut [Complex64]) {
+        for (i, (pairs, snapshot)) in self.lanes.iter().zip(snapshot.chunks_mut(W)).enumerate() {
             let distances = distances_metres(*pairs, range_metres, Lanes::splat(cos_theta));
-            self.profiles.lanes_at::<W, FMA>(i * W, distances, heard);
+            self.profiles.lanes_at::<W, FMA>(i * W, distances, snapshot);
         }
     }
 }
@@ -77,5 +77,5 @@ pub(super) fn distances_metres<const W: usize>(
 ) -> Lanes<f64, W> {
     let range = Lanes::splat(range_metres);
     let ahead = (Lanes::splat(1.0) - cos_theta * cos_theta).map(|square| square.max(0.0)).sqrt() * range;
-    pairs.ranges_metres(range * cos_theta, ahead).map(|distance| distance.max(NEAREST_METRES))
+    pairs.ranges_metres(range * cos_theta, ahead).map(|distance| distance.max(MIN_DISTANCE_METRES))
 }

@@ -38,6 +38,6 @@ mod settle;
 
 pub use iaa::IAA;
 pub use method::CoherentMethod;
-pub(super) use method::explained;
+pub(super) use method::found_in_residuals;
 pub(super) use peaks::{Peak, gains};
 pub use sbl::SBL;

@@ -12,25 +12,25 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 /// Ranges that are searched, for each range bin.
-const PER_BIN: usize = 4;
+const RANGES_PER_BIN: usize = 4;
 
 /// Range bins beyond the last that are searched: they wrap to the first ones, where next to nothing can stand.
-const BINS_BEYOND: usize = 1;
+const WRAPPED_BINS: usize = 1;
 
 /// Power by which a place must stand above the noise of one beam.
-const LEAST_PLACE_OVER_NOISE: f64 = 10.0;
+const MIN_PLACE_OVER_NOISE: f64 = 10.0;
 
 /// Least power of a place relative to the strongest other direction at its range; a weaker place counts as an end's side lobe.
-const LEAST_OF_DIRECTION: f64 = 0.05;
+const MIN_DIRECTION_PART: f64 = 0.05;
 
 /// Margin in power of range side lobes over the window's response to a single reflector.
-const SIDE_LOBE_ROOM: f64 = 8.0;
+const SIDE_LOBE_MARGIN_RATIO: f64 = 8.0;
 
 /// Least power of a place relative to the strongest of all; weaker places wait for another look, since residuals of the strongest ones may resemble them.
-const LEAST_IN_A_LOOK: f64 = 1e-4;
+const MIN_PLACE_PART: f64 = 1e-4;
 
 /// Most places with a model; the strongest.
-const MOST_PLACES: usize = 512;
+const MAX_PLACES: usize = 512;
 
 /// A range and a sector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,14 +72,14 @@ impl Beams {
 }
 
 /// Kernel of the powers of one direction at the weaker end, over range.
-struct Listen<'a> {
+struct RangePowers<'a> {
     radar: &'a Radar,
     ends: &'a Ends,
     beams: &'a Beams,
     middle_cos: f64,
 }
 
-impl Kernel for Listen<'_> {
+impl Kernel for RangePowers<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
@@ -87,8 +87,8 @@ impl Kernel for Listen<'_> {
         let mut powers = vec![0.0; ranges(self.radar)];
         let mut heard = vec![Complex64::default(); self.ends.len()];
         for (i, power) in powers.iter_mut().enumerate().skip(1) {
-            let range = self.radar.range_of_bin_metres(i as f64 / PER_BIN as f64);
-            self.ends.listen::<FMA>(range, self.middle_cos, &mut heard);
+            let range = self.radar.range_of_bin_metres(i as f64 / RANGES_PER_BIN as f64);
+            self.ends.fill_snapshot::<FMA>(range, self.middle_cos, &mut heard);
             *power = self.beams.power(&heard, self.ends.first_count);
         }
         powers
@@ -97,7 +97,7 @@ impl Kernel for Listen<'_> {
 
 /// Number of ranges that are searched, from range 0 on.
 fn ranges(radar: &Radar) -> usize {
-    PER_BIN * (radar.samples + BINS_BEYOND)
+    RANGES_PER_BIN * (radar.samples + WRAPPED_BINS)
 }
 
 /// Every place that is no side lobe of another and not too weak beside the strongest, strongest first. `noise_power` is that of one element's profile.
@@ -118,7 +118,7 @@ pub(super) fn places(
         let range_metres = row_ranges_metres(radar)[0];
         return Ok(sectors.all.iter().map(|sector| Place { range_metres, sector: *sector, power: 1.0 }).collect());
     }
-    let range = |i: f64| radar.range_of_bin_metres(i / PER_BIN as f64);
+    let range = |i: f64| radar.range_of_bin_metres(i / RANGES_PER_BIN as f64);
     let count = ranges(radar);
     let beams = Beams::new(radar, ends, sectors.all.first().map_or(1.0, |s| s.half_width_cos));
     let heard: Vec<Vec<f64>> = sectors
@@ -126,12 +126,12 @@ pub(super) fn places(
         .par_iter()
         .map(|sector| {
             task.check()?;
-            Ok(Simd::chosen().run(Listen { radar, ends, beams: &beams, middle_cos: sector.middle_cos }))
+            Ok(Simd::chosen().run(RangePowers { radar, ends, beams: &beams, middle_cos: sector.middle_cos }))
         })
         .collect::<Result<_, ReconstructError>>()?;
     let strongest: Vec<f64> = (0..count).map(|i| heard.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();
-    let least = side_lobes(&strongest, PER_BIN * radar.samples);
-    let noise = LEAST_PLACE_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
+    let least = side_lobes(&strongest, RANGES_PER_BIN * radar.samples);
+    let noise = MIN_PLACE_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
     let mut found = Vec::new();
     for (sector, heard) in sectors.all.iter().zip(&heard) {
         for i in 1..count.saturating_sub(1) {
@@ -143,8 +143,8 @@ pub(super) fn places(
         }
     }
     found.sort_by(|a, b| b.power.total_cmp(&a.power));
-    found.truncate(MOST_PLACES);
-    let least = found.first().map_or(0.0, |strongest| LEAST_IN_A_LOOK * strongest.power);
+    found.truncate(MAX_PLACES);
+    let least = found.first().map_or(0.0, |strongest| MIN_PLACE_PART * strongest.power);
     found.retain(|place| place.power > least);
     Ok(found)
 }
@@ -155,10 +155,14 @@ fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
     let count = strongest.len();
     let envelope: Vec<f64> = (0..=period / 2)
         .map(|i| {
-            let bins = i as f64 / PER_BIN as f64;
+            let bins = i as f64 / RANGES_PER_BIN as f64;
             // Beyond the main lobe the level is that of each side lobe's peak, at half bins.
             let level = range_response(bins.floor() + 0.5);
-            if bins < 2.0 { LEAST_OF_DIRECTION } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_OF_DIRECTION) }
+            if bins < 2.0 {
+                MIN_DIRECTION_PART
+            } else {
+                (level * level * SIDE_LOBE_MARGIN_RATIO).min(MIN_DIRECTION_PART)
+            }
         })
         .collect();
     let apart = |i: usize, j: usize| {

@@ -19,9 +19,9 @@ pub const SBL: CoherentMethod = CoherentMethod {
     },
     update: Update {
         // The update whose fixed point is the variance: the square of the posterior gain over its determination.
-        next: |share| share.power * share.matched / share.held,
-        iterations: 16,
-        least_noise: 3e-3,
+        next: |v| v.power * v.matched / v.norm,
+        max_iterations: 16,
+        min_noise: 3e-3,
     },
-    least_part: 0.05,
+    min_peak_part: 0.05,
 };

@@ -4,16 +4,16 @@ use super::ends::Ends;
 use crate::radar::Radar;
 
 /// Largest migration of an element's range within a sector, from the sector's middle, range bins.
-const MOST_MIGRATION_BINS: f64 = 0.5;
+const MAX_MIGRATION_BINS: f64 = 0.5;
 
 /// Directions of a model for each period of the fringes between the two ends, where there are many sectors.
-const PER_FRINGE: f64 = 4.0;
+const DIRECTIONS_PER_FRINGE: f64 = 4.0;
 
 /// Directions of a model for each of these periods where one model serves all directions.
-const PER_FRINGE_ALONE: f64 = 12.0;
+const SINGLE_MODEL_DIRECTIONS_PER_FRINGE: f64 = 12.0;
 
 /// Most directions of one model, beyond which the grid gets coarser.
-const MOST_DIRECTIONS: usize = 1536;
+const MAX_DIRECTIONS: usize = 1536;
 
 /// Width of an end's beam in cos(theta).
 pub(super) fn end_beam_cos(radar: &Radar) -> f64 {
@@ -47,18 +47,18 @@ impl Sectors {
         let widest = if radar.samples == 1 {
             1.0 // one sample has no ranges to migrate through
         } else {
-            MOST_MIGRATION_BINS * radar.range_resolution_metres() / reach_metres.max(f64::MIN_POSITIVE)
+            MAX_MIGRATION_BINS * radar.range_resolution_metres() / reach_metres.max(f64::MIN_POSITIVE)
         };
         let count = (1.0 / widest.min(1.0)).ceil() as usize;
         let half_width_cos = 1.0 / count as f64;
         let sector = |i: usize| Sector { middle_cos: (2 * i + 1) as f64 * half_width_cos - 1.0, half_width_cos };
         let turns_per_cos = span_metres * radar.carrier_turns_per_metre().abs();
-        let per_fringe = if count == 1 { PER_FRINGE_ALONE } else { PER_FRINGE };
+        let per_fringe = if count == 1 { SINGLE_MODEL_DIRECTIONS_PER_FRINGE } else { DIRECTIONS_PER_FRINGE };
         let fringe_cos = 1.0 / turns_per_cos.max(f64::MIN_POSITIVE);
         // Directions reach one fringe beyond either edge, so that no maximum lies on an edge.
         let reach_cos = half_width_cos + fringe_cos.min(half_width_cos);
         let directions = (2.0 * reach_cos * turns_per_cos * per_fringe).ceil().max(8.0) as usize;
-        let directions = directions.min(MOST_DIRECTIONS);
+        let directions = directions.min(MAX_DIRECTIONS);
         let step = |i: usize| ((2 * i + 1) as f64 / directions as f64 - 1.0) * reach_cos;
         Sectors { all: (0..count).map(sector).collect(), steps_cos: (0..directions).map(step).collect(), fringe_cos }
     }

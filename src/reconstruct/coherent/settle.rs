@@ -3,7 +3,7 @@
 //! The cyclic least squares by which Yardibi et al. refine their own peaks (RELAX: J. Li and P. Stoica, "Efficient mixed-spectrum estimation
 //! with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), with the tools of the search.
 
-use super::peaks::{Peak, apart, gains};
+use super::peaks::{Peak, distinct, gains};
 use super::sectors::end_beam_cos;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::echoes::Gained;
@@ -20,35 +20,35 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Distance from the array that a reflector must keep, as a part of its distance from the nearer end.
-const NEAREST_BETWEEN: f64 = 0.25;
+const MIN_DISTANCE_RATIO: f64 = 0.25;
 
 /// Most rounds of taking peaks from one look.
-const ROUNDS_A_LOOK: usize = 8;
+const MAX_ROUNDS: usize = 8;
 
 /// Least part of the strongest peak's energy that a peak of the same round explains: residuals of stronger peaks not yet in their places
 /// resemble many weak ones.
-const LEAST_OF_STRONGEST: f64 = 0.03;
+const MIN_STRONGEST_PART: f64 = 0.03;
 
 /// Part of a peak's energy below which other peaks have explained it.
-const LEFT_OF_EXPLAINED: f64 = 0.05;
+const MAX_EXPLAINED_REMAINDER_PART: f64 = 0.05;
 
 /// Largest part of the energy that the last look may leave for another look to follow.
-const MAX_ROUND_RESIDUAL_PART: f64 = 0.9;
+const MAX_SEARCH_RESIDUAL_PART: f64 = 0.9;
 
 /// Part of the energy that may be left unexplained: 130 dB down, above the residual of rounding, which is no white noise.
-const AS_GOOD_AS_NOTHING: f64 = 1e-13;
+const COMPLETE_RESIDUAL_PART: f64 = 1e-13;
 
 /// Reflectors that leave no more than this many times as much are accepted at any place: a millionth of the energy.
-const CERTAIN: f64 = 1e7;
+const CERTAIN_RESIDUAL_RATIO: f64 = 1e7;
 
 /// Echoes nearer than this are one: parts of an end's beam, and range bins.
 const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
 
 /// Budget of work, in units of about ten microseconds.
-const MOST_WORK: usize = 30_000;
+const MAX_WORK: usize = 30_000;
 
 /// A peak without a reflector so far.
-struct Waiting {
+struct PendingPeak {
     echo: ArrayEcho,
     spans: BinSpans,
     /// Energy that the peak explained when it was found.
@@ -66,18 +66,19 @@ pub(super) struct Settled<'a> {
     trace: Trace,
     fit: Fit,
     /// Residual energy at which the search ends.
-    enough: f64,
+    complete_energy: f64,
 }
 
 impl<'a> Settled<'a> {
     /// The start for `ends`, without reflectors.
     pub fn new(radar: &'a Radar, ends: &TwoEnds, task: &'a Task) -> Self {
         let flat = ends.flat();
-        let fitter = Fitter::new(radar, &hann(radar.samples), task, MOST_WORK).with_channels_of(&flat);
+        let fitter = Fitter::new(radar, &hann(radar.samples), task, MAX_WORK).with_channels_of(&flat);
         let samples = Samples::new(&fitter.sensor, &flat);
         let fit = fitter.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
-        let (detector, settings, enough) = (Detector::of(radar), Settings::default(), fit.cost() * AS_GOOD_AS_NOTHING);
-        Settled { radar, task, fitter, detector, settings, samples, trace: Trace::default(), fit, enough }
+        let (detector, settings, complete_energy) =
+            (Detector::of(radar), Settings::default(), fit.cost() * COMPLETE_RESIDUAL_PART);
+        Settled { radar, task, fitter, detector, settings, samples, trace: Trace::default(), fit, complete_energy }
     }
 
     fn search(&self) -> Search<'_> {
@@ -95,29 +96,29 @@ impl<'a> Settled<'a> {
     /// [`ReconstructError::Cancelled`].
     pub fn take(&mut self, peaks: &[Peak]) -> Result<bool, ReconstructError> {
         let before = self.fit.clone();
-        let mut waiting: Vec<Waiting> = peaks.iter().filter_map(|p| Waiting::new(self.radar, p)).collect();
-        let first = self.heard(&waiting);
-        waiting.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
-        for _ in 0..ROUNDS_A_LOOK {
+        let mut pending: Vec<PendingPeak> = peaks.iter().filter_map(|p| PendingPeak::new(self.radar, p)).collect();
+        let first = self.explained_energies(&pending);
+        pending.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
+        for _ in 0..MAX_ROUNDS {
             self.task.check()?;
             let noise = MIN_ENERGY_OVER_NOISE * self.fitter.noise_energy(self.radar, &self.fit);
-            let now = self.heard(&waiting);
-            let mut left: Vec<(f64, Waiting)> = now.into_iter().zip(waiting).collect();
-            left.retain(|(now, w)| *now > noise.max(LEFT_OF_EXPLAINED * w.energy));
+            let now = self.explained_energies(&pending);
+            let mut left: Vec<(f64, PendingPeak)> = now.into_iter().zip(pending).collect();
+            left.retain(|(now, w)| *now > noise.max(MAX_EXPLAINED_REMAINDER_PART * w.energy));
             left.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let least = left.first().map_or(0.0, |(strongest, _)| LEAST_OF_STRONGEST * strongest);
+            let least = left.first().map_or(0.0, |(strongest, _)| MIN_STRONGEST_PART * strongest);
             let mut later = left.split_off(left.partition_point(|(now, _)| *now >= least));
-            let taken = strongest_apart(self.radar, &mut left);
+            let taken = taken_places(self.radar, &mut left);
             left.append(&mut later);
             if taken.is_empty() || self.is_done() {
                 break;
             }
             let search = self.search();
             self.fit = search.refined_in_sweeps(search.with_points(self.fit.clone(), &taken)?)?;
-            waiting = left.into_iter().map(|(_, w)| w).collect();
+            pending = left.into_iter().map(|(_, w)| w).collect();
         }
         self.fit = self.search().pruned(self.fit.clone())?;
-        let is_better = self.fit.cost() < MAX_ROUND_RESIDUAL_PART * before.cost();
+        let is_better = self.fit.cost() < MAX_SEARCH_RESIDUAL_PART * before.cost();
         if self.fit.cost() > before.cost() {
             self.fit = before;
         }
@@ -136,18 +137,18 @@ impl<'a> Settled<'a> {
         Ok(self)
     }
 
-    /// Whether the residual is small enough, or the work is spent.
+    /// Whether the residual is small complete_energy, or the work is spent.
     fn is_done(&self) -> bool {
-        self.fit.cost() <= self.enough || self.fitter.work.is_spent()
+        self.fit.cost() <= self.complete_energy || self.fitter.work.is_spent()
     }
 
-    /// Energy of the residual that each of `waiting` explains by itself.
-    fn heard(&self, waiting: &[Waiting]) -> Vec<f64> {
+    /// Energy of the residual that each of `pending` explains by itself.
+    fn explained_energies(&self, pending: &[PendingPeak]) -> Vec<f64> {
         let mut weighted = self.fit.residual.flat(&self.fitter.sensor);
         let weights = self.fitter.squared.iter().cycle();
         weighted.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
         let mean = self.fitter.squared.iter().sum::<f64>() / self.fitter.squared.len() as f64;
-        waiting.par_iter().map(|w| w.echo.correlate(&weighted).norm_sqr() / mean).collect()
+        pending.par_iter().map(|w| w.echo.correlate(&weighted).norm_sqr() / mean).collect()
     }
 
     /// The reflectors, with gains common to both ends; `ends` are the samples in which they were found.
@@ -155,9 +156,9 @@ impl<'a> Settled<'a> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
-        let Settled { radar, task, fitter, samples, mut fit, enough, .. } = self;
+        let Settled { radar, task, fitter, samples, mut fit, complete_energy, .. } = self;
         fit = with_tied_gains(&fitter, &samples, fit, false);
-        let is_certain = fit.cost() <= enough * CERTAIN;
+        let is_certain = fit.cost() <= complete_energy * CERTAIN_RESIDUAL_RATIO;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
             let place = radar.polar_of(x, y);
@@ -166,7 +167,7 @@ impl<'a> Settled<'a> {
             (is_certain || is_heard_at_the_ends(radar, x, y)).then_some(peak)
         };
         let peaks = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
-        gains(radar, &apart(radar, peaks, [SAME_PLACE.1, SAME_PLACE.0 * end_beam_cos(radar)]), ends, task)
+        gains(radar, &distinct(radar, peaks, [SAME_PLACE.1, SAME_PLACE.0 * end_beam_cos(radar)]), ends, task)
     }
 }
 
@@ -177,21 +178,21 @@ fn is_heard_at_the_ends(radar: &Radar, x_metres: f64, y_metres: f64) -> bool {
     let outermost = radar.element_x_metres(radar.elements - 1);
     let inner = radar.element_x_metres(radar.elements - radar.end_elements);
     let at_an_end = nearest(-outermost, -inner).min(nearest(inner, outermost));
-    nearest(-outermost, outermost) > NEAREST_BETWEEN * at_an_end
+    nearest(-outermost, outermost) > MIN_DISTANCE_RATIO * at_an_end
 }
 
-impl Waiting {
+impl PendingPeak {
     fn new(radar: &Radar, peak: &Peak) -> Option<Self> {
         let echo = ArrayEcho::at(radar, peak.range_metres, peak.cos_theta);
         let Reflector { x_metres, y_metres, .. } = echo.reflector;
         let is_heard = echo.norm().is_finite() && echo.norm() > 0.0;
         let spans = bin_spans(radar, &Atom::Point { x_metres, y_metres });
-        is_heard.then_some(Waiting { spans, echo, energy: 0.0 })
+        is_heard.then_some(PendingPeak { spans, echo, energy: 0.0 })
     }
 }
 
 /// Moves from `left` into the answer the places of those without a stronger one nearby.
-fn strongest_apart(radar: &Radar, left: &mut Vec<(f64, Waiting)>) -> Vec<[f64; 2]> {
+fn taken_places(radar: &Radar, left: &mut Vec<(f64, PendingPeak)>) -> Vec<[f64; 2]> {
     let mut taken: Vec<(BinSpans, [f64; 2])> = Vec::new();
     left.retain(|(_, w)| {
         let is_apart = taken.iter().all(|(spans, _)| distance_bins(radar.samples, spans, &w.spans) > MIN_DISTANCE_BINS);

@@ -1,28 +1,26 @@
-//! The search in reading order.
+//! The steps of the search in their order.
 //!
-//! Each rung changes what was found so far. The search stops after the first rung whose answer leaves nothing that stands out of the
-//! noise, or after the last. What was found is then read off as objects (`finish`): one gain for both
-//! ends, one reflectivity an object.
-//!
-//! Within a rung, work is counted ([`Settings::max_work`](super::Settings)): where it is spent, each loop ends with the best it has.
+//! Each rung changes the list of objects. The search stops after the first rung whose residual has no peak above the noise, or after the last. Then
+//! each object gets one gain for both ends and one reflectivity (`finish`). Where the budget of work
+//! ([`Settings::max_work`](super::Settings)) is used up, each loop ends with its best result.
 
 use super::state::{Search, State};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 
-/// The change that a rung makes to the state of a search.
+/// The state of a search after a rung, from that before.
 type RungWork = fn(&Search, State) -> Result<State, ReconstructError>;
 
-/// One step of the search.
+/// A step of the search.
 pub struct Rung {
-    /// Name of the rung in traces.
+    /// Name in traces.
     pub name: &'static str,
-    /// The effect of the rung, in a sentence.
+    /// The effect, in a sentence for the user.
     pub does: &'static str,
     work: RungWork,
 }
 
-/// Every rung, in their order.
+/// All rungs, the first one first.
 pub const LADDER: &[Rung] = &[
     Rung {
         name: "tones",
@@ -42,14 +40,14 @@ pub const LADDER: &[Rung] = &[
     POINTS,
 ];
 
-/// Adds points to an answer that is there.
+/// The last rung, which a followed answer uses alone too.
 pub(super) const POINTS: Rung = Rung {
     name: "points",
     does: "Adds points where the residual of both ends stands out, refines them, and takes away those that explain too little.",
     work: |search, state| search.points_in_residual(state),
 };
 
-/// `state` after `rungs`, one after another until nothing stands out.
+/// `state` after `rungs`, up to the first that completes it.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].

@@ -2,13 +2,13 @@
 
 use crate::reconstruct::fit::Atom;
 
-/// Most reflectors of a row.
+/// Largest number of reflectors of a row.
 pub const MAX_ROW_REFLECTORS: usize = 250;
 
-/// Points this near to a row's axis belong to it or stand for what belongs to it, metres.
+/// Distance from a row's axis below which a point counts as its part, metres.
 const MAX_AXIS_DISTANCE_METRES: f64 = 0.06;
 
-/// Whether `atom` is a point on the axis of `row`, between its ends or less than a step beyond.
+/// Whether `atom` is a point on the axis of `row`, between its ends or at most a step beyond.
 pub fn is_on_row(row: &Atom, atom: &Atom) -> bool {
     let (Atom::Segment { dx_metres: dx, dy_metres: dy, count, .. }, Atom::Point { .. }) = (*row, *atom) else {
         return false;

@@ -1,24 +1,23 @@
 //! The removal of atoms that the others don't need.
 
-use super::propose::strides::MAX_RANGES;
+use super::propose::strides::MAX_RANGE_RATIO;
 use super::state::{Search, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, BinSpans, Fit, Limits, bin_spans, distance_bins};
 
-/// Energy that an atom must explain over what noise gives to one more gain, as a ratio.
+/// Least energy that an atom explains, over the mean energy that one gain explains of noise.
 pub const MIN_ENERGY_OVER_NOISE: f64 = 16.0;
 
-/// Most rounds of taking away.
+/// Largest number of rounds of removing atoms.
 const MAX_PRUNING_ROUNDS: usize = 12;
 
-/// Atoms nearer than this in range may do for each other: they are not taken, or taken away, in one round.
+/// Range bins below which one atom may explain the echo of another, so that both are not added or removed in one round.
 pub const MIN_DISTANCE_BINS: f64 = 4.0;
 
 impl Search<'_> {
-    /// `fit` without the atoms whose absence noise could hide or the rounding of the others' places, those whose place ran away, and
-    /// those that only one end believes in.
+    /// `fit` without the atoms that explain no more than noise or the rounding of places, and those far beyond the maximum range.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -30,11 +29,11 @@ impl Search<'_> {
             }
             let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude(), self.radar);
             let least = rounding.max(MIN_ENERGY_OVER_NOISE * self.fitter.noise_energy(self.radar, &fit));
-            let worth = self.fitter.marginal_energies(&fit);
+            let energies = self.fitter.marginal_energies(&fit);
             let spans: Vec<BinSpans> = fit.atoms.iter().map(|a| bin_spans(self.radar, a)).collect();
-            let is_needless = |i: &usize| worth[*i] < least || self.is_out_of_range(&fit.atoms[*i]);
+            let is_needless = |i: &usize| energies[*i] < least || self.is_out_of_range(&fit.atoms[*i]);
             let mut order: Vec<usize> = (0..fit.atoms.len()).filter(is_needless).collect();
-            order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
+            order.sort_by(|a, b| energies[*a].total_cmp(&energies[*b]));
             let mut removed: Vec<usize> = Vec::new();
             for i in order {
                 let is_apart = |j: &usize| distance_bins(self.radar.samples, &spans[i], &spans[*j]) > MIN_DISTANCE_BINS;
@@ -48,7 +47,7 @@ impl Search<'_> {
             for &i in &removed {
                 self.record_refusal(
                     tried(&fit.atoms[i]),
-                    decades(fit.cost() + worth[i], fit.cost()),
+                    decades(fit.cost() + energies[i], fit.cost()),
                     Refusal::RestDoesWithout,
                 );
             }
@@ -67,6 +66,6 @@ impl Search<'_> {
 
     fn is_out_of_range(&self, atom: &Atom) -> bool {
         let [x, y] = atom.position_metres(0.0);
-        x.hypot(y) > MAX_RANGES * self.radar.max_range_metres()
+        x.hypot(y) > MAX_RANGE_RATIO * self.radar.max_range_metres()
     }
 }

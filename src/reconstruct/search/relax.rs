@@ -1,10 +1,10 @@
-//! Model order in noise: how many echoes a group of neighbours holds, and where.
+//! Model order over white noise: the number of echoes of a group of neighbours, and their places.
 //!
-//! Echoes in one range bin that noise hides from each other are found too many times, in wrong places, with gains that cancel. Each such
-//! group is sought anew by RELAX (J. Li and P. Stoica, "Efficient mixed-spectrum estimation with applications to target feature
-//! extraction", IEEE Trans. Signal Process. 44, 1996): echo after echo, each taken out and sought once more while the others stand, until
-//! one more explains less than it costs. What an echo costs is the price of its four numbers, a place and a complex gain, in the
-//! likelihood (P. Stoica and Y. Selén, "Model-order selection: a review of information criterion rules", IEEE Signal Process. Mag. 21, 2004).
+//! Echoes in one range bin that noise hides from each other are found too many times, in wrong places, with gains that cancel. Each such group is
+//! searched again by RELAX (J. Li and P. Stoica, "Efficient mixed-spectrum estimation with applications to target feature extraction", IEEE Trans.
+//! Signal Process. 44, 1996): one echo more, then each removed and searched again in turn, until one more explains less than the price of its four
+//! numbers, a place and a complex gain (P. Stoica and Y. Selén, "Model-order selection: a review of information criterion rules", IEEE Signal Process.
+//! Mag. 21, 2004).
 
 use super::grow::DETECTION_WORK;
 use super::settings::min_echo_energy_ratio;
@@ -14,18 +14,18 @@ use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, BinSpans, Fit, Gains, Limits, Samples, Tie, bin_spans, groups, union_of};
 
-/// Echoes this near in range at either end hide each other, range bins: the half of a Hann window's main lobe.
+/// Range bins at either end within which echoes hide each other: the half of a Hann window's main lobe.
 const HIDING_BINS: f64 = 1.5;
 
-/// Most echoes of a group that is sought anew, and most that are sought in it: the time grows with the cube of their number.
-const MAX_GROUP: usize = 20;
+/// Largest number of points of a group that is searched again, and of echoes that are searched in it: the time grows with the cube of their number.
+const MAX_GROUP_POINTS: usize = 20;
 const MAX_GROUP_ECHOES: usize = 8;
 
-/// Times that every echo of a group is taken out and sought anew.
+/// Largest number of times that each echo of a group is removed and searched again.
 const MAX_CYCLES: usize = 2;
 
 impl Search<'_> {
-    /// `fit` with every small group of points that may hide each other sought anew, where that needs fewer or explains more.
+    /// `fit` with each small group of points that may hide each other searched again, where the price of echoes and the residual become less.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -37,7 +37,7 @@ impl Search<'_> {
         let price = rounding.max(min_echo_energy_ratio(self.radar) * self.fitter.noise_energy(self.radar, &fit));
         let is_sought = |group: &Vec<usize>| {
             let is_crowd = group.len() > 1 || group.iter().any(|&i| self.is_beyond(&fit.atoms[i]));
-            is_crowd && group.len() <= MAX_GROUP && group.iter().all(|i| are_points[*i])
+            is_crowd && group.len() <= MAX_GROUP_POINTS && group.iter().all(|i| are_points[*i])
         };
         let found: Vec<Vec<usize>> = found.into_iter().filter(is_sought).collect();
         let (mut gone, mut new): (Vec<usize>, Vec<(Atom, Gains)>) = (Vec::new(), Vec::new());
@@ -56,7 +56,7 @@ impl Search<'_> {
             for &i in &group {
                 self.record_refusal(tried(&fit.atoms[i]), decades(fit.cost(), best.cost()), Refusal::RestDoesWithout);
             }
-            // Numbers stay as they are until all groups are through: what is exchanged leaves silence in its place.
+            // Atoms are removed after the last group, so that their numbers stay; until then their gains are 0.
             (fit.residual, fit.energy) = (best.residual, best.energy);
             group.iter().for_each(|&i| fit.gains[i] = Gains::default());
             gone.extend(group);
@@ -68,21 +68,28 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    /// Number of prices for `atoms`: two for a place beyond the maximum range, since its echo is like that of a nearer one.
+    /// Number of `atoms`, those beyond the maximum range counted twice: their echo is like that of a nearer point.
     fn echo_count<'b>(&self, atoms: impl Iterator<Item = &'b Atom>) -> f64 {
         atoms.map(|atom| if self.is_beyond(atom) { 2.0 } else { 1.0 }).sum()
     }
 
+    /// Whether `atom` is beyond the maximum range.
     fn is_beyond(&self, atom: &Atom) -> bool {
         let [x, y] = atom.position_metres(0.0);
         x.hypot(y) > self.radar.max_range_metres()
     }
 
-    /// At most `most` echoes in `own` spans of `base`, as many as each explain `price` more.
-    fn relaxed_group(&self, base: &Samples, own: &BinSpans, price: f64, most: usize) -> Result<Fit, ReconstructError> {
+    /// At most `max_echoes` echoes in the range bins `own` of `base`, as many as each explain the energy `price`.
+    fn relaxed_group(
+        &self,
+        base: &Samples,
+        own: &BinSpans,
+        price: f64,
+        max_echoes: usize,
+    ) -> Result<Fit, ReconstructError> {
         let mut fit = self.fitter.solve(base, Vec::new(), Tie::PerEnd, 0.0);
         let mut best = fit.clone();
-        for count in 1..=most {
+        for count in 1..=max_echoes {
             self.task.check()?;
             let Some(more) = self.with_one_more(&fit, base, own) else { break };
             fit = more;
@@ -107,7 +114,7 @@ impl Search<'_> {
         Ok(best)
     }
 
-    /// `fit` with the strongest echo in `own` spans of what it leaves, all moved together.
+    /// `fit` with a point at the strongest peak of its residual in the range bins `own`, all refined together.
     fn with_one_more(&self, fit: &Fit, base: &Samples, own: &BinSpans) -> Option<Fit> {
         self.fitter.work.spend(DETECTION_WORK);
         let flat = fit.residual.flat(&self.fitter.sensor);

@@ -1,4 +1,4 @@
-//! The work of each rung of the search.
+//! The functions of the ladder's rungs.
 
 use super::on_row::is_on_row;
 use super::state::{MAX_ROUNDS, Search, State};
@@ -7,13 +7,13 @@ use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 use crate::reconstruct::fit::{Limits, Tie};
 
-/// Another round needs that this part of the energy at most is left by the last.
+/// Largest residual energy of a round, over that of the round before, for which another one follows.
 pub const MAX_ROUND_RESIDUAL_PART: f64 = 0.5;
 
 impl Search<'_> {
-    /// Points that both ends' tones lead to, kept where they are all there is.
+    /// Points from tones of both ends, if they explain the samples.
     pub fn tone_points(&self, mut state: State) -> Result<State, ReconstructError> {
-        state.pairs = self.pairs_of_tones(&state.fit);
+        state.pairs = self.tone_pairs(&state.fit);
         let Some(pairs) = &state.pairs else {
             self.record_refusal(Tried::Nothing, 0.0, Refusal::TooManyTones);
             return Ok(state);
@@ -27,13 +27,13 @@ impl Search<'_> {
         Ok(state)
     }
 
-    /// Points wherever the residual stands out, all refined; without those that the rest can do without.
+    /// Points at peaks of the residual, refined and pruned.
     pub fn points_in_residual(&self, state: State) -> Result<State, ReconstructError> {
         let fit = self.converged(self.grown(state.fit)?, self.settings.rounds)?;
         Ok(self.checked(self.pruned(fit)?))
     }
 
-    /// Lines of any direction that begin where both ends may hear points; and again, as what was found may have hidden more.
+    /// Rows that begin where both ends may have a point. Further rounds follow, since rows hide others.
     pub fn rows_of_any_direction(&self, State { mut fit, pairs, .. }: State) -> Result<State, ReconstructError> {
         let mut pairs = pairs.unwrap_or_default();
         for _ in 0..MAX_ROUNDS {
@@ -47,23 +47,23 @@ impl Search<'_> {
                 break;
             }
             if fit.cost() > MAX_ROUND_RESIDUAL_PART * cost {
-                // Much the same is left, and much the same would be heard in it: what is not in `fit` yet.
+                // The residual is so similar that its tones are the same, but for those of the rows.
                 pairs.points.retain(|point| !fit.atoms.iter().any(|row| is_on_row(row, &point.atom)));
                 break;
             }
-            pairs = self.pairs(&fit);
+            pairs = self.tone_pairs(&fit).unwrap_or_default();
         }
         Ok(State { pairs: Some(pairs), ..State::of(fit) })
     }
 
-    /// The points that the ends' tones lead to beside the lines, time and again.
+    /// Points from tones that the rows leave, in rounds.
     pub fn paired_in_rounds(&self, State { mut fit, mut pairs, .. }: State) -> Result<State, ReconstructError> {
         for _ in 0..MAX_ROUNDS {
             if self.is_explained(&fit) {
                 break;
             }
             let before = fit.cost();
-            let pairs = pairs.take().unwrap_or_else(|| self.pairs(&fit));
+            let pairs = pairs.take().unwrap_or_else(|| self.tone_pairs(&fit).unwrap_or_default());
             fit = self.refined_if_nearly_complete(self.paired(fit, &pairs, true)?)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
             if fit.cost() > MAX_ROUND_RESIDUAL_PART * before {

@@ -16,13 +16,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 const COLUMNS_PER_ELEMENT: usize = 10;
 
 /// Least distance in range bins of two places from one look at the residual: the residual of the stronger one comes first.
-const ALONE_BINS: usize = 8;
+const MIN_PEAK_DISTANCE_BINS: usize = 8;
 
-/// Range bins beyond rows that count as within.
-const EDGE_BINS: f64 = 1.0;
+/// Range bins beyond spans that count as within.
+const SPAN_MARGIN_BINS: f64 = 1.0;
 
 /// Fewest cells of the common grid that are worth a task of their own.
-const LEAST_CELLS: usize = 4096;
+const MIN_TASK_CELLS: usize = 4096;
 
 /// A search for peaks on the common grid.
 pub struct Detector {
@@ -35,18 +35,18 @@ pub struct Detector {
 }
 
 /// The last detector made: the radar seldom changes.
-static LAST: Mutex<Option<(Radar, Arc<Detector>)>> = Mutex::new(None);
+static LAST_DETECTOR: Mutex<Option<(Radar, Arc<Detector>)>> = Mutex::new(None);
 
 impl Detector {
     /// The detector of `radar`, the last one if it was made for the same radar.
     pub fn of(radar: &Radar) -> Arc<Detector> {
         // Nothing is computed while the lock is held.
-        let last = LAST.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let last = LAST_DETECTOR.lock().unwrap_or_else(PoisonError::into_inner).clone();
         if let Some((_, detector)) = last.filter(|(of, _)| of == radar) {
             return detector;
         }
         let detector = Arc::new(Detector::new(radar));
-        *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some((radar.clone(), detector.clone()));
+        *LAST_DETECTOR.lock().unwrap_or_else(PoisonError::into_inner) = Some((radar.clone(), detector.clone()));
         detector
     }
 
@@ -62,7 +62,7 @@ impl Detector {
         let cells = End::BOTH.map(|end| {
             let view = View::of(radar, end);
             let cell = |place: &[f64; 2]| {
-                let (range, cos) = view.of_place(*place, 1e-9);
+                let (range, cos) = view.range_and_cos(*place, 1e-9);
                 let row = (range / bin_metres).round() as usize % bins;
                 (beam_of_cos(cos, beams) * bins + row) as u32
             };
@@ -97,13 +97,13 @@ impl Detector {
         found
     }
 
-    /// The place (x, y; metres) of the greatest power at both ends in these rows, or at their edges.
-    pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], rows: &BinSpans) -> Option<[f64; 2]> {
+    /// The place (x, y; metres) of the greatest power at both ends in these spans, or at their edges.
+    pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], spans: &BinSpans) -> Option<[f64; 2]> {
         let powers = self.powers(radar, residual);
         let bins = self.bins as f64;
         let is_within = |end: usize, bin: u32| {
-            let (low, high) = rows[end];
-            (f64::from(bin) - low + EDGE_BINS).rem_euclid(bins) <= high - low + 2.0 * EDGE_BINS
+            let (low, high) = spans[end];
+            (f64::from(bin) - low + SPAN_MARGIN_BINS).rem_euclid(bins) <= high - low + 2.0 * SPAN_MARGIN_BINS
         };
         let near = |end: usize| (0..self.bins as u32).map(|bin| is_within(end, bin)).collect::<Vec<bool>>();
         let [first, last] = [0, 1].map(near);
@@ -114,7 +114,7 @@ impl Detector {
 
     /// All cells of the common grid.
     fn cells(&self) -> impl IndexedParallelIterator<Item = u32> {
-        (0..self.places_metres.len() as u32).into_par_iter().with_min_len(LEAST_CELLS)
+        (0..self.places_metres.len() as u32).into_par_iter().with_min_len(MIN_TASK_CELLS)
     }
 
     fn powers(&self, radar: &Radar, residual: &[Complex64]) -> Powers<'_> {
@@ -129,7 +129,7 @@ impl Detector {
             let apart = own.abs_diff(other);
             let apart = apart.min(self.bins - apart);
             // Magnitude of the Hann window's side lobes, and some margin.
-            if apart <= ALONE_BINS { f64::INFINITY } else { 4.0 / (apart as f64 - 1.0).powi(3) }
+            if apart <= MIN_PEAK_DISTANCE_BINS { f64::INFINITY } else { 4.0 / (apart as f64 - 1.0).powi(3) }
         };
         (0..self.bins).map(lobe).collect()
     }

@@ -105,7 +105,7 @@ impl PhasedBeams {
     /// The power of the beams at a place (x, y), metres.
     pub fn place_power(&self, peak_powers: &PeakPowers, place_metres: [f64; 2]) -> PlacePower {
         let of_end = |end: usize| {
-            let (range, cos) = self.views[end].of_place(place_metres, MIN_RANGE_METRES);
+            let (range, cos) = self.views[end].range_and_cos(place_metres, MIN_RANGE_METRES);
             let bin = (range * self.bins_per_metre).round() as usize % self.bins;
             let own = self.beams[end][beam_of_cos(cos, BEAM_COUNT) * self.bins + bin].norm_sqr();
             let peak = peak_powers.0[end][bin].max(f64::MIN_POSITIVE);

@@ -70,7 +70,7 @@ impl View {
     }
 
     /// Range in metres, at least `nearest_metres`, and cosine of the direction of the place at (x, y), metres.
-    pub fn of_place(&self, [x, y]: [f64; 2], nearest_metres: f64) -> (f64, f64) {
+    pub fn range_and_cos(&self, [x, y]: [f64; 2], nearest_metres: f64) -> (f64, f64) {
         let (dx, y) = (Lanes([x - self.centre_metres]), Lanes([y]));
         let range = self.range_metres(dx, y).map(|range| range.max(nearest_metres));
         let cos = self.cos_theta(dx, y, range.map(f64::recip));
@@ -109,7 +109,7 @@ mod tests {
     fn pairs_of_one_element_see_from_the_middle_of_their_end() {
         let radar = Radar::default();
         let view = View::of(&radar, End::Last);
-        let (range, cos) = view.of_place(NEAR_PLACE_METRES, 1e-3);
+        let (range, cos) = view.range_and_cos(NEAR_PLACE_METRES, 1e-3);
         let dx = NEAR_PLACE_METRES[0] - radar.end_centre_metres(End::Last);
         assert!(
             (range - dx.hypot(NEAR_PLACE_METRES[1])).abs() < 1e-12 && (cos - dx / range).abs() < 1e-12,
@@ -122,7 +122,7 @@ mod tests {
         let radar = &RadarPreset::by_id("cascade-12x16").expect("a preset").radar;
         for end in End::BOTH {
             let view = View::of(radar, end);
-            let (range, cos) = view.of_place(NEAR_PLACE_METRES, 1e-3);
+            let (range, cos) = view.range_and_cos(NEAR_PLACE_METRES, 1e-3);
             let of_element = |n: usize| radar.pair(n).range_metres(NEAR_PLACE_METRES[0], NEAR_PLACE_METRES[1]);
             let elements = radar.end_range(end);
             let mean = elements.clone().map(of_element).sum::<f64>() / elements.len() as f64;
@@ -139,7 +139,7 @@ mod tests {
     fn the_slope_is_the_difference_between_ranges() {
         for radar in [&Radar::default(), &RadarPreset::by_id("cascade-12x16").expect("a preset").radar] {
             let view = View::of(radar, End::First);
-            let range = |x: f64, y: f64| view.of_place([x, y], 1e-3).0;
+            let range = |x: f64, y: f64| view.range_and_cos([x, y], 1e-3).0;
             let by = 1e-5;
             let [x, y] = NEAR_PLACE_METRES;
             let slope = view.slope(NEAR_PLACE_METRES, 1e-3);
