@@ -1,4 +1,4 @@
-//! The elements of both ends whose samples are not zero.
+//! The elements of both ends that have samples, and their range profiles.
 
 use crate::radar::{End, Pair, Radar};
 use crate::reconstruct::profiles::Profiles;
@@ -13,24 +13,23 @@ const PROFILE_ROWS_PER_BIN: usize = 16;
 /// Least distance of a place from an element, metres: amplitudes are divided by it.
 const MIN_DISTANCE_METRES: f64 = 1e-6;
 
-/// Elements side by side.
+/// Elements that are computed together, one in each lane.
 const W: usize = LANES_F64;
 
-/// Elements with samples, those of the first end first, one that is in both ends once; dead elements are missing samples.
+/// Elements whose samples are not all 0, those of the first end first. An element of both ends is there once.
 pub(super) struct Ends {
     pub x_metres: Vec<f64>,
     /// Number of the first end's elements.
     pub first_count: usize,
-    /// Range profiles, one an element.
+    /// Range profile of each element.
     pub profiles: Profiles,
     /// Antennas of each element.
     pub pairs: Vec<Pair>,
-    /// The antennas in lanes, the last ones repeated.
+    /// The antennas in lanes; the last one is repeated.
     lanes: Vec<PairBlocks<W>>,
 }
 
 impl Ends {
-    /// The elements of `radar` whose samples in `ends` are not all zero.
     pub fn new(radar: &Radar, ends: &TwoEnds) -> Self {
         let (mut x_metres, mut pairs) = (Vec::new(), Vec::new());
         let mut channels = Vec::new();
@@ -57,8 +56,8 @@ impl Ends {
         self.x_metres.len()
     }
 
-    /// Writes into `snapshot` the profile of each element at a place in the centre's polar grid, without the phase of the element's distance: the
-    /// profiles of a reflector there differ by the distance alone. `snapshot` has an entry an element.
+    /// Writes the profile of each element at a place in the centre's polar grid into `snapshot`, `[elements]`. The phase of the element's distance is
+    /// taken out.
     #[inline(always)]
     pub fn fill_snapshot<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, snapshot: &mut [Complex64]) {
         for (i, (pairs, snapshot)) in self.lanes.iter().zip(snapshot.chunks_mut(W)).enumerate() {
@@ -68,7 +67,7 @@ impl Ends {
     }
 }
 
-/// Ranges of places in the centre's polar grid for pairs of antennas, metres: half the way there and back.
+/// Ranges of places in the centre's polar grid for pairs of antennas, metres: half of the path from transmitter to receiver.
 #[inline(always)]
 pub(super) fn distances_metres<const W: usize>(
     pairs: PairBlocks<W>,

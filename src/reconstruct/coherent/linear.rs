@@ -1,6 +1,6 @@
-//! The linear algebra of one iteration, for wide vectors: one lane a steering vector, element after element.
+//! The linear algebra of one iteration, with a steering vector in each lane.
 //!
-//! In f32, with the covariance's factor in f64: the least noise in use lies far above the rounding of either.
+//! It is in f32, with the factor of the covariance in f64: the least noise is far above the rounding of both.
 
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F32, Lanes, Simd};
 use num_complex::Complex64;
@@ -8,7 +8,7 @@ use num_complex::Complex64;
 /// Steering vectors in one lane group.
 pub(super) const W: usize = LANES_F32;
 
-/// Lane groups that are computed together: enough to hide the latency of an addition.
+/// Lanes of a group, which are computed together: enough to hide the latency of an addition.
 const GROUP_LANES: usize = 4;
 
 /// Rows and columns of the covariance that are kept in registers.
@@ -20,7 +20,7 @@ pub(super) type Lane = ComplexLanes<f32, W>;
 /// One element of neighbouring steering vectors.
 type Group = [Lane; GROUP_LANES];
 
-/// Steering vectors, padded to whole groups by vectors of zeros.
+/// Steering vectors, padded to whole groups with zeros.
 #[derive(Debug, Clone)]
 pub(super) struct Steering {
     elements: usize,
@@ -29,7 +29,7 @@ pub(super) struct Steering {
 }
 
 impl Steering {
-    /// Space for `lanes` times `W` vectors of `elements` elements, all zero.
+    /// `lanes * W` vectors of `elements` elements, all zero.
     pub fn zero(elements: usize, lanes: usize) -> Self {
         Steering { elements, values: vec![[Lane::zero(); GROUP_LANES]; elements * lanes.div_ceil(GROUP_LANES)] }
     }
@@ -46,7 +46,7 @@ impl Steering {
     }
 }
 
-/// Figures of the samples z under the covariance `R = sum_k power_k a_k a_k^H + noise`, one number a vector.
+/// Figures of the samples z under the covariance `R = sum_k power_k a_k a_k^H + noise`, `[vectors]`.
 #[derive(Debug, Clone)]
 pub(super) struct WhitenedFigures {
     /// `|a_k^H R^-1 z|^2`.

@@ -1,4 +1,4 @@
-//! Coherent methods: each is one closure, and the steps around it are shared.
+//! The steps that all coherent methods share.
 
 use super::ends::Ends;
 use super::model::{Model, Update};
@@ -18,19 +18,19 @@ use crate::signal::TwoEnds;
 use crate::task::Task;
 use rayon::prelude::*;
 
-/// Most elements with samples: a model's work grows with the cube of their number.
+/// Largest number of elements with samples: the work of a model grows with the cube of their number.
 const MAX_ELEMENTS: usize = 96;
 
 /// Most looks: searches for peaks in the samples and in the residuals of the reflectors found so far.
 const MAX_SEARCHES: usize = 4;
 
-/// Peaks are the same reflector when nearer than this in range bins and in periods of the ends' fringes.
+/// Distance of peaks, in range bins and in periods of the ends' fringes, within which they are one reflector.
 const SAME_PEAK: (f64, f64) = (1.0, 0.75);
 
-/// Most sectors, those of an array as long as so many range bins.
+/// Largest length of the array, range bins: it has as many sectors.
 const MAX_SECTORS: f64 = 1000.0;
 
-/// The assumptions of every coherent method, [`About::told`](crate::reconstruct::About::told).
+/// [`About::told`](crate::reconstruct::About::told) of the coherent methods.
 pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor; it measures the noise itself";
 
 /// A method that finds the powers of steering vectors of both ends together.
@@ -38,7 +38,7 @@ pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor;
 pub struct CoherentMethod {
     pub(super) about: About,
     pub(super) update: Update,
-    /// Least power of a reflector's direction, as a part of its model's strongest.
+    /// Least power of a reflector over the largest of its model.
     pub(super) min_peak_part: f64,
 }
 
@@ -112,7 +112,7 @@ impl CoherentMethod {
     ) -> Result<Vec<Peak>, ReconstructError> {
         let heard = Ends::new(radar, ends);
         let sectors = Sectors::new(radar, &heard);
-        // The window's mean square over its squared mean, divided by the number of samples.
+        // The noise bandwidth of the window is 1.5 bins.
         let noise_power = hearing.ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
         let places = places(radar, &heard, &sectors, noise_power, task)?;
         let found: Vec<Vec<Peak>> = places
@@ -139,7 +139,7 @@ pub(in crate::reconstruct) fn found_in_residuals(
     let mut settled = Settled::new(radar, ends, task);
     for round in 0..MAX_SEARCHES {
         task.set_progress(0.9 * round as f32 / MAX_SEARCHES as f32);
-        if !settled.take(&search(&settled.left())?)? {
+        if !settled.add(&search(&settled.residual())?)? {
             break;
         }
     }

@@ -1,4 +1,4 @@
-//! The linear model of one place: steering vectors of both ends together, and their powers.
+//! The linear model of a place: steering vectors of both ends together, and their powers.
 
 use super::ends::{Ends, distances_metres};
 use super::linear::{Lane, Steering, W, whitened_figures};
@@ -12,47 +12,48 @@ use crate::signal::simd::{Kernel, Lanes, Simd};
 use crate::task::Task;
 use num_complex::Complex64;
 
-/// Number of plane waves at one end alone for each of its beam widths.
+/// Number of plane waves at one end alone in each of its beam widths.
 const WAVES_PER_BEAM_WIDTH: f64 = 2.0;
 
-/// Beam widths around the sector from which no such waves are taken: both ends' own vectors account for them.
+/// Beam widths beside the sector without such waves: its steering vectors are similar there.
 const CLEAR_WIDTHS: f64 = 0.2;
 
-/// Change of all powers, as a part of the largest, at which the iteration ends.
+/// Largest change of a power over the largest power at which the iteration ends.
 const MAX_CONVERGED_CHANGE: f32 = 1e-3;
 
-/// Powers below this part of the mean power of the samples are set to 0: denormal numbers slow the processor down.
+/// Power, as a part of the samples' mean, below which it is set to 0: denormal numbers are slow.
 const MIN_POWER: f32 = 1e-20;
 
-/// The profiles of both ends at a place, and their steering vectors.
+/// The range profiles of both ends at a place, and their steering vectors.
 pub(super) struct Model {
-    /// First the sector's directions, then the plane waves at one end; zeros at the other end and in the padding.
+    /// First the sector's directions, then plane waves at one end alone, 0 at the other. The padding is 0.
     steering: Steering,
     /// The profile of each element at the place.
     snapshot: Vec<Complex64>,
     directions: usize,
-    /// Power of the noise in an element.
+    /// Mean power of the noise of an element.
     noise: f64,
 }
 
-/// Figures of one steering vector, in units in which the samples' mean power is 1.
+/// Figures of one steering vector, in units of the mean power of the profiles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct VectorFigures {
     /// The vector's present power.
     pub power: f32,
-    /// `|a^H R^-1 z|^2` of the vector a, the covariance R of all powers and noise, and the samples z.
+    /// `|a^H R^-1 z|^2` of the vector a, the covariance R of all powers and noise, and the profiles z.
     pub matched: f32,
     /// `a^H R^-1 a`.
     pub norm: f32,
 }
 
+/// The iteration of a method.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Update {
     /// The next power of a vector.
     pub next: fn(VectorFigures) -> f32,
-    /// Most updates of all powers.
+    /// Largest number of updates of all powers.
     pub max_iterations: usize,
-    /// Least noise of the model, as a part of the mean power of the samples: the error of steering vectors for a real echo.
+    /// Least noise of the model, as a part of the mean power of the profiles: steering vectors have errors.
     pub min_noise: f64,
 }
 
@@ -75,7 +76,7 @@ impl Model {
         }
         let snapshot: Vec<Complex64> = self.snapshot.iter().map(|h| h * scale).collect();
         let mut powers = vec![0.0; self.steering.vectors()];
-        // Without any power the covariance is the noise alone: the matched filter.
+        // The covariance of noise alone gives the powers of the matched filter.
         if let Some(start) = whitened_figures(&self.steering, &powers, noise, &snapshot) {
             for ((power, matched), norm) in powers.iter_mut().zip(start.matched).zip(start.norm) {
                 *power = if norm > 0.0 { matched / (norm * norm) } else { 0.0 };
@@ -123,7 +124,7 @@ impl Kernel for Make<'_> {
         ends.fill_snapshot::<FMA>(range, place.sector.middle_cos, &mut snapshot);
         let mut noise = 0.0;
         for (snapshot, own) in snapshot.iter_mut().zip(&own) {
-            // Amplitudes fall with the square of the distance; this scales them to the same distance for all elements.
+            // Amplitudes, which fall with the square of the distance, are scaled to the same distance.
             let nearer = (own / range).powi(2);
             *snapshot *= nearer;
             noise += self.noise_power * nearer * nearer / ends.len() as f64;
@@ -176,7 +177,7 @@ fn only(mut wave: Lane, exists: impl Fn(usize) -> bool) -> Lane {
     wave
 }
 
-/// Directions outside the sector, relative to its middle, of plane waves at one end at the place's range: those that differ at its elements.
+/// Directions of plane waves at one end, relative to the sector's middle and outside of it, one for each set of phases at the elements.
 fn waves_outside(radar: &Radar, place: &Place) -> Vec<f64> {
     let turns_per_metre = radar.carrier_turns_per_metre().abs();
     let period_cos = 1.0 / (turns_per_metre * radar.element_spacing_metres);

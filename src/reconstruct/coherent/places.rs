@@ -11,25 +11,25 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Ranges that are searched, for each range bin.
+/// Number of searched ranges in each range bin.
 const RANGES_PER_BIN: usize = 4;
 
-/// Range bins beyond the last that are searched: they wrap to the first ones, where next to nothing can stand.
+/// Range bins beyond the last that are searched. They wrap to the first, where hardly any place is.
 const WRAPPED_BINS: usize = 1;
 
-/// Power by which a place must stand above the noise of one beam.
+/// Least power of a place over the noise of a beam.
 const MIN_PLACE_OVER_NOISE: f64 = 10.0;
 
-/// Least power of a place relative to the strongest other direction at its range; a weaker place counts as an end's side lobe.
+/// Least power of a place over that of the strongest direction at its range. A weaker place may be a side lobe of an end.
 const MIN_DIRECTION_PART: f64 = 0.05;
 
-/// Margin in power of range side lobes over the window's response to a single reflector.
+/// Margin of the power of range side lobes over the window's response.
 const SIDE_LOBE_MARGIN_RATIO: f64 = 8.0;
 
-/// Least power of a place relative to the strongest of all; weaker places wait for another look, since residuals of the strongest ones may resemble them.
+/// Least power of a place over the strongest. Weaker ones may be residuals of it, and are found by a later search.
 const MIN_PLACE_PART: f64 = 1e-4;
 
-/// Most places with a model; the strongest.
+/// Largest number of places.
 const MAX_PLACES: usize = 512;
 
 /// A range and a sector.
@@ -49,7 +49,7 @@ struct Beams {
 }
 
 impl Beams {
-    /// As many beams as cover the sectors without a gap.
+    /// Beams that cover a sector without a gap.
     fn new(radar: &Radar, ends: &Ends, half_width_cos: f64) -> Self {
         let count = (4.0 * half_width_cos / end_beam_cos(radar)).ceil().max(1.0);
         let step = |i: usize| (2 * i + 1) as f64 * half_width_cos / count - half_width_cos;
@@ -57,7 +57,7 @@ impl Beams {
         Beams { weights: (0..count as usize).map(weights).collect() }
     }
 
-    /// Largest power over the beams at the weaker end.
+    /// Power of the strongest beam, each counted at its weaker end.
     fn power(&self, heard: &[Complex64], first_count: usize) -> f64 {
         let of = |weights: &Vec<Complex64>| {
             let beam = |part: std::ops::Range<usize>| {
@@ -100,7 +100,7 @@ fn ranges(radar: &Radar) -> usize {
     RANGES_PER_BIN * (radar.samples + WRAPPED_BINS)
 }
 
-/// Every place that is no side lobe of another and not too weak beside the strongest, strongest first. `noise_power` is that of one element's profile.
+/// Places above the noise that are no side lobes of others, the strongest first. `noise_power` is that of one element's profile.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
@@ -149,14 +149,13 @@ pub(super) fn places(
     Ok(found)
 }
 
-/// The power at every range above which a place is no side lobe of the `strongest` at all ranges. Ranges wrap after `period` of them: the last
-/// bin lies beside the first.
+/// The power at each range above which a place is no side lobe of the `strongest` powers at all ranges. Ranges wrap after `period`.
 fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
     let count = strongest.len();
     let envelope: Vec<f64> = (0..=period / 2)
         .map(|i| {
             let bins = i as f64 / RANGES_PER_BIN as f64;
-            // Beyond the main lobe the level is that of each side lobe's peak, at half bins.
+            // Beyond the main lobe the level is that of the side lobes' peaks, which are at half bins.
             let level = range_response(bins.floor() + 0.5);
             if bins < 2.0 {
                 MIN_DIRECTION_PART

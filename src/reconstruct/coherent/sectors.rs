@@ -3,16 +3,16 @@
 use super::ends::Ends;
 use crate::radar::Radar;
 
-/// Largest migration of an element's range within a sector, from the sector's middle, range bins.
+/// Largest difference of a range at an element between a sector's edge and its middle, range bins.
 const MAX_MIGRATION_BINS: f64 = 0.5;
 
-/// Directions of a model for each period of the fringes between the two ends, where there are many sectors.
+/// Directions of a model in each period of the fringes between the two ends, where there are many sectors.
 const DIRECTIONS_PER_FRINGE: f64 = 4.0;
 
-/// Directions of a model for each of these periods where one model serves all directions.
+/// The same where one model has all directions.
 const SINGLE_MODEL_DIRECTIONS_PER_FRINGE: f64 = 12.0;
 
-/// Most directions of one model, beyond which the grid gets coarser.
+/// Largest number of directions of a model; beyond it the grid is coarser.
 const MAX_DIRECTIONS: usize = 1536;
 
 /// Width of an end's beam in cos(theta).
@@ -20,10 +20,10 @@ pub(super) fn end_beam_cos(radar: &Radar) -> f64 {
     radar.beam_cos(radar.end_elements as f64 * radar.element_spacing_metres)
 }
 
-/// Neighbouring directions.
+/// An interval of directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sector {
-    /// The direction for which the sector is registered.
+    /// The direction at which models are exact.
     pub middle_cos: f64,
     /// Half of the sector's width in cos(theta).
     pub half_width_cos: f64,
@@ -33,7 +33,7 @@ pub(super) struct Sector {
 pub(super) struct Sectors {
     /// The sectors, in rising order of cos(theta).
     pub all: Vec<Sector>,
-    /// Directions of one model, relative to the sector's middle, in rising order.
+    /// Directions of a model, relative to the sector's middle, in rising order.
     pub steps_cos: Vec<f64>,
     /// Period in cos(theta) of the fringes between the outermost elements.
     pub fringe_cos: f64,
@@ -45,7 +45,7 @@ impl Sectors {
         let reach_metres = ends.x_metres.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let span_metres = ends.x_metres.last().unwrap_or(&0.0) - ends.x_metres.first().unwrap_or(&0.0);
         let widest = if radar.samples == 1 {
-            1.0 // one sample has no ranges to migrate through
+            1.0 // one sample has no range bins
         } else {
             MAX_MIGRATION_BINS * radar.range_resolution_metres() / reach_metres.max(f64::MIN_POSITIVE)
         };

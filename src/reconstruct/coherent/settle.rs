@@ -1,4 +1,4 @@
-//! Peaks, moved to the places where their exact echoes explain the samples best, without those that the others don't need.
+//! Refinement of peaks by their exact echoes, and removal of needless ones.
 //!
 //! The cyclic least squares by which Yardibi et al. refine their own peaks (RELAX: J. Li and P. Stoica, "Efficient mixed-spectrum estimation
 //! with applications to target feature extraction", IEEE Trans. Signal Process. 44, 1996), with the tools of the search.
@@ -19,29 +19,28 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Distance from the array that a reflector must keep, as a part of its distance from the nearer end.
+/// Least distance of a reflector from the array over its distance from the nearer end.
 const MIN_DISTANCE_RATIO: f64 = 0.25;
 
-/// Most rounds of taking peaks from one look.
+/// Largest number of rounds in which peaks of one search are added.
 const MAX_ROUNDS: usize = 8;
 
-/// Least part of the strongest peak's energy that a peak of the same round explains: residuals of stronger peaks not yet in their places
-/// resemble many weak ones.
+/// Least energy of a peak over that of the strongest of the same round: the residual of a strong peak in an inexact place looks like many weak ones.
 const MIN_STRONGEST_PART: f64 = 0.03;
 
-/// Part of a peak's energy below which other peaks have explained it.
+/// Energy of a peak, over its first energy, up to which others have explained it.
 const MAX_EXPLAINED_REMAINDER_PART: f64 = 0.05;
 
-/// Largest part of the energy that the last look may leave for another look to follow.
+/// Largest residual energy after a search, over that before, for which another one follows.
 const MAX_SEARCH_RESIDUAL_PART: f64 = 0.9;
 
-/// Part of the energy that may be left unexplained: 130 dB down, above the residual of rounding, which is no white noise.
+/// Residual energy at which the search ends, as a part of the samples': 130 dB down, above rounding, which is not white.
 const COMPLETE_RESIDUAL_PART: f64 = 1e-13;
 
-/// Reflectors that leave no more than this many times as much are accepted at any place: a millionth of the energy.
+/// Largest residual energy over [`COMPLETE_RESIDUAL_PART`] at which reflectors are accepted at any place: a millionth of the samples' energy.
 const CERTAIN_RESIDUAL_RATIO: f64 = 1e7;
 
-/// Echoes nearer than this are one: parts of an end's beam, and range bins.
+/// Distance within which echoes are one: parts of an end's beam width, and range bins.
 const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
 
 /// Budget of work, in units of about ten microseconds.
@@ -51,7 +50,7 @@ const MAX_WORK: usize = 30_000;
 struct PendingPeak {
     echo: ArrayEcho,
     spans: BinSpans,
-    /// Energy that the peak explained when it was found.
+    /// Energy that it explained when it was found.
     energy: f64,
 }
 
@@ -86,15 +85,16 @@ impl<'a> Settled<'a> {
         Search { radar, fitter, detector, samples, has_white_noise: false, settings, task, trace }
     }
 
-    pub fn left(&self) -> TwoEnds {
+    /// The residual.
+    pub fn residual(&self) -> TwoEnds {
         TwoEnds::of_flat(self.radar, &self.fit.residual.flat(&self.fitter.sensor))
     }
 
-    /// Adds the reflectors behind `peaks`: the strongest first, nearby ones against its residual. Returns whether another look is worthwhile.
+    /// Adds reflectors at `peaks`, in rounds from the strongest on. Returns whether another search is useful.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
-    pub fn take(&mut self, peaks: &[Peak]) -> Result<bool, ReconstructError> {
+    pub fn add(&mut self, peaks: &[Peak]) -> Result<bool, ReconstructError> {
         let before = self.fit.clone();
         let mut pending: Vec<PendingPeak> = peaks.iter().filter_map(|p| PendingPeak::new(self.radar, p)).collect();
         let first = self.explained_energies(&pending);
@@ -125,7 +125,7 @@ impl<'a> Settled<'a> {
         Ok(is_better && !self.is_done())
     }
 
-    /// The reflectors, with those that may hide each other sought anew where something is left.
+    /// The reflectors after a new search for those that hide each other ([`Search::relaxed`]), where there is a residual.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
@@ -142,7 +142,7 @@ impl<'a> Settled<'a> {
         self.fit.cost() <= self.complete_energy || self.fitter.work.is_spent()
     }
 
-    /// Energy of the residual that each of `pending` explains by itself.
+    /// Energy of the residual that each of `pending` explains alone.
     fn explained_energies(&self, pending: &[PendingPeak]) -> Vec<f64> {
         let mut weighted = self.fit.residual.flat(&self.fitter.sensor);
         let weights = self.fitter.squared.iter().cycle();
@@ -171,8 +171,8 @@ impl<'a> Settled<'a> {
     }
 }
 
-/// Whether a reflector's echo is not much louder at an element between the ends than at the ends: such a reflector would fill the map without
-/// any measurement in its favour.
+/// Whether a reflector's echo is not much stronger at an element between the ends than at the ends: such a reflector would fill the map, though the ends
+/// hardly measure it.
 fn is_heard_at_the_ends(radar: &Radar, x_metres: f64, y_metres: f64) -> bool {
     let nearest = |from: f64, to: f64| (x_metres - x_metres.clamp(from, to)).hypot(y_metres);
     let outermost = radar.element_x_metres(radar.elements - 1);
@@ -191,7 +191,7 @@ impl PendingPeak {
     }
 }
 
-/// Moves from `left` into the answer the places of those without a stronger one nearby.
+/// Removes the peaks without a stronger one nearby from `left`, and returns their places (x, y), metres.
 fn taken_places(radar: &Radar, left: &mut Vec<(f64, PendingPeak)>) -> Vec<[f64; 2]> {
     let mut taken: Vec<(BinSpans, [f64; 2])> = Vec::new();
     left.retain(|(_, w)| {

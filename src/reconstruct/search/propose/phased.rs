@@ -49,15 +49,15 @@ pub struct ReflectorEcho {
     pub weight: f64,
 }
 
-/// Power of the peak_powers beam in each range bin, for each end.
+/// Power of the strongest beam in each range bin, for each end.
 pub struct PeakPowers([Vec<f64>; 2]);
 
 /// Power of the beams at a place. Each figure is the smaller one of the two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlacePower {
-    /// Power of the beam towards the place over that of the peak_powers beam in the same range bin, 0 to 1.
+    /// Power of the beam towards the place over that of the strongest beam in the same range bin, 0 to 1.
     pub part: f64,
-    /// Power of that peak_powers beam times `R^4`, so that it doesn't depend on the range of a reflector.
+    /// Power of that strongest beam times `R^4`, so that it doesn't depend on the range of a reflector.
     pub range_compensated_power: f64,
 }
 
@@ -91,7 +91,6 @@ impl PhasedBeams {
         }
     }
 
-    /// The power of the peak_powers beam in each range bin.
     pub fn peak_powers(&self) -> PeakPowers {
         PeakPowers(self.beams.each_ref().map(|beams| {
             let mut peak = vec![0.0f64; self.bins];
@@ -134,7 +133,7 @@ impl PhasedBeams {
         Simd::chosen().run(CoherentParts { beams: self, rows, count })
     }
 
-    /// [`Self::coherent_parts`] of one row, with a reflector for each entry of the buffer `echoes`. The gain may differ between the ends.
+    /// [`Self::coherent_parts`] of one row, with a reflector for each entry of the buffer `echoes`. Each end has its own gain.
     #[inline(always)]
     fn coherent_part<const FMA: bool>(&self, row: &Row, echoes: &mut [ReflectorEcho]) -> f64 {
         if row.place_metres((echoes.len() - 1) as f64)[1] <= 0.0 {

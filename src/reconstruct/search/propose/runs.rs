@@ -1,4 +1,4 @@
-//! The number of successive range bins with an echo.
+//! Length of runs of range bins with echoes.
 
 use super::end_beams::beam_noise_power;
 use crate::maps::channels_range_transform;
@@ -6,16 +6,16 @@ use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
-/// Power of an echo in a range bin, over that of the noise.
+/// Least power of an echo in a range bin over that of the noise.
 pub const MIN_ECHO_OVER_NOISE: f64 = 4.0;
 
-/// Weakest echo, over the strongest, after scaling by the 1/R^4 law of power.
+/// Least power of an echo over the strongest, both times `R^4`.
 const MIN_ECHO_POWER_RATIO: f64 = 1e-6;
 
-/// Range bins that are added before this scaling: near the array the law no longer holds.
+/// Range bins that are added to the range `R`: near the array powers grow less than by `1/R^4`.
 const ADDED_RANGE_BINS: f64 = 10.0;
 
-/// Fewest successive range bins that count as longer than a few reflectors.
+/// Least length of a run that is more than a few reflectors.
 pub const MIN_LONG_RUN_BINS: usize = 18;
 
 /// Length of the longest row of neighbouring range bins that hold an echo, at either end, in `residual` (all samples of both ends, not windowed). An echo
