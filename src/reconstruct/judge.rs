@@ -42,7 +42,7 @@ const MEAN_SIDE_CELLS: [usize; 2] = [2, 8];
 /// Weight of the map `network` in each cell, 0 to 1. The rest is the weight of `drawn`, the search's map. All arrays are `[range bins, columns]`, and
 /// both maps are Lambda on one scale.
 ///
-/// `residual_decades` is the search's residual over its drawn map, decades of power
+/// `residual` is the search's residual over its drawn map, decades of power
 /// ([`Found::residual_decades`](super::search::Found::residual_decades)). `doubt` is the bound, in Lambda, which nine of ten errors of the network stay
 /// below. Without it the residual alone sets the weight. Cells of a Lambda of `1 - shown_part` or less are not shown. `is_hidden` says whether
 /// noise may hide objects that the search lacks.
@@ -50,11 +50,11 @@ pub fn network_weight(
     drawn: &RangeAngleMap,
     network: &RangeAngleMap,
     doubt: Option<&RangeAngleMap>,
-    residual_decades: &Array2<f32>,
+    residual: &Array2<f32>,
     shown_part: f32,
     is_hidden: bool,
 ) -> Array2<f32> {
-    let shown = || residual_decades.iter().zip(&drawn.lambda).filter(|(_, drawn)| **drawn > 1.0 - shown_part);
+    let shown = || residual.iter().zip(&drawn.lambda).filter(|(_, drawn)| **drawn > 1.0 - shown_part);
     let unexplained_part = shown().filter(|(left, _)| **left > 0.0).count() as f32 / shown().count().max(1) as f32;
     let scene_unexplained = ramp(UNEXPLAINED_PART, unexplained_part);
     let mut square = &drawn.lambda - &network.lambda;
@@ -65,15 +65,13 @@ pub fn network_weight(
     let unexplained = |left: f32| ramp(RESIDUAL_DECADES, left - shift).max(least);
     let agreed = |contradiction: f32| AGREED_WEIGHT + (1.0 - AGREED_WEIGHT) * contradiction;
     match doubt {
-        None => Zip::from(&mut weight).and(residual_decades).par_for_each(|w, left| *w = unexplained(*left)),
-        Some(doubt) => {
-            Zip::from(&mut weight).and(residual_decades).and(&doubt.lambda).par_for_each(|w, left, doubt| {
-                let expected = (doubt / DOUBT_DEVIATIONS).powi(2).max(f32::MIN_POSITIVE);
-                let contradiction = ramp(CONTRADICTION_RATIO, *w / expected);
-                let hidden = if is_hidden { contradiction } else { 0.0 };
-                *w = unexplained(*left).max(hidden) * agreed(contradiction);
-            })
-        }
+        None => Zip::from(&mut weight).and(residual).par_for_each(|w, left| *w = unexplained(*left)),
+        Some(doubt) => Zip::from(&mut weight).and(residual).and(&doubt.lambda).par_for_each(|w, left, doubt| {
+            let expected = (doubt / DOUBT_DEVIATIONS).powi(2).max(f32::MIN_POSITIVE);
+            let contradiction = ramp(CONTRADICTION_RATIO, *w / expected);
+            let hidden = if is_hidden { contradiction } else { 0.0 };
+            *w = unexplained(*left).max(hidden) * agreed(contradiction);
+        }),
     }
     weight
 }

@@ -48,7 +48,7 @@ impl Steering {
 
 /// Figures of the samples z under the covariance `R = sum_k power_k a_k a_k^H + noise`, `[vectors]`.
 #[derive(Debug, Clone)]
-pub(super) struct WhitenedFigures {
+pub(super) struct Whitened {
     /// `|a_k^H R^-1 z|^2`.
     pub matched: Vec<f32>,
     /// `a_k^H R^-1 a_k`.
@@ -56,12 +56,7 @@ pub(super) struct WhitenedFigures {
 }
 
 /// One iteration; `None` where the covariance is not positive definite. `powers` has one value a vector, the padding included.
-pub(super) fn whitened_figures(
-    steering: &Steering,
-    powers: &[f32],
-    noise: f64,
-    z: &[Complex64],
-) -> Option<WhitenedFigures> {
+pub(super) fn whitened(steering: &Steering, powers: &[f32], noise: f64, z: &[Complex64]) -> Option<Whitened> {
     Simd::chosen().run(Iteration { steering, powers, noise, z })
 }
 
@@ -73,7 +68,7 @@ struct Iteration<'a> {
 }
 
 impl Kernel for Iteration<'_> {
-    type Output = Option<WhitenedFigures>;
+    type Output = Option<Whitened>;
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
@@ -133,10 +128,10 @@ impl Iteration<'_> {
         sums
     }
 
-    /// `L^-1` applied to all steering vectors and to the samples, and the figures of [`WhitenedFigures`].
+    /// `L^-1` applied to all steering vectors and to the samples, and the figures of [`Whitened`].
     #[inline(always)]
     #[allow(clippy::needless_range_loop)] // constant bounds keep the rows in registers
-    fn whitened<const FMA: bool>(&self, factor: &[Complex64]) -> WhitenedFigures {
+    fn whitened<const FMA: bool>(&self, factor: &[Complex64]) -> Whitened {
         let n = self.steering.elements;
         let mut z = self.z.to_vec();
         for i in 0..n {
@@ -145,8 +140,7 @@ impl Iteration<'_> {
         }
         let splat = |v: Complex64| Lane { re: Lanes::splat(v.re as f32), im: Lanes::splat(v.im as f32) };
         let size = self.steering.vectors();
-        let mut whitened_figures =
-            WhitenedFigures { matched: Vec::with_capacity(size), norm: Vec::with_capacity(size) };
+        let mut out = Whitened { matched: Vec::with_capacity(size), norm: Vec::with_capacity(size) };
         let mut rows = vec![[Lane::zero(); GROUP_LANES]; n];
         for group in self.steering.values.chunks_exact(n) {
             let mut norm = [Lanes::splat(0.0); GROUP_LANES];
@@ -171,11 +165,11 @@ impl Iteration<'_> {
             }
             for b in 0..GROUP_LANES {
                 let matched = matched[b];
-                whitened_figures.matched.extend((matched.re * matched.re + matched.im * matched.im).0);
-                whitened_figures.norm.extend(norm[b].0);
+                out.matched.extend((matched.re * matched.re + matched.im * matched.im).0);
+                out.norm.extend(norm[b].0);
             }
         }
-        whitened_figures
+        out
     }
 }
 
@@ -221,7 +215,7 @@ mod tests {
         powers.resize(steering.vectors(), 0.0);
         let z: Vec<Complex64> = (0..elements).map(|n| Complex64::new(n as f64 - 1.0, 0.5 * n as f64)).collect();
         let noise = 0.3;
-        let got = whitened_figures(&steering, &powers, noise, &z).unwrap();
+        let got = whitened(&steering, &powers, noise, &z).unwrap();
         let covariance = Mat::from_fn(elements, elements, |i, j| {
             let sum: Complex64 = (0..vectors).map(|k| value(i, k) * value(j, k).conj() * f64::from(powers[k])).sum();
             sum + if i == j { noise } else { 0.0 }
@@ -237,6 +231,6 @@ mod tests {
         }
         assert_eq!((got.norm[vectors], got.matched[vectors]), (0.0, 0.0), "padding");
         let nothing = vec![0.0; steering.vectors()];
-        assert!(whitened_figures(&steering, &nothing, 0.0, &z).is_none(), "nothing explains anything");
+        assert!(whitened(&steering, &nothing, 0.0, &z).is_none(), "nothing explains anything");
     }
 }

@@ -1,7 +1,7 @@
 //! The linear model of a place: steering vectors of both ends together, and their powers.
 
 use super::ends::{Ends, distances_metres};
-use super::linear::{Lane, Steering, W, whitened_figures};
+use super::linear::{Lane, Steering, W, whitened};
 use super::places::Place;
 use super::sectors::Sectors;
 use crate::radar::{Pair, Radar};
@@ -77,14 +77,14 @@ impl Model {
         let snapshot: Vec<Complex64> = self.snapshot.iter().map(|h| h * scale).collect();
         let mut powers = vec![0.0; self.steering.vectors()];
         // The covariance of noise alone gives the powers of the matched filter.
-        if let Some(start) = whitened_figures(&self.steering, &powers, noise, &snapshot) {
+        if let Some(start) = whitened(&self.steering, &powers, noise, &snapshot) {
             for ((power, matched), norm) in powers.iter_mut().zip(start.matched).zip(start.norm) {
                 *power = if norm > 0.0 { matched / (norm * norm) } else { 0.0 };
             }
         }
         for _ in 0..update.max_iterations {
             task.check()?;
-            let Some(now) = whitened_figures(&self.steering, &powers, noise, &snapshot) else { break };
+            let Some(now) = whitened(&self.steering, &powers, noise, &snapshot) else { break };
             let (mut change, mut largest) = (0.0f32, 0.0f32);
             for ((power, matched), norm) in powers.iter_mut().zip(now.matched).zip(now.norm) {
                 let next = (update.next)(VectorFigures { power: *power, matched, norm });

@@ -24,7 +24,7 @@ const MIN_PLACE_OVER_NOISE: f64 = 10.0;
 const MIN_DIRECTION_PART: f64 = 0.05;
 
 /// Margin of the power of range side lobes over the window's response.
-const SIDE_LOBE_MARGIN_RATIO: f64 = 8.0;
+const SIDE_LOBE_MARGIN: f64 = 8.0;
 
 /// Least power of a place over the strongest. Weaker ones may be residuals of it, and are found by a later search.
 const MIN_PLACE_PART: f64 = 1e-4;
@@ -58,14 +58,14 @@ impl Beams {
     }
 
     /// Power of the strongest beam, each counted at its weaker end.
-    fn power(&self, heard: &[Complex64], first_count: usize) -> f64 {
+    fn power(&self, snapshot: &[Complex64], first_count: usize) -> f64 {
         let of = |weights: &Vec<Complex64>| {
             let beam = |part: std::ops::Range<usize>| {
                 let count = part.len() as f64;
-                let sum: Complex64 = heard[part.clone()].iter().zip(&weights[part]).map(|(h, w)| h * w).sum();
+                let sum: Complex64 = snapshot[part.clone()].iter().zip(&weights[part]).map(|(h, w)| h * w).sum();
                 sum.norm_sqr() / (count * count)
             };
-            beam(0..first_count).min(beam(first_count..heard.len()))
+            beam(0..first_count).min(beam(first_count..snapshot.len()))
         };
         self.weights.iter().map(of).fold(0.0, f64::max)
     }
@@ -85,11 +85,11 @@ impl Kernel for RangePowers<'_> {
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Vec<f64> {
         let mut powers = vec![0.0; ranges(self.radar)];
-        let mut heard = vec![Complex64::default(); self.ends.len()];
+        let mut snapshot = vec![Complex64::default(); self.ends.len()];
         for (i, power) in powers.iter_mut().enumerate().skip(1) {
             let range = self.radar.range_of_bin_metres(i as f64 / RANGES_PER_BIN as f64);
-            self.ends.fill_snapshot::<FMA>(range, self.middle_cos, &mut heard);
-            *power = self.beams.power(&heard, self.ends.first_count);
+            self.ends.fill_snapshot::<FMA>(range, self.middle_cos, &mut snapshot);
+            *power = self.beams.power(&snapshot, self.ends.first_count);
         }
         powers
     }
@@ -121,7 +121,7 @@ pub(super) fn places(
     let range = |i: f64| radar.range_of_bin_metres(i / RANGES_PER_BIN as f64);
     let count = ranges(radar);
     let beams = Beams::new(radar, ends, sectors.all.first().map_or(1.0, |s| s.half_width_cos));
-    let heard: Vec<Vec<f64>> = sectors
+    let snapshot: Vec<Vec<f64>> = sectors
         .all
         .par_iter()
         .map(|sector| {
@@ -129,13 +129,13 @@ pub(super) fn places(
             Ok(Simd::chosen().run(RangePowers { radar, ends, beams: &beams, middle_cos: sector.middle_cos }))
         })
         .collect::<Result<_, ReconstructError>>()?;
-    let strongest: Vec<f64> = (0..count).map(|i| heard.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();
+    let strongest: Vec<f64> = (0..count).map(|i| snapshot.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();
     let least = side_lobes(&strongest, RANGES_PER_BIN * radar.samples);
     let noise = MIN_PLACE_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
     let mut found = Vec::new();
-    for (sector, heard) in sectors.all.iter().zip(&heard) {
+    for (sector, snapshot) in sectors.all.iter().zip(&snapshot) {
         for i in 1..count.saturating_sub(1) {
-            let [before, here, after] = [heard[i - 1], heard[i], heard[i + 1]];
+            let [before, here, after] = [snapshot[i - 1], snapshot[i], snapshot[i + 1]];
             if here > before && here >= after && here > least[i].max(noise) {
                 let offset = vertex(before, here, after);
                 found.push(Place { range_metres: range(i as f64 + offset), sector: *sector, power: here });
@@ -157,11 +157,7 @@ fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
             let bins = i as f64 / RANGES_PER_BIN as f64;
             // Beyond the main lobe the level is that of the side lobes' peaks, which are at half bins.
             let level = range_response(bins.floor() + 0.5);
-            if bins < 2.0 {
-                MIN_DIRECTION_PART
-            } else {
-                (level * level * SIDE_LOBE_MARGIN_RATIO).min(MIN_DIRECTION_PART)
-            }
+            if bins < 2.0 { MIN_DIRECTION_PART } else { (level * level * SIDE_LOBE_MARGIN).min(MIN_DIRECTION_PART) }
         })
         .collect();
     let apart = |i: usize, j: usize| {
@@ -193,10 +189,10 @@ mod tests {
         let radar = Radar { elements: 128, ..Radar::default() };
         let scene = Scene::of_points([(2.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let heard = Ends::new(&radar, &ends);
-        let sectors = Sectors::new(&radar, &heard);
+        let snapshot = Ends::new(&radar, &ends);
+        let sectors = Sectors::new(&radar, &snapshot);
         let noise = ends_noise_variance(&radar, &ends, Floor::Thesis.into()) * 1.5 / radar.samples as f64;
-        let found = places(&radar, &heard, &sectors, noise, &Task::default()).unwrap();
+        let found = places(&radar, &snapshot, &sectors, noise, &Task::default()).unwrap();
         let range = 2f64.hypot(9.0);
         assert!(!found.is_empty() && found.len() < 4 * sectors.all.len(), "{} places", found.len());
         for place in &found {

@@ -10,7 +10,7 @@ use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::fit::{Atom, BinSpans, Fit, Fitter, Samples, Tie, bin_spans, distance_bins};
 use crate::reconstruct::search::{
-    Detector, MIN_DISTANCE_BINS, MIN_ENERGY_OVER_NOISE, Search, Settings, Trace, with_tied_gains,
+    Detector, MIN_DISTANCE_BINS, MIN_ENERGY_RATIO, Search, Settings, Trace, with_tied_gains,
 };
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -35,9 +35,9 @@ const MAX_EXPLAINED_REMAINDER_PART: f64 = 0.05;
 const MAX_SEARCH_RESIDUAL_PART: f64 = 0.9;
 
 /// Residual energy at which the search ends, as a part of the samples': 130 dB down, above rounding, which is not white.
-const COMPLETE_RESIDUAL_PART: f64 = 1e-13;
+const COMPLETE_PART: f64 = 1e-13;
 
-/// Largest residual energy over [`COMPLETE_RESIDUAL_PART`] at which reflectors are accepted at any place: a millionth of the samples' energy.
+/// Largest residual energy over [`COMPLETE_PART`] at which reflectors are accepted at any place: a millionth of the samples' energy.
 const CERTAIN_RESIDUAL_RATIO: f64 = 1e7;
 
 /// Distance within which echoes are one: parts of an end's beam width, and range bins.
@@ -76,7 +76,7 @@ impl<'a> Settled<'a> {
         let samples = Samples::new(&fitter.sensor, &flat);
         let fit = fitter.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings, complete_energy) =
-            (Detector::of(radar), Settings::default(), fit.cost() * COMPLETE_RESIDUAL_PART);
+            (Detector::of(radar), Settings::default(), fit.cost() * COMPLETE_PART);
         Settled { radar, task, fitter, detector, settings, samples, trace: Trace::default(), fit, complete_energy }
     }
 
@@ -101,7 +101,7 @@ impl<'a> Settled<'a> {
         pending.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
         for _ in 0..MAX_ROUNDS {
             self.task.check()?;
-            let noise = MIN_ENERGY_OVER_NOISE * self.fitter.noise_energy(self.radar, &self.fit);
+            let noise = MIN_ENERGY_RATIO * self.fitter.noise_energy(self.radar, &self.fit);
             let now = self.explained_energies(&pending);
             let mut left: Vec<(f64, PendingPeak)> = now.into_iter().zip(pending).collect();
             left.retain(|(now, w)| *now > noise.max(MAX_EXPLAINED_REMAINDER_PART * w.energy));

@@ -91,7 +91,7 @@ pub fn remainder(
     let parts = if reflectors.len() < MIN_SPLIT_REFLECTORS { 1 } else { SPLIT_PARTS };
     let part_size = reflectors.len().div_ceil(parts).max(1);
     let sum = |block: usize, part_at: usize| {
-        let start = if part_at == 0 { Start::Samples(&samples.blocks[block]) } else { Start::Silence };
+        let start = (part_at == 0).then(|| &samples.blocks[block][..]);
         let reflectors = reflectors.chunks(part_size).nth(part_at).unwrap_or_default();
         simd.run(Sum { sensor, first_channel: block * W, reflectors, start, keeps_echoes: kind != ProductKind::None })
     };
@@ -130,7 +130,7 @@ pub fn echo_of_all(sensor: &Sensor, reflectors: &[Reflector], block: usize) -> V
     let negative = [Complex64::from(-1.0); 2];
     let reflectors: Vec<(Reflector, [Complex64; 2])> = reflectors.iter().map(|r| (*r, negative)).collect();
     let first_channel = block * W;
-    let sum = Sum { sensor, first_channel, reflectors: &reflectors, start: Start::Silence, keeps_echoes: false };
+    let sum = Sum { sensor, first_channel, reflectors: &reflectors, start: None, keeps_echoes: false };
     Simd::chosen().run(sum).sum
 }
 
@@ -151,18 +151,13 @@ fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Pro
 /// Number of reflectors whose echoes are subtracted together: their phasors fit into the first-level cache.
 const BATCH_REFLECTORS: usize = 4;
 
-/// Initial value of a sum of echoes.
-enum Start<'a> {
-    Silence,
-    Samples(&'a [ComplexLanes<f64, W>]),
-}
-
 /// Kernel of the echoes of some reflectors at one block of channels.
 struct Sum<'a> {
     sensor: &'a Sensor,
     first_channel: usize,
     reflectors: &'a [(Reflector, [Complex64; 2])],
-    start: Start<'a>,
+    /// Initial value of the sum; 0 where there is none.
+    start: Option<&'a [ComplexLanes<f64, W>]>,
     /// Whether the phasors of all echoes are part of the output.
     keeps_echoes: bool,
 }
@@ -202,10 +197,7 @@ impl Kernel for Sum<'_> {
         let mut echoes =
             Phasors::zero(if keeps_echoes { reflectors.len() } else { reflectors.len().min(BATCH_REFLECTORS) }, many);
         let mut scaled = vec![ComplexLanes::zero(); BATCH_REFLECTORS * many];
-        let mut sum = match self.start {
-            Start::Silence => vec![ComplexLanes::zero(); many * STRIDE],
-            Start::Samples(samples) => samples.to_vec(),
-        };
+        let mut sum = self.start.map_or_else(|| vec![ComplexLanes::zero(); many * STRIDE], <[_]>::to_vec);
         // The gains of a fit begin at 0.
         let is_silent = reflectors.iter().all(|(_, gains)| *gains == [Complex64::default(); 2]);
         for (at, reflectors) in reflectors.chunks(BATCH_REFLECTORS).enumerate() {

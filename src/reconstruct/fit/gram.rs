@@ -195,25 +195,15 @@ impl Kernel for GramRow<'_, '_> {
                         continue;
                     }
                     is_coupled = true;
-                    add_by_parameters(
-                        &mut sums,
-                        &d.block::<FMA>(a, b, end),
-                        (&d.atoms[i], k),
-                        (&d.atoms[j], l),
-                        d.derivatives,
-                    );
+                    let block = d.block::<FMA>(a, b, end);
+                    add_by_parameters(&mut sums, &block, (&d.atoms[i], k), (&d.atoms[j], l), d.derivatives);
                 }
             }
             if j == i {
                 sums = plus_adjoint(sums);
                 for (k, a) in d.echoes[i].iter().enumerate() {
-                    add_by_parameters(
-                        &mut sums,
-                        &d.block::<FMA>(a, a, end),
-                        (&d.atoms[i], k),
-                        (&d.atoms[i], k),
-                        d.derivatives,
-                    );
+                    let (own, block) = ((&d.atoms[i], k), d.block::<FMA>(a, a, end));
+                    add_by_parameters(&mut sums, &block, own, own, d.derivatives);
                 }
             }
             if is_coupled || j == i {

@@ -151,7 +151,8 @@ impl<'a> Fitter<'a> {
     /// Least-squares gains of `atoms` at their places, with a `ridge` as in [`Limits`].
     pub fn solve(&self, samples: &Samples, atoms: Vec<Atom>, tie: Tie, ridge: f64) -> Fit {
         let gains = vec![Gains::default(); atoms.len()];
-        self.fit_of(self.state(samples, atoms, gains, FitOptions { tie, ridge, derivatives: false }), samples)
+        let fit = self.state(samples, atoms, gains, FitOptions { tie, ridge, derivatives: false }).fit;
+        self.fit_of(samples, fit.atoms, fit.gains)
     }
 
     /// Moves `atoms` to a local minimum of the energy of the residual. The gains begin at `gains`, which are zeros or near the truth.
@@ -176,7 +177,7 @@ impl<'a> Fitter<'a> {
                 break;
             }
         }
-        self.fit_of(state, samples)
+        self.fit_of(samples, state.fit.atoms, state.fit.gains)
     }
 
     /// The state after one step, with `damping` adapted to it; `None` where no step lowers the energy by `min_decrease` of it.
@@ -325,10 +326,10 @@ impl<'a> Fitter<'a> {
         unreachable!("the last pass returns")
     }
 
-    /// The fit of a state, with the residual computed for its last gains.
-    fn fit_of(&self, state: State, samples: &Samples) -> Fit {
-        let left = self.subtract(samples, &state.fit.atoms, &state.fit.gains);
-        Fit { residual: left.residual, energy: left.energy, ..state.fit }
+    /// `samples` without `atoms` of the gains `gains`.
+    pub fn fit_of(&self, samples: &Samples, atoms: Vec<Atom>, gains: Vec<Gains>) -> Fit {
+        let Remainder { residual, energy, .. } = self.subtract(samples, &atoms, &gains);
+        Fit { atoms, gains, residual, energy }
     }
 }
 

@@ -71,16 +71,11 @@ impl Sensor {
         TAU / self.carrier_radians_per_metre.abs()
     }
 
-    /// Phase of sample `n` for each metre of distance, radians.
-    #[inline(always)]
-    fn radians_per_metre(&self, n: f64) -> f64 {
-        self.carrier_radians_per_metre + self.beat_radians_per_metre * n
-    }
-
     /// Phase for each metre of distance at the middle of the chirp, and its increase over the whole chirp, radians.
     pub fn radians_per_metre_over_chirp(&self) -> [f64; 2] {
         let middle = (self.samples as f64 - 1.0) / 2.0;
-        [self.radians_per_metre(middle), self.beat_radians_per_metre * self.samples as f64]
+        let at_middle = self.carrier_radians_per_metre + self.beat_radians_per_metre * middle;
+        [at_middle, self.beat_radians_per_metre * self.samples as f64]
     }
 }
 

@@ -82,9 +82,8 @@ impl Search<'_> {
         self.accepted(&residual, &rows_over_pairs(&beams, points, self.task)).or_else(|| {
             let is_unwrapped = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
             let first: Vec<[f64; 2]> = points.iter().filter(is_unwrapped).take(MAX_CANDIDATES).copied().collect();
-            let from_edges =
-                if self.has_long_run(&flat) { rows_from_edges(&beams, &first, self.task) } else { Vec::new() };
-            self.accepted(&residual, &from_edges)
+            let from_edges = self.has_long_run(&flat).then(|| rows_from_edges(&beams, &first, self.task));
+            self.accepted(&residual, &from_edges.unwrap_or_default())
         })
     }
 

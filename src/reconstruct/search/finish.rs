@@ -113,6 +113,8 @@ pub(super) fn finish(
     let residual = best.residual.flat(&fitter.sensor);
     let noise_variance = noise_model.noise_variance(radar, &residual);
     let all = fitter.energy(samples);
+    // With the mean of both gains the residual contains an echo whose strength differs between the ends.
+    let drawn_gains: Vec<Gains> = best.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
     let weight = fitter.squared.iter().sum::<f64>() * fitter.sensor.element_x.len() as f64;
     Ok(Found {
         reflectivities: reflectivities(&best.gains),
@@ -121,7 +123,7 @@ pub(super) fn finish(
         residual_variance: best.cost() / weight,
         noise_variance,
         needed_decades: needed_decades(radar, fitter, &best, noise_variance),
-        drawn_residual: drawn_residual(fitter, samples, &best),
+        drawn_residual: fitter.subtract(samples, &best.atoms, &drawn_gains).residual.flat(&fitter.sensor),
         atoms: best.atoms,
         gains: best.gains,
         scale,
@@ -206,12 +208,6 @@ fn needed_decades(radar: &Radar, fitter: &Fitter, fit: &Fit, noise_variance: f64
         (energy / residual).max(f64::MIN_POSITIVE).log10()
     };
     energies.zip(&fit.atoms).map(of_atom).collect()
-}
-
-/// The residual with the mean of both gains: it contains an echo whose strength differs between the ends.
-fn drawn_residual(fitter: &Fitter, samples: &Samples, fit: &Fit) -> Vec<Complex64> {
-    let tied: Vec<Gains> = fit.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
-    fitter.subtract(samples, &fit.atoms, &tied).residual.flat(&fitter.sensor)
 }
 
 /// `fit` with each point on its best tooth, one after another.

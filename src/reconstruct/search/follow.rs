@@ -26,9 +26,7 @@ impl Search<'_> {
         self.trace.enter(FOLLOWING);
         let ratio = scale / previous.scale;
         let gains = previous.gains.iter().map(|g| g.map(|g| g * ratio)).collect();
-        let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
-        let remainder = self.fitter.subtract(self.samples, &fit.atoms, &fit.gains);
-        (fit.residual, fit.energy) = (remainder.residual, remainder.energy);
+        let mut fit = self.fitter.fit_of(self.samples, previous.atoms.clone(), gains);
         let all = self.fitter.energy(self.samples);
         if fit.cost() > MAX_START_RESIDUAL_PART * all {
             return Ok(None);

@@ -66,7 +66,7 @@ pub use finish::Found;
 pub(super) use finish::with_tied_gains;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
-pub(super) use prune::{MIN_DISTANCE_BINS, MIN_ENERGY_OVER_NOISE};
+pub(super) use prune::{MIN_DISTANCE_BINS, MIN_ENERGY_RATIO};
 pub use settings::Settings;
 pub(super) use state::Search;
 pub(super) use trace::Trace;

@@ -8,7 +8,7 @@ use crate::reconstruct::attempt::Refusal;
 use crate::reconstruct::fit::{Atom, BinSpans, Fit, Limits, bin_spans, distance_bins};
 
 /// Least energy that an atom explains, over the mean energy that one gain explains of noise.
-pub const MIN_ENERGY_OVER_NOISE: f64 = 16.0;
+pub const MIN_ENERGY_RATIO: f64 = 16.0;
 
 /// Largest number of rounds of removing atoms.
 const MAX_PRUNING_ROUNDS: usize = 12;
@@ -28,16 +28,16 @@ impl Search<'_> {
                 break;
             }
             let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude(), self.radar);
-            let least = rounding.max(MIN_ENERGY_OVER_NOISE * self.fitter.noise_energy(self.radar, &fit));
+            let least = rounding.max(MIN_ENERGY_RATIO * self.fitter.noise_energy(self.radar, &fit));
             let energies = self.fitter.marginal_energies(&fit);
             let spans: Vec<BinSpans> = fit.atoms.iter().map(|a| bin_spans(self.radar, a)).collect();
+            let distance = |i: usize, j: usize| distance_bins(self.radar.samples, &spans[i], &spans[j]);
             let is_needless = |i: &usize| energies[*i] < least || self.is_out_of_range(&fit.atoms[*i]);
             let mut order: Vec<usize> = (0..fit.atoms.len()).filter(is_needless).collect();
             order.sort_by(|a, b| energies[*a].total_cmp(&energies[*b]));
             let mut removed: Vec<usize> = Vec::new();
             for i in order {
-                let is_apart = |j: &usize| distance_bins(self.radar.samples, &spans[i], &spans[*j]) > MIN_DISTANCE_BINS;
-                if removed.iter().all(is_apart) {
+                if removed.iter().all(|&j| distance(i, j) > MIN_DISTANCE_BINS) {
                     removed.push(i);
                 }
             }
@@ -45,19 +45,12 @@ impl Search<'_> {
                 break;
             }
             for &i in &removed {
-                self.record_refusal(
-                    tried(&fit.atoms[i]),
-                    decades(fit.cost() + energies[i], fit.cost()),
-                    Refusal::RestDoesWithout,
-                );
+                let gain_decades = decades(fit.cost() + energies[i], fit.cost());
+                self.record_refusal(tried(&fit.atoms[i]), gain_decades, Refusal::RestDoesWithout);
             }
             fit = self.fitter.remove(fit, &removed);
             let kept = (0..spans.len()).filter(|i| !removed.contains(i));
-            let beside = |i: usize| {
-                removed
-                    .iter()
-                    .any(|&j| distance_bins(self.radar.samples, &spans[i], &spans[j]) < 2.0 * MIN_DISTANCE_BINS)
-            };
+            let beside = |i: usize| removed.iter().any(|&j| distance(i, j) < 2.0 * MIN_DISTANCE_BINS);
             let marked: Vec<bool> = kept.map(beside).collect();
             fit = self.refined(fit, &marked, MIN_DISTANCE_BINS, Limits::ROUGH)?;
         }

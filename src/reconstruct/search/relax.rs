@@ -79,17 +79,11 @@ impl Search<'_> {
         x.hypot(y) > self.radar.max_range_metres()
     }
 
-    /// At most `max_echoes` echoes in the range bins `own` of `base`, as many as each explain the energy `price`.
-    fn relaxed_group(
-        &self,
-        base: &Samples,
-        own: &BinSpans,
-        price: f64,
-        max_echoes: usize,
-    ) -> Result<Fit, ReconstructError> {
+    /// At most `limit` echoes in the range bins `own` of `base`, as many as each explain the energy `price`.
+    fn relaxed_group(&self, base: &Samples, own: &BinSpans, price: f64, limit: usize) -> Result<Fit, ReconstructError> {
         let mut fit = self.fitter.solve(base, Vec::new(), Tie::PerEnd, 0.0);
         let mut best = fit.clone();
-        for count in 1..=max_echoes {
+        for count in 1..=limit {
             self.task.check()?;
             let Some(more) = self.with_one_more(&fit, base, own) else { break };
             fit = more;

@@ -26,10 +26,8 @@ impl Search<'_> {
         let seed = trimmed(&gate, seed);
         let mut row = gate.refined(seed, Gains::default());
         for _ in 0..MAX_EXTENSIONS {
-            let (before, after) = rayon::join(
-                || self.missing_reflectors(&gate, &row, false),
-                || self.missing_reflectors(&gate, &row, true),
-            );
+            let missing = |at_last| self.missing_reflectors(&gate, &row, at_last);
+            let (before, after) = rayon::join(|| missing(false), || missing(true));
             if before + after == 0 {
                 break;
             }
@@ -81,10 +79,8 @@ impl RangeGate<'_> {
 fn trimmed(gate: &RangeGate, mut seed: Atom) -> Atom {
     for _ in 0..MAX_TRIMS {
         let row = gate.fitter.solve_alone(&gate.samples, seed);
-        let (first, last) = rayon::join(
-            || excess_reflectors(&gate.fitter, &row, false),
-            || excess_reflectors(&gate.fitter, &row, true),
-        );
+        let excess = |at_last| excess_reflectors(&gate.fitter, &row, at_last);
+        let (first, last) = rayon::join(|| excess(false), || excess(true));
         match resized(seed, first as i64, last as i64) {
             Some(shorter) if first + last > 0 => seed = shorter,
             _ => break,

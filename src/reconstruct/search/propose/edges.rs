@@ -3,7 +3,7 @@
 //! The beams show whether echoes continue from such a point in a direction that rows mostly have. In such a direction a grid of steps is tried over the
 //! first few reflectors, and the best rows are lengthened as those of `strides` are.
 
-use super::phased::{PhasedBeams, PlacePower, Row};
+use super::phased::{PeakPowers, PhasedBeams, Row};
 use super::strides::{MAX_STEP_METRES, MIN_REFLECTORS, RowStart, grid_peaks, longest_of_each, pitches_metres};
 use crate::reconstruct::fit::Atom;
 use crate::task::Task;
@@ -47,9 +47,7 @@ const DIRECTIONS_RADIANS: [f64; 4] = [0.0, FRAC_PI_2, PI, -FRAC_PI_2];
 pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
     let peak_powers = beams.peak_powers();
     let candidate = |first: usize, radians: f64| {
-        let place_power = |place| beams.place_power(&peak_powers, place);
-        let score = run_score(place_power, beams.bin_metres(), points[first], radians)?;
-        Some(Direction { first, radians, score })
+        run_score(beams, &peak_powers, points[first], radians).map(|score| Direction { first, radians, score })
     };
     let mut directions: Vec<Direction> = (0..points.len())
         .into_par_iter()
@@ -57,43 +55,34 @@ pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
         .collect();
     directions.sort_by(|a, b| b.score.total_cmp(&a.score));
     directions.truncate(MAX_DIRECTIONS);
-    let rows_of = |direction: &Direction| {
+    let starts_of = |direction: &Direction| {
         let (rows, lengths) = rows_in_direction(beams, points[direction.first], direction.radians);
         let parts = beams.coherent_parts(&rows, MIN_REFLECTORS);
         let peaks: Vec<Row> = grid_peaks(&parts, lengths, MAX_RETRIED_ROWS).into_iter().map(|at| rows[at]).collect();
         let parts = beams.coherent_parts(&peaks, 2 * MIN_REFLECTORS);
         let mut best: Vec<(f64, Row)> = parts.into_iter().zip(peaks).collect();
         best.sort_by(|a, b| b.0.total_cmp(&a.0));
-        best.truncate(MAX_STARTED_ROWS);
-        best
+        let starts = best.into_iter().take(MAX_STARTED_ROWS);
+        starts.map(|(_, row)| RowStart { first: direction.first, row }).collect::<Vec<_>>()
     };
-    let starts: Vec<RowStart> = directions
-        .par_iter()
-        .filter(|_| !task.is_cancelled())
-        .flat_map_iter(|direction| {
-            rows_of(direction).into_iter().map(|(_, row)| RowStart { first: direction.first, row })
-        })
-        .collect();
+    let starts: Vec<RowStart> =
+        directions.par_iter().filter(|_| !task.is_cancelled()).flat_map_iter(starts_of).collect();
     tracing::debug!(directions = directions.len(), starts = starts.len(), "edges");
     let rows = longest_of_each(beams, starts, task).into_iter();
     rows.filter(|row| row.reflector_count() >= MIN_EDGE_REFLECTORS).collect()
 }
 
 /// Mean part of the beams' power in a run of echoes from `from` on, times the square root of its range bins; `None` for a short or weak run.
-fn run_score(
-    place_power: impl Fn([f64; 2]) -> PlacePower,
-    bin_metres: f64,
-    from: [f64; 2],
-    radians: f64,
-) -> Option<f64> {
+fn run_score(beams: &PhasedBeams, peak_powers: &PeakPowers, from: [f64; 2], radians: f64) -> Option<f64> {
+    let place_power = |place| beams.place_power(peak_powers, place);
     let (sin, cos) = radians.sin_cos();
-    let least_power = MIN_COMPENSATED_POWER_PART * place_power(from).range_compensated_power;
+    let least_power = MIN_COMPENSATED_POWER_PART * place_power(from).compensated_power;
     let (mut bins, mut sum) = (0, 0.0);
     while bins < MAX_RUN_BINS {
-        let distance = f64::from(bins + 1) * bin_metres;
+        let distance = f64::from(bins + 1) * beams.bin_metres();
         let place = [from[0] + distance * cos, from[1] + distance * sin];
         let there = place_power(place);
-        if place[1] <= 0.0 || there.range_compensated_power < least_power {
+        if place[1] <= 0.0 || there.compensated_power < least_power {
             break;
         }
         (bins, sum) = (bins + 1, sum + there.part);

@@ -58,7 +58,7 @@ pub struct PlacePower {
     /// Power of the beam towards the place over that of the strongest beam in the same range bin, 0 to 1.
     pub part: f64,
     /// Power of that strongest beam times `R^4`, so that it doesn't depend on the range of a reflector.
-    pub range_compensated_power: f64,
+    pub compensated_power: f64,
 }
 
 impl Row {
@@ -108,13 +108,10 @@ impl PhasedBeams {
             let bin = (range * self.bins_per_metre).round() as usize % self.bins;
             let own = self.beams[end][beam_of_cos(cos, BEAM_COUNT) * self.bins + bin].norm_sqr();
             let peak = peak_powers.0[end][bin].max(f64::MIN_POSITIVE);
-            PlacePower { part: own / peak, range_compensated_power: peak * range.powi(4) }
+            PlacePower { part: own / peak, compensated_power: peak * range.powi(4) }
         };
         let (a, b) = (of_end(0), of_end(1));
-        PlacePower {
-            part: a.part.min(b.part),
-            range_compensated_power: a.range_compensated_power.min(b.range_compensated_power),
-        }
+        PlacePower { part: a.part.min(b.part), compensated_power: a.compensated_power.min(b.compensated_power) }
     }
 
     /// The unambiguous range, metres.

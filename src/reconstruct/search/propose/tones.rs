@@ -47,7 +47,7 @@ pub struct Tone {
 }
 
 /// Seed of the projection, so that the same samples have the same tones.
-const PROJECTION_SEED: u64 = 0x70_6e_65_73;
+const SEED: u64 = 0x70_6e_65_73;
 
 /// The tones of a chirp, `[samples]`, over white noise of `noise_variance` a sample; `None` where there are more than the chirp can resolve.
 pub fn tones(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<Tone>> {
@@ -89,15 +89,14 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Compl
     let mut projected: Mat<Complex64> = Mat::zeros(rows, 0);
     loop {
         let known = projected.ncols();
-        let random: Vec<Complex64> =
-            (known..width).flat_map(|j| unit_noise(PROJECTION_SEED, j).take(columns)).collect();
+        let random: Vec<Complex64> = (known..width).flat_map(|j| unit_noise(SEED, j).take(columns)).collect();
         let more = &hankel * Mat::from_fn(columns, width - known, |i, j| random[j * columns + i]);
         projected.resize_with(rows, width, |i, j| more[(i, j - known)]);
         let qr = projected.qr();
         let wider = ((COLUMN_RATIO * width as f64) as usize).min(max_width);
-        let added_norm = |column: usize| qr.thin_R()[(column, column)].norm();
+        let is_strong = |column: usize| qr.thin_R()[(column, column)].norm() > MIN_STRONG_OVER_NOISE * all_noise;
         // The last columns add far more than noise, so there are more tones than columns.
-        if (width - NOISE_COLUMNS..width).all(|column| added_norm(column) > MIN_STRONG_OVER_NOISE * all_noise) {
+        if (width - NOISE_COLUMNS..width).all(is_strong) {
             if width == max_width {
                 return None;
             }
@@ -106,10 +105,7 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Compl
         }
         let range = qr.compute_thin_Q();
         // Columns after the last large one contain weak tones and noise.
-        let strong = (0..width)
-            .rev()
-            .find(|column| added_norm(*column) > MIN_STRONG_OVER_NOISE * all_noise)
-            .map_or(0, |c| c + 1);
+        let strong = (0..width).rev().find(|column| is_strong(*column)).map_or(0, |column| column + 1);
         let enough = Some(strong + WEAK_TONE_COLUMNS).filter(|enough| *enough < width);
         for count in enough.into_iter().chain([width]) {
             let range = range.subcols(0, count);
