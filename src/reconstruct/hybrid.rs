@@ -138,7 +138,7 @@ impl Shown {
         if self.whole == Normalisation::MinMax {
             return eta;
         }
-        let peak = map.lambda.iter().fold(0.0f32, |most, v| most.max(*v));
+        let peak = map.lambda.iter().fold(0.0f32, |max, v| max.max(*v));
         let of = |v: f32| (1.0 - (peak - v) / self.part).clamp(0.0, 1.0);
         map.lambda.par_mapv_inplace(of);
         of(eta)

@@ -39,18 +39,18 @@ pub(crate) fn own_threshold(answer: &RangeAngleMap, doubt: Option<&RangeAngleMap
 /// The quantile at `part` of `values`, which are 0 to 1; `None` without any.
 fn quantile(values: impl Iterator<Item = f32>, part: f64) -> Option<f32> {
     let mut counts = [0u32; HISTOGRAM_STEPS + 1];
-    let mut all = 0u32;
+    let mut total = 0u32;
     for value in values {
         counts[(value.clamp(0.0, 1.0) * HISTOGRAM_STEPS as f32) as usize] += 1;
-        all += 1;
+        total += 1;
     }
-    let wanted = (part * f64::from(all)).ceil() as u32;
+    let rank = (part * f64::from(total)).ceil() as u32;
     let mut sum = 0;
     let step = counts.iter().position(|count| {
         sum += count;
-        sum >= wanted
+        sum >= rank
     })?;
-    (all > 0).then(|| (step as f32 + 1.0).min(HISTOGRAM_STEPS as f32) / HISTOGRAM_STEPS as f32)
+    (total > 0).then(|| (step as f32 + 1.0).min(HISTOGRAM_STEPS as f32) / HISTOGRAM_STEPS as f32)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 /// Largest number of elements with samples: the work of a model grows with the cube of their number.
 const MAX_ELEMENTS: usize = 96;
 
-/// Most looks: searches for peaks in the samples and in the residuals of the reflectors found so far.
+/// Largest number of searches for peaks, in the samples and in the residuals of the reflectors found so far.
 const MAX_SEARCHES: usize = 4;
 
 /// Distance of peaks, in range bins and in periods of the ends' fringes, within which they are one reflector.
@@ -67,8 +67,8 @@ impl Reconstructor for CoherentMethod {
         self.check_size(radar, radar.end_elements.saturating_mul(2))
     }
 
-    fn check_halves(&self, halves: &Radar, heard: usize) -> Result<(), ReconstructError> {
-        self.check_size(halves, heard)
+    fn check_halves(&self, halves: &Radar, elements: usize) -> Result<(), ReconstructError> {
+        self.check_size(halves, elements)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -86,11 +86,11 @@ impl Reconstructor for CoherentMethod {
 }
 
 impl CoherentMethod {
-    /// Whether models can be made of `heard` elements of `radar`'s ends.
-    fn check_size(&self, radar: &Radar, heard: usize) -> Result<(), ReconstructError> {
-        if heard > MAX_ELEMENTS {
+    /// Whether models can be made of `elements` elements of `radar`'s ends.
+    fn check_size(&self, radar: &Radar, elements: usize) -> Result<(), ReconstructError> {
+        if elements > MAX_ELEMENTS {
             return Err(self.unusable(format!(
-                "its models take at most {MAX_ELEMENTS} elements, and {heard} are heard; matched-filter takes any number"
+                "its models take at most {MAX_ELEMENTS} elements, and {elements} are heard; matched-filter takes any number"
             )));
         }
         let bins = radar.bin_of_range(radar.aperture_metres());
@@ -110,15 +110,15 @@ impl CoherentMethod {
         hearing: &Hearing,
         task: &Task,
     ) -> Result<Vec<Peak>, ReconstructError> {
-        let heard = Ends::new(radar, ends);
-        let sectors = Sectors::new(radar, &heard);
+        let elements = Ends::new(radar, ends);
+        let sectors = Sectors::new(radar, &elements);
         // The noise bandwidth of the window is 1.5 bins.
         let noise_power = hearing.ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
-        let places = places(radar, &heard, &sectors, noise_power, task)?;
+        let places = places(radar, &elements, &sectors, noise_power, task)?;
         let found: Vec<Vec<Peak>> = places
             .par_iter()
             .map(|place| {
-                let powers = Model::new(radar, &heard, &sectors, place, noise_power).powers(&self.update, task)?;
+                let powers = Model::new(radar, &elements, &sectors, place, noise_power).powers(&self.update, task)?;
                 Ok(peaks(&sectors, place, &powers, self.min_peak_part))
             })
             .collect::<Result<_, ReconstructError>>()?;

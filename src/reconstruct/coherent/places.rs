@@ -121,7 +121,7 @@ pub(super) fn places(
     let range = |i: f64| radar.range_of_bin_metres(i / RANGES_PER_BIN as f64);
     let count = ranges(radar);
     let beams = Beams::new(radar, ends, sectors.all.first().map_or(1.0, |s| s.half_width_cos));
-    let snapshot: Vec<Vec<f64>> = sectors
+    let powers: Vec<Vec<f64>> = sectors
         .all
         .par_iter()
         .map(|sector| {
@@ -129,13 +129,13 @@ pub(super) fn places(
             Ok(Simd::chosen().run(RangePowers { radar, ends, beams: &beams, middle_cos: sector.middle_cos }))
         })
         .collect::<Result<_, ReconstructError>>()?;
-    let strongest: Vec<f64> = (0..count).map(|i| snapshot.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();
+    let strongest: Vec<f64> = (0..count).map(|i| powers.iter().map(|powers| powers[i]).fold(0.0, f64::max)).collect();
     let least = side_lobes(&strongest, RANGES_PER_BIN * radar.samples);
     let noise = MIN_PLACE_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
     let mut found = Vec::new();
-    for (sector, snapshot) in sectors.all.iter().zip(&snapshot) {
+    for (sector, powers) in sectors.all.iter().zip(&powers) {
         for i in 1..count.saturating_sub(1) {
-            let [before, here, after] = [snapshot[i - 1], snapshot[i], snapshot[i + 1]];
+            let [before, here, after] = [powers[i - 1], powers[i], powers[i + 1]];
             if here > before && here >= after && here > least[i].max(noise) {
                 let offset = vertex(before, here, after);
                 found.push(Place { range_metres: range(i as f64 + offset), sector: *sector, power: here });
@@ -160,13 +160,13 @@ fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
             if bins < 2.0 { MIN_DIRECTION_PART } else { (level * level * SIDE_LOBE_MARGIN).min(MIN_DIRECTION_PART) }
         })
         .collect();
-    let apart = |i: usize, j: usize| {
+    let distance = |i: usize, j: usize| {
         let steps = i.abs_diff(j) % period;
         steps.min(period - steps)
     };
     (0..count)
         .into_par_iter()
-        .map(|i| strongest.iter().enumerate().map(|(j, power)| power * envelope[apart(i, j)]).fold(0.0, f64::max))
+        .map(|i| strongest.iter().enumerate().map(|(j, power)| power * envelope[distance(i, j)]).fold(0.0, f64::max))
         .collect()
 }
 

@@ -25,7 +25,7 @@ const MIN_DISTANCE_RATIO: f64 = 0.25;
 /// Largest number of rounds in which peaks of one search are added.
 const MAX_ROUNDS: usize = 8;
 
-/// Least energy of a peak over that of the strongest of the same round: the residual of a strong peak in an inexact place looks like many weak ones.
+/// Least energy of a peak over that of the strongest of the same round: the residual of a strong peak in an inexact place resembles many weak ones.
 const MIN_STRONGEST_PART: f64 = 0.03;
 
 /// Energy of a peak, over its first energy, up to which others have explained it.
@@ -98,24 +98,24 @@ impl<'a> Settled<'a> {
         let before = self.fit.clone();
         let mut pending: Vec<PendingPeak> = peaks.iter().filter_map(|p| PendingPeak::new(self.radar, p)).collect();
         let first = self.explained_energies(&pending);
-        pending.iter_mut().zip(first).for_each(|(w, energy)| w.energy = energy);
+        pending.iter_mut().zip(first).for_each(|(peak, energy)| peak.energy = energy);
         for _ in 0..MAX_ROUNDS {
             self.task.check()?;
             let noise = MIN_ENERGY_RATIO * self.fitter.noise_energy(self.radar, &self.fit);
             let now = self.explained_energies(&pending);
-            let mut left: Vec<(f64, PendingPeak)> = now.into_iter().zip(pending).collect();
-            left.retain(|(now, w)| *now > noise.max(MAX_EXPLAINED_REMAINDER_PART * w.energy));
-            left.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let least = left.first().map_or(0.0, |(strongest, _)| MIN_STRONGEST_PART * strongest);
-            let mut later = left.split_off(left.partition_point(|(now, _)| *now >= least));
-            let taken = taken_places(self.radar, &mut left);
-            left.append(&mut later);
+            let mut remaining: Vec<(f64, PendingPeak)> = now.into_iter().zip(pending).collect();
+            remaining.retain(|(now, peak)| *now > noise.max(MAX_EXPLAINED_REMAINDER_PART * peak.energy));
+            remaining.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let least = remaining.first().map_or(0.0, |(strongest, _)| MIN_STRONGEST_PART * strongest);
+            let mut later = remaining.split_off(remaining.partition_point(|(now, _)| *now >= least));
+            let taken = taken_places(self.radar, &mut remaining);
+            remaining.append(&mut later);
             if taken.is_empty() || self.is_done() {
                 break;
             }
             let search = self.search();
             self.fit = search.refined_in_sweeps(search.with_points(self.fit.clone(), &taken)?)?;
-            pending = left.into_iter().map(|(_, w)| w).collect();
+            pending = remaining.into_iter().map(|(_, peak)| peak).collect();
         }
         self.fit = self.search().pruned(self.fit.clone())?;
         let is_better = self.fit.cost() < MAX_SEARCH_RESIDUAL_PART * before.cost();
@@ -148,7 +148,7 @@ impl<'a> Settled<'a> {
         let weights = self.fitter.squared.iter().cycle();
         weighted.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
         let mean = self.fitter.squared.iter().sum::<f64>() / self.fitter.squared.len() as f64;
-        pending.par_iter().map(|w| w.echo.correlate(&weighted).norm_sqr() / mean).collect()
+        pending.par_iter().map(|peak| peak.echo.correlate(&weighted).norm_sqr() / mean).collect()
     }
 
     /// The reflectors, with gains common to both ends; `ends` are the samples in which they were found.
@@ -191,13 +191,14 @@ impl PendingPeak {
     }
 }
 
-/// Removes the peaks without a stronger one nearby from `left`, and returns their places (x, y), metres.
-fn taken_places(radar: &Radar, left: &mut Vec<(f64, PendingPeak)>) -> Vec<[f64; 2]> {
+/// Removes the peaks without a stronger one nearby from `remaining`, and returns their places (x, y), metres.
+fn taken_places(radar: &Radar, remaining: &mut Vec<(f64, PendingPeak)>) -> Vec<[f64; 2]> {
     let mut taken: Vec<(BinSpans, [f64; 2])> = Vec::new();
-    left.retain(|(_, w)| {
-        let is_apart = taken.iter().all(|(spans, _)| distance_bins(radar.samples, spans, &w.spans) > MIN_DISTANCE_BINS);
+    remaining.retain(|(_, peak)| {
+        let is_apart =
+            taken.iter().all(|(spans, _)| distance_bins(radar.samples, spans, &peak.spans) > MIN_DISTANCE_BINS);
         if is_apart {
-            taken.push((w.spans, [w.echo.reflector.x_metres, w.echo.reflector.y_metres]));
+            taken.push((peak.spans, [peak.echo.reflector.x_metres, peak.echo.reflector.y_metres]));
         }
         !is_apart
     });

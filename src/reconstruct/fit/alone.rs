@@ -48,7 +48,7 @@ mod tests {
         let radar = Radar { end_elements: 11, ..Radar::default() };
         let task = Task::default();
         let fitter = Fitter::new(&radar, &hann(radar.samples), &task, usize::MAX);
-        let wall = Atom::Segment { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 31 };
+        let wall = Atom::Row { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 31 };
         // A wall of another gain at each end, and noise.
         let noise: Vec<Complex64> = unit_noise(3, 0).take(fitter.sensor.sample_count()).collect();
         let gains = [Complex64::new(-900.0, 200.0), Complex64::new(0.0, 500.0)];

@@ -12,7 +12,7 @@ pub enum Atom {
         y_metres: f64,
     },
     /// A row: reflectors of equal strength at equal steps along a straight line of any direction.
-    Segment {
+    Row {
         /// Position of the first reflector along the array.
         x_metres: f64,
         /// Position of the first reflector ahead of the array.
@@ -33,7 +33,7 @@ impl Atom {
     pub fn parameter_count(&self) -> usize {
         match self {
             Atom::Point { .. } => 2,
-            Atom::Segment { .. } => 4,
+            Atom::Row { .. } => 4,
         }
     }
 
@@ -43,7 +43,7 @@ impl Atom {
             Atom::Point { x_metres, y_metres } => {
                 Atom::Point { x_metres: x_metres + step[0], y_metres: (y_metres * y_metres + step[1]).max(0.0).sqrt() }
             }
-            Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count } => Atom::Segment {
+            Atom::Row { x_metres, y_metres, dx_metres, dy_metres, count } => Atom::Row {
                 x_metres: x_metres + step[0],
                 y_metres: y_metres + step[1],
                 dx_metres: dx_metres + step[2],
@@ -56,7 +56,7 @@ impl Atom {
     pub fn reflector_count(&self) -> usize {
         match self {
             Atom::Point { .. } => 1,
-            Atom::Segment { count, .. } => *count,
+            Atom::Row { count, .. } => *count,
         }
     }
 
@@ -64,7 +64,7 @@ impl Atom {
     pub fn position_metres(&self, i: f64) -> [f64; 2] {
         match *self {
             Atom::Point { x_metres, y_metres } => [x_metres, y_metres],
-            Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, .. } => {
+            Atom::Row { x_metres, y_metres, dx_metres, dy_metres, .. } => {
                 [x_metres + i * dx_metres, y_metres + i * dy_metres]
             }
         }
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_segment_walks_in_equal_steps() {
-        let wall = Atom::Segment { x_metres: 1.0, y_metres: 5.0, dx_metres: 0.5, dy_metres: -0.25, count: 3 };
+        let wall = Atom::Row { x_metres: 1.0, y_metres: 5.0, dx_metres: 0.5, dy_metres: -0.25, count: 3 };
         let places: Vec<[f64; 2]> = wall.reflectors(2.0).map(|r| [r.x_metres, r.y_metres]).collect();
         assert_eq!(places, [[1.0, 5.0], [1.5, 4.75], [2.0, 4.5]]);
         assert_eq!(wall.position_metres(-1.0), [0.5, 5.25]);

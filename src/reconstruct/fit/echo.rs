@@ -68,8 +68,8 @@ fn echo_block<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first
     let of = |v: f64| Lanes::<f64, W>::splat(v);
     let samples = sensor.samples as f64;
     let channel = |lane: usize| end * sensor.end_elements + (first + lane).min(sensor.end_elements - 1);
-    let is_heard = |lane: usize| first + lane < sensor.end_elements && sensor.has_samples[channel(lane)];
-    let heard = Lanes(std::array::from_fn(|lane| f64::from(u8::from(is_heard(lane)))));
+    let has_samples = |lane: usize| first + lane < sensor.end_elements && sensor.has_samples[channel(lane)];
+    let factor = Lanes(std::array::from_fn(|lane| f64::from(u8::from(has_samples(lane)))));
     let pairs = PairBlocks::new(|lane| sensor.pairs[channel(lane)]);
     let echo = sensor.model.echo_lanes::<W, FMA>(pairs, r);
     let turns = echo.carrier_turns + echo.beat_turns_at::<FMA>((samples - 1.0) / 2.0);
@@ -82,7 +82,7 @@ fn echo_block<const FMA: bool>(sensor: &Sensor, r: &Reflector, end: usize, first
     };
     EchoBlock {
         bins: echo.beat_turns * of(samples),
-        middle: phasor::<f64, W, FMA>(turns).scaled(echo.amplitude * heard),
+        middle: phasor::<f64, W, FMA>(turns).scaled(echo.amplitude * factor),
         by_x,
         by_half_square,
         decay,

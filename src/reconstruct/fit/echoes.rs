@@ -96,33 +96,37 @@ pub fn remainder(
         simd.run(Sum { sensor, first_channel: block * W, reflectors, start, keeps_echoes: kind != ProductKind::None })
     };
     let subtract = |sums: &mut [BlockSum]| simd.run(Subtract { squared, sums, weighted: kind != ProductKind::None });
-    let multiply = |summed: &BlockSum, left: &BlockResidual| match kind {
+    let multiply = |summed: &BlockSum, residual: &BlockResidual| match kind {
         ProductKind::None => Vec::new(),
-        _ => simd.run(Multiply { samples: sensor.samples, echoes: &summed.echoes, weighted: &left.weighted, kind }),
+        _ => simd.run(Multiply { samples: sensor.samples, echoes: &summed.echoes, weighted: &residual.weighted, kind }),
     };
     let blocks = 0..samples.blocks.len();
-    let (left, products): (Vec<BlockResidual>, Vec<Vec<BlockProducts>>) = if parts == 1 {
+    let (residuals, products): (Vec<BlockResidual>, Vec<Vec<BlockProducts>>) = if parts == 1 {
         let of_block = |block: usize| {
             let mut summed = sum(block, 0);
-            let left = subtract(std::slice::from_mut(&mut summed));
-            let products = multiply(&summed, &left);
-            (left, products)
+            let residual = subtract(std::slice::from_mut(&mut summed));
+            let products = multiply(&summed, &residual);
+            (residual, products)
         };
         blocks.into_par_iter().map(of_block).unzip()
     } else {
         let tasks = blocks.len() * parts;
         let mut sums: Vec<BlockSum> = (0..tasks).into_par_iter().map(|task| sum(task / parts, task % parts)).collect();
-        let left: Vec<BlockResidual> = sums.chunks_mut(parts).map(subtract).collect();
-        let product = |task: usize| multiply(&sums[task], &left[task / parts]);
+        let residuals: Vec<BlockResidual> = sums.chunks_mut(parts).map(subtract).collect();
+        let product = |task: usize| multiply(&sums[task], &residuals[task / parts]);
         let products: Vec<Vec<BlockProducts>> = (0..tasks).into_par_iter().map(product).collect();
-        (left, products.chunks(parts).map(<[_]>::concat).collect())
+        (residuals, products.chunks(parts).map(<[_]>::concat).collect())
     };
     let mut energy = [0.0; 2];
     for channel in 0..sensor.element_x.len() {
-        energy[channel / sensor.end_elements] += left[channel / W].energy.0[channel % W];
+        energy[channel / sensor.end_elements] += residuals[channel / W].energy.0[channel % W];
     }
     let products = if kind == ProductKind::None { Vec::new() } else { channel_by_channel(sensor, &products) };
-    Remainder { residual: Samples { blocks: left.into_iter().map(|l| l.residual).collect() }, energy, products }
+    Remainder {
+        residual: Samples { blocks: residuals.into_iter().map(|block| block.residual).collect() },
+        energy,
+        products,
+    }
 }
 
 /// Sum of the echoes of all `reflectors` of gain 1 at one block of channels, `[padded samples]`.
@@ -256,8 +260,8 @@ impl Kernel for Subtract<'_> {
         };
         let mut residual = std::mem::take(&mut first.sum);
         for part in others {
-            for (left, echoes) in residual.iter_mut().zip(&part.sum) {
-                *left = *left + *echoes;
+            for (v, echoes) in residual.iter_mut().zip(&part.sum) {
+                *v = *v + *echoes;
             }
         }
         let mut energy = Lanes::splat(0.0);
@@ -343,17 +347,22 @@ mod tests {
         let gain = |i: usize| Complex64::from_polar(30.0, i as f64);
         let reflectors: Vec<_> = (0..2 * MIN_SPLIT_REFLECTORS + 1).map(|i| (at(i), [gain(i), -gain(2 * i)])).collect();
         let together = remainder(&sensor, &squared, &samples, &reflectors, ProductKind::Slopes);
-        let mut left = samples;
+        let mut residual = samples;
         for few in reflectors.chunks(MIN_SPLIT_REFLECTORS - 1) {
-            left = remainder(&sensor, &squared, &left, few, ProductKind::None).residual;
+            residual = remainder(&sensor, &squared, &residual, few, ProductKind::None).residual;
         }
-        for (a, b) in together.residual.flat(&sensor).iter().zip(left.flat(&sensor)) {
+        for (a, b) in together.residual.flat(&sensor).iter().zip(residual.flat(&sensor)) {
             assert!((a - b).norm() < 1e-11, "{a} {b}");
         }
         // In the order of the reflectors, whichever thread computed them.
         for ((reflector, _), found) in reflectors.iter().zip(&together.products) {
-            let alone =
-                remainder(&sensor, &squared, &left, &[(*reflector, [Complex64::default(); 2])], ProductKind::Slopes);
+            let alone = remainder(
+                &sensor,
+                &squared,
+                &residual,
+                &[(*reflector, [Complex64::default(); 2])],
+                ProductKind::Slopes,
+            );
             for (a, b) in found.zeroth.iter().zip(&alone.products[0].zeroth) {
                 assert!((a - b).norm() < 1e-11, "{a} {b}");
             }

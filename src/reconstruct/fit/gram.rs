@@ -1,6 +1,6 @@
 //! The banded Gram matrix of atoms and of their derivatives, in closed form.
 //!
-//! No sample is touched: an inner product of two echoes is one entry of the window's [`Moments`] a channel, and echoes far apart in
+//! No samples are used: an inner product of two echoes is one entry of the window's [`Moments`] a channel, and echoes far apart in
 //! range are orthogonal.
 
 use super::atom::Atom;
@@ -253,7 +253,7 @@ mod tests {
     use crate::radar::{Radar, hann};
     use crate::reconstruct::fit::echoes::{ProductKind, Samples, remainder};
 
-    const WALL: Atom = Atom::Segment { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 5 };
+    const WALL: Atom = Atom::Row { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 5 };
 
     /// The echo of `atom` in the samples of both ends.
     fn value(sensor: &Sensor, atom: &Atom) -> Vec<Complex64> {

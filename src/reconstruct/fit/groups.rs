@@ -29,11 +29,11 @@ pub fn distance_bins(bins: usize, a: &BinSpans, b: &BinSpans) -> f64 {
     let bins = bins as f64;
     (0..2)
         .map(|end| {
-            let apart = (b[end].0 - a[end].1).max(a[end].0 - b[end].1);
-            if apart <= 0.0 {
+            let distance = (b[end].0 - a[end].1).max(a[end].0 - b[end].1);
+            if distance <= 0.0 {
                 return 0.0;
             }
-            let wrapped = apart % bins;
+            let wrapped = distance % bins;
             wrapped.min(bins - wrapped)
         })
         .fold(f64::INFINITY, f64::min)

@@ -149,7 +149,7 @@ mod tests {
             let samples = Samples::new(&fitter.sensor, &flat);
             let (sin, cos) = DIRECTION_DEGREES.to_radians().sin_cos();
             let [dx_metres, dy_metres] = [cos, sin].map(|v| v * STEP_METRES);
-            let truth = Atom::Segment { x_metres: -4.0, y_metres: 14.0, dx_metres, dy_metres, count: 40 };
+            let truth = Atom::Row { x_metres: -4.0, y_metres: 14.0, dx_metres, dy_metres, count: 40 };
             let seed = truth.moved(&[0.002, -0.001, 1e-5, -2e-5]);
             let near = Spectra::new(&radar, &fitter, &samples).gate(&bin_spans(&radar, &seed), 0.0);
             assert_eq!(near.fitter.sensor.samples, 128);

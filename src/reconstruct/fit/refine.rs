@@ -63,7 +63,7 @@ pub struct Fitter<'a> {
     pub work: Arc<WorkBudget>,
 }
 
-/// Largest number of reflectors of a refinement that doesn't look at the budget: it may run beside others, where the work done is not the same each
+/// Largest number of reflectors of a refinement that ignores the budget: it may run beside others, where the work done is not the same each
 /// time.
 const MAX_PARALLEL_REFLECTORS: usize = 16;
 

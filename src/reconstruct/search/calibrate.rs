@@ -114,14 +114,14 @@ impl Calibration<'_> {
         if !is_certain || after >= MAX_ENERGY_RATIO.min(MAX_PLAIN_RATIO * before) {
             return Ok(None);
         }
-        let kept = Attempt {
+        let attempt = Attempt {
             rung: CALIBRATION,
             tried: gains.tried(),
             gain_decades: decades(before, after),
             verdict: Verdict::Kept,
             work: 0,
         };
-        let trace = std::iter::once(kept).chain(found.trace).take(MAX_ATTEMPTS).collect();
+        let trace = std::iter::once(attempt).chain(found.trace).take(MAX_ATTEMPTS).collect();
         Ok(Some(Found { element_gains: Some(gains), trace, ..found }))
     }
 
@@ -172,8 +172,8 @@ impl Calibration<'_> {
 /// The objects of `found` with gains of at least [`MIN_GAIN_RATIO`].
 fn strongest(found: &Found) -> Vec<Atom> {
     let gain = |gains: &[Complex64; 2]| gains[0].norm().max(gains[1].norm());
-    let most = found.gains.iter().map(gain).fold(0.0, f64::max);
-    let is_strong = |gains: &[Complex64; 2]| gain(gains) >= MIN_GAIN_RATIO * most;
+    let max_gain = found.gains.iter().map(gain).fold(0.0, f64::max);
+    let is_strong = |gains: &[Complex64; 2]| gain(gains) >= MIN_GAIN_RATIO * max_gain;
     found.atoms.iter().zip(&found.gains).filter(|(_, gains)| is_strong(gains)).map(|(atom, _)| *atom).collect()
 }
 

@@ -24,17 +24,17 @@ pub struct Rung {
 pub const LADDER: &[Rung] = &[
     Rung {
         name: "tones",
-        does: "Pairs the tones that each end hears into points. Keeps them only if they are all there is.",
+        does: "Pairs the tones of both ends into points, and keeps them if they explain the samples.",
         work: |search, state| search.tone_points(state),
     },
     Rung {
         name: "lines",
-        does: "Looks for lines of any direction that begin where both ends may hear a point.",
+        does: "Searches for lines of any direction that begin where both ends may have a point.",
         work: |search, state| search.rows_of_any_direction(state),
     },
     Rung {
         name: "pairs",
-        does: "Pairs the tones that the lines leave into points, and puts lines in place of points at equal steps.",
+        does: "Pairs the tones that the lines leave into points.",
         work: |search, state| search.paired_in_rounds(state),
     },
     POINTS,
@@ -43,7 +43,7 @@ pub const LADDER: &[Rung] = &[
 /// The last rung, which a followed answer uses alone too.
 pub(super) const POINTS: Rung = Rung {
     name: "points",
-    does: "Adds points where the residual of both ends stands out, refines them, and takes away those that explain too little.",
+    does: "Adds points where the residual of both ends stands out, refines them, and removes those that explain too little.",
     work: |search, state| search.points_in_residual(state),
 };
 

@@ -10,7 +10,7 @@ const MAX_AXIS_DISTANCE_METRES: f64 = 0.06;
 
 /// Whether `atom` is a point on the axis of `row`, between its ends or at most a step beyond.
 pub fn is_on_row(row: &Atom, atom: &Atom) -> bool {
-    let (Atom::Segment { dx_metres: dx, dy_metres: dy, count, .. }, Atom::Point { .. }) = (*row, *atom) else {
+    let (Atom::Row { dx_metres: dx, dy_metres: dy, count, .. }, Atom::Point { .. }) = (*row, *atom) else {
         return false;
     };
     let ([x, y], [point_x, point_y]) = (row.position_metres(0.0), atom.position_metres(0.0));

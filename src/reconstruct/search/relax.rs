@@ -40,7 +40,7 @@ impl Search<'_> {
             is_crowd && group.len() <= MAX_GROUP_POINTS && group.iter().all(|i| are_points[*i])
         };
         let found: Vec<Vec<usize>> = found.into_iter().filter(is_sought).collect();
-        let (mut gone, mut new): (Vec<usize>, Vec<(Atom, Gains)>) = (Vec::new(), Vec::new());
+        let (mut removed, mut new): (Vec<usize>, Vec<(Atom, Gains)>) = (Vec::new(), Vec::new());
         for group in found {
             self.task.check()?;
             if self.fitter.work.is_spent() {
@@ -59,10 +59,10 @@ impl Search<'_> {
             // Atoms are removed after the last group, so that their numbers stay; until then their gains are 0.
             (fit.residual, fit.energy) = (best.residual, best.energy);
             group.iter().for_each(|&i| fit.gains[i] = Gains::default());
-            gone.extend(group);
+            removed.extend(group);
             new.extend(best.atoms.into_iter().zip(best.gains));
         }
-        let kept = (0..fit.atoms.len()).filter(|i| !gone.contains(i));
+        let kept = (0..fit.atoms.len()).filter(|i| !removed.contains(i));
         let all: Vec<(Atom, Gains)> = kept.map(|i| (fit.atoms[i], fit.gains[i])).chain(new).collect();
         (fit.atoms, fit.gains) = all.into_iter().unzip();
         Ok(fit)
@@ -91,8 +91,10 @@ impl Search<'_> {
                 let before = fit.cost();
                 for i in 0..count {
                     let others = self.fitter.remove(fit.clone(), &[i]);
-                    if let Some(anew) = self.with_one_more(&others, base, own).filter(|anew| anew.cost() < fit.cost()) {
-                        fit = anew;
+                    if let Some(trial) =
+                        self.with_one_more(&others, base, own).filter(|trial| trial.cost() < fit.cost())
+                    {
+                        fit = trial;
                     }
                 }
                 if count == 1 || before - fit.cost() < price {

@@ -117,9 +117,9 @@ fn best_count(fitter: &Fitter, row: &Fit, gains: &[Gains], places: impl Iterator
 
 /// `row` without `first` reflectors at its first end and `last` at its last; negative numbers add reflectors. `None` where too few or too many remain.
 fn resized(row: Atom, first: i64, last: i64) -> Option<Atom> {
-    let Atom::Segment { dx_metres, dy_metres, count, .. } = row else { return None };
+    let Atom::Row { dx_metres, dy_metres, count, .. } = row else { return None };
     let [x_metres, y_metres] = row.position_metres(first as f64);
     let count = usize::try_from(count as i64 - first - last).ok()?;
     let is_valid = (MIN_REFLECTORS..=MAX_ROW_REFLECTORS).contains(&count);
-    is_valid.then_some(Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count })
+    is_valid.then_some(Atom::Row { x_metres, y_metres, dx_metres, dy_metres, count })
 }

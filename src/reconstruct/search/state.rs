@@ -149,6 +149,6 @@ pub fn tried(atom: &Atom) -> Tried {
     let [from_metres, to_metres] = [0.0, atom.reflector_count() as f64 - 1.0].map(|i| atom.position_metres(i));
     match *atom {
         Atom::Point { .. } => Tried::Point { at_metres: from_metres },
-        Atom::Segment { count, .. } => Tried::Line { from_metres, to_metres, count },
+        Atom::Row { count, .. } => Tried::Line { from_metres, to_metres, count },
     }
 }

@@ -124,10 +124,10 @@ impl Detector {
     /// Bound of the amplitude, in each range bin of an end, of a reflector in range bin `own`, over its amplitude there.
     fn side_lobes(&self, own: usize) -> Vec<f64> {
         let lobe = |other: usize| {
-            let apart = own.abs_diff(other);
-            let apart = apart.min(self.bins - apart);
+            let distance = own.abs_diff(other);
+            let distance = distance.min(self.bins - distance);
             // The side lobes of the Hann window, with a margin.
-            if apart <= MIN_PEAK_DISTANCE_BINS { f64::INFINITY } else { 4.0 / (apart as f64 - 1.0).powi(3) }
+            if distance <= MIN_PEAK_DISTANCE_BINS { f64::INFINITY } else { 4.0 / (distance as f64 - 1.0).powi(3) }
         };
         (0..self.bins).map(lobe).collect()
     }

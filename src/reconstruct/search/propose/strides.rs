@@ -188,7 +188,7 @@ impl GrowingRow {
         if equations.coherent_power > self.max_power {
             self.max_power = equations.coherent_power;
             let ([x_metres, y_metres], [dx_metres, dy_metres]) = (row.first_metres, row.step_metres);
-            let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
+            let atom = Atom::Row { x_metres, y_metres, dx_metres, dy_metres, count };
             self.best = Some((self.part * count as f64, atom));
         }
     }
