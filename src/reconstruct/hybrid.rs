@@ -34,7 +34,7 @@ impl Hybrid {
     /// The average of the map of the objects in `found` and the network's map ([`network_weight`]).
     fn judged(&self, found: &Found, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         // A residual of rounding alone proves the objects; white noise may hide missing ones.
-        let is_certain = found.complete && !request.noise.is_white();
+        let is_certain = found.is_complete && !request.noise.is_white();
         if is_certain || found.atoms.is_empty() || self.network.check_array(radar).is_err() {
             return Ok(found.reconstruction(radar, request));
         }

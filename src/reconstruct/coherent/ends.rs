@@ -4,7 +4,7 @@ use crate::radar::{End, Pair, Radar};
 use crate::reconstruct::profiles::Profiles;
 use crate::signal::TwoEnds;
 use crate::signal::path::PairBlocks;
-use crate::signal::simd::{LANES_F64, Lanes};
+use crate::signal::simd::{LANES_F64 as W, Lanes};
 use num_complex::Complex64;
 
 /// BinSpans of a range profile for each range bin: linear interpolation is then wrong by a few parts in a thousand.
@@ -12,9 +12,6 @@ const PROFILE_ROWS_PER_BIN: usize = 16;
 
 /// Least distance of a place from an element, metres: amplitudes are divided by it.
 const MIN_DISTANCE_METRES: f64 = 1e-6;
-
-/// Elements that are computed together, one in each lane.
-const W: usize = LANES_F64;
 
 /// Elements whose samples are not all 0, those of the first end first. An element of both ends is there once.
 pub(super) struct Ends {

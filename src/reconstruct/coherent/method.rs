@@ -4,8 +4,8 @@ use super::ends::Ends;
 use super::model::{Model, Update};
 use super::peaks::{Peak, distinct, gains, peaks};
 use super::places::places;
+use super::refinement::Refinement;
 use super::sectors::Sectors;
-use super::settle::Settled;
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
@@ -136,12 +136,12 @@ pub(in crate::reconstruct) fn found_in_residuals(
     task: &Task,
     search: impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
 ) -> Result<Vec<Gained>, ReconstructError> {
-    let mut settled = Settled::new(radar, ends, task);
+    let mut refinement = Refinement::new(radar, ends, task);
     for round in 0..MAX_SEARCHES {
         task.set_progress(0.9 * round as f32 / MAX_SEARCHES as f32);
-        if !settled.add(&search(&settled.residual())?)? {
+        if !refinement.add(&search(&refinement.residual())?)? {
             break;
         }
     }
-    settled.with_model_order()?.found(ends)
+    refinement.with_model_order()?.found(ends)
 }

@@ -18,7 +18,7 @@
 //! | `model` | steering vectors of one place, and the iteration that gives their powers |
 //! | `linear` | that iteration's linear algebra, for wide vectors |
 //! | `peaks` | directions of local maxima of power, and their gains |
-//! | `settle` | refinement of reflectors off the grid, and removal of needless ones |
+//! | `refinement` | refinement of reflectors off the grid, and removal of needless ones |
 //! | `method` | the whole method |
 
 #[cfg(test)]
@@ -30,9 +30,9 @@ mod method;
 mod model;
 mod peaks;
 mod places;
+mod refinement;
 mod sbl;
 mod sectors;
-mod settle;
 
 pub use iaa::IAA;
 pub use method::CoherentMethod;

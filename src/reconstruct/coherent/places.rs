@@ -14,9 +14,6 @@ use rayon::prelude::*;
 /// Number of searched ranges in each range bin.
 const RANGES_PER_BIN: usize = 4;
 
-/// Range bins beyond the last that are searched. They wrap to the first, where hardly any place is.
-const WRAPPED_BINS: usize = 1;
-
 /// Least power of a place over the noise of a beam.
 const MIN_PLACE_OVER_NOISE: f64 = 10.0;
 
@@ -95,9 +92,9 @@ impl Kernel for RangePowers<'_> {
     }
 }
 
-/// Number of ranges that are searched, from range 0 on.
+/// Number of ranges that are searched, from range 0 to a bin beyond the last.
 fn ranges(radar: &Radar) -> usize {
-    RANGES_PER_BIN * (radar.samples + WRAPPED_BINS)
+    RANGES_PER_BIN * (radar.samples + 1)
 }
 
 /// Places above the noise that are no side lobes of others, the strongest first. `noise_power` is that of one element's profile.

@@ -18,16 +18,14 @@ impl Fitter<'_> {
         let mut residual = samples.flat(sensor);
         let end_samples = sensor.end_elements * sensor.samples;
         let (mut gains, mut energy) = ([Complex64::ZERO; 2], [0.0; 2]);
-        for (end, (residual, echo)) in
-            residual.chunks_exact_mut(end_samples).zip(echo.chunks_exact(end_samples)).enumerate()
-        {
+        let ends = residual.chunks_exact_mut(end_samples).zip(echo.chunks_exact(end_samples));
+        for (end, (residual, echo)) in ends.enumerate() {
             let weights = || self.squared.iter().cycle();
             let weighted = residual.iter().zip(echo).zip(weights());
-            let (product, energy_of_echo) = weighted
-                .fold((Complex64::ZERO, 0.0), |(product, of_echo), ((v, echo), w)| {
-                    (product + echo.conj() * v * w, of_echo + echo.norm_sqr() * w)
-                });
-            gains[end] = if energy_of_echo > 0.0 { product / energy_of_echo } else { Complex64::ZERO };
+            let (product, power) = weighted.fold((Complex64::ZERO, 0.0), |(product, power), ((v, echo), w)| {
+                (product + echo.conj() * v * w, power + echo.norm_sqr() * w)
+            });
+            gains[end] = if power > 0.0 { product / power } else { Complex64::ZERO };
             residual.iter_mut().zip(echo).for_each(|(v, echo)| *v -= echo * gains[end]);
             energy[end] = residual.iter().zip(weights()).map(|(v, w)| v.norm_sqr() * w).sum();
         }

@@ -61,7 +61,7 @@ const MAX_PLAIN_RATIO: f64 = 0.1;
 
 /// Whether the residual of `plain` is larger than that of equal elements.
 pub(super) fn asks_for_gains(plain: &Found) -> bool {
-    !plain.complete && !plain.atoms.is_empty() && plain.drawn_residual_part() > NEARLY_COMPLETE_RESIDUAL_PART
+    !plain.is_complete && !plain.atoms.is_empty() && plain.drawn_residual_part() > NEARLY_COMPLETE_RESIDUAL_PART
 }
 
 /// The objects in samples of equal elements, from those of a previous answer if there is one.
@@ -106,11 +106,11 @@ impl Calibration<'_> {
             false if residual_part > MAX_ROUNDING_ENERGY_RATIO => return Ok(None),
             false => self.over_noise(NOISE_MARGIN_RATIO * residual_part),
         };
-        let start = Found { complete: true, atoms: fit.atoms, gains: fit.gains, ..self.plain.clone() };
+        let start = Found { is_complete: true, atoms: fit.atoms, gains: fit.gains, ..self.plain.clone() };
         let found = (self.search)(Some(&start), &gains.taken_from(self.ends), &request, self.settings)?;
         let (after, before) = (found.drawn_residual_part(), self.plain.drawn_residual_part());
-        tracing::debug!(after, before, deviation = gains.deviation(), complete = found.complete, "calibrated");
-        let is_certain = found.complete || self.request.noise.is_white();
+        tracing::debug!(after, before, deviation = gains.deviation(), is_complete = found.is_complete, "calibrated");
+        let is_certain = found.is_complete || self.request.noise.is_white();
         if !is_certain || after >= MAX_ENERGY_RATIO.min(MAX_PLAIN_RATIO * before) {
             return Ok(None);
         }
@@ -238,6 +238,6 @@ mod tests {
         let scene = Scene { objects: vec![Object::Gaussian(cloud)], ..Scene::default() };
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
-        assert!(!found.complete && found.element_gains.is_none());
+        assert!(!found.is_complete && found.element_gains.is_none());
     }
 }

@@ -41,7 +41,7 @@ pub fn find_from(
     // Gains of the elements stay the same when an object moves.
     if let Some((previous, gains)) = previous.and_then(|previous| Some((previous, previous.element_gains.clone()?))) {
         let found = search(Some(previous), &gains.taken_from(&ends), request, settings)?;
-        if found.complete || found.search_residual_part <= previous.search_residual_part {
+        if found.is_complete || found.search_residual_part <= previous.search_residual_part {
             return Ok(Found { element_gains: Some(gains), ..found });
         }
     }

@@ -63,7 +63,7 @@ pub struct Found {
     /// Residual of the scaled samples with one gain for both ends, as the map is drawn, `[channels * samples]`, first end first.
     pub drawn_residual: Vec<Complex64>,
     /// Whether nothing stands out of the residual.
-    pub complete: bool,
+    pub is_complete: bool,
     /// Gains of the elements where they were estimated. The objects are those of samples without them.
     pub element_gains: Option<ElementGains>,
     /// The attempts, in their order; at most [`MAX_ATTEMPTS`](super::MAX_ATTEMPTS).
@@ -80,7 +80,7 @@ impl Found {
 
     /// The result for samples that are all 0.
     pub(super) fn nothing() -> Self {
-        Found { scale: 1.0, complete: true, ..Found::default() }
+        Found { scale: 1.0, is_complete: true, ..Found::default() }
     }
 }
 
@@ -96,18 +96,18 @@ pub(super) fn finish(
     request: &Request,
     scale: f64,
 ) -> Result<Found, ReconstructError> {
-    let State { fit, is_complete: complete, .. } = answer;
+    let State { fit, is_complete, .. } = answer;
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     let noise_model = fitter.noise_model;
     // A window keeps the residual of missing objects from others. Without missing ones it only loses energy.
-    let unwindowed = (complete && reflectors <= MAX_UNWINDOWED_REFLECTORS)
+    let unwindowed = (is_complete && reflectors <= MAX_UNWINDOWED_REFLECTORS)
         .then(|| Fitter::new(radar, &vec![1.0; radar.samples], &request.task, UNWINDOWED_WORK))
         .map(|flat| flat.with_channels_of(&samples.flat(&fitter.sensor)).with_noise(noise_model));
     let fitter = unwindowed.as_ref().unwrap_or(fitter);
     let per_end = if unwindowed.is_some() { fitter.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
-    let best = if complete { with_tied_gains(fitter, samples, per_end, request.noise.is_white()) } else { per_end };
+    let best = if is_complete { with_tied_gains(fitter, samples, per_end, request.noise.is_white()) } else { per_end };
     let best = if request.noise.is_white() { merged(radar, fitter, samples, best) } else { best };
-    let is_certain = complete && !request.noise.is_white();
+    let is_certain = is_complete && !request.noise.is_white();
     let best = if is_certain { best } else { bounded(fitter, samples, best) };
     request.task.check()?;
     let residual = best.residual.flat(&fitter.sensor);
@@ -127,7 +127,7 @@ pub(super) fn finish(
         atoms: best.atoms,
         gains: best.gains,
         scale,
-        complete,
+        is_complete,
         ..Found::default()
     })
 }

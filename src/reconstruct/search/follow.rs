@@ -37,7 +37,7 @@ impl Search<'_> {
         }
         fit = self.pruned(self.refined_by_residual(fit)?)?;
         let max_residual = MAX_RESIDUAL_GROWTH * previous.search_residual_part * all;
-        let is_as_good = |fit: &Fit| !previous.complete && fit.cost() < max_residual;
+        let is_as_good = |fit: &Fit| !previous.is_complete && fit.cost() < max_residual;
         let mut answer = self.checked(fit);
         if !answer.is_complete && !is_as_good(&answer.fit) {
             self.record_changes(&previous.atoms, &answer.fit);

@@ -152,7 +152,7 @@ impl Found {
     /// The expected map of the objects over the floor of `request`. Its threshold is computed from the map where objects may be missing.
     pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
         let expected = self.expected(radar, request);
-        let is_certain = self.complete && !request.noise.is_white();
+        let is_certain = self.is_complete && !request.noise.is_white();
         let eta = (!is_certain).then(|| own_threshold(&expected.map, None));
         Reconstruction { eta, ..self.as_drawn(expected.map, Some(expected.least_eta)) }
     }
@@ -176,11 +176,11 @@ impl Found {
             return expected_noise(radar, request.normalisation);
         }
         let noise = match request.noise {
-            NoisePrior::Rounding if self.complete => Noise::Rounding,
+            NoisePrior::Rounding if self.is_complete => Noise::Rounding,
             // The rounding of an incomplete list is too small, so that the measured one is used.
             NoisePrior::Rounding => Noise::RoundingScaled(self.noise_variance),
             NoisePrior::Nothing => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
-            NoisePrior::White { .. } if self.complete => Noise::Variance(self.residual_variance),
+            NoisePrior::White { .. } if self.is_complete => Noise::Variance(self.residual_variance),
             NoisePrior::White { .. } => Noise::Variance(self.noise_variance),
         };
         expected_lambda(radar, self.reflectors(1.0), noise, request)

@@ -4,7 +4,9 @@
 //! first few reflectors, and the best rows are lengthened as those of `strides` are.
 
 use super::phased::{PeakPowers, PhasedBeams, Row};
-use super::strides::{MAX_STEP_METRES, MIN_REFLECTORS, RowStart, grid_peaks, longest_of_each, pitches_metres};
+use super::strides::{
+    MAX_GRID_PEAKS, MAX_STEP_METRES, MIN_REFLECTORS, RowStart, grid_peaks, longest_of_each, pitches_metres,
+};
 use crate::reconstruct::fit::Atom;
 use crate::task::Task;
 use rayon::prelude::*;
@@ -33,9 +35,8 @@ const MIN_EDGE_STEP_METRES: f64 = 0.03;
 /// that of pairs.
 const EDGE_PITCH_WAVELENGTHS: f64 = 0.5;
 
-/// Largest number of a direction's rows that are tried over twice as many reflectors, and of those that are lengthened.
+/// Largest number of a direction's rows that are tried over twice as many reflectors.
 const MAX_RETRIED_ROWS: usize = 40;
-const MAX_STARTED_ROWS: usize = 4;
 
 /// Least number of reflectors of a row from an edge. The grid is so fine that the echoes of a few are coherent by chance.
 const MIN_EDGE_REFLECTORS: usize = 24;
@@ -62,7 +63,7 @@ pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) ->
         let parts = beams.coherent_parts(&peaks, 2 * MIN_REFLECTORS);
         let mut best: Vec<(f64, Row)> = parts.into_iter().zip(peaks).collect();
         best.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let starts = best.into_iter().take(MAX_STARTED_ROWS);
+        let starts = best.into_iter().take(MAX_GRID_PEAKS);
         starts.map(|(_, row)| RowStart { first: direction.first, row }).collect::<Vec<_>>()
     };
     let starts: Vec<RowStart> =

@@ -31,7 +31,7 @@ const GRID_SIDE_STEPS: [i32; 2] = [7, 9];
 const PITCH_WAVELENGTHS: f64 = 0.7;
 
 /// Largest number of a grid's rows that are lengthened.
-const MAX_GRID_PEAKS: usize = 4;
+pub const MAX_GRID_PEAKS: usize = 4;
 
 /// Largest number of grids whose rows are lengthened.
 const MAX_GRIDS: usize = 48;

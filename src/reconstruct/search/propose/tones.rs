@@ -1,8 +1,9 @@
 //! Ranges from a single chirp of a single element.
 //!
 //! At one element each reflector is a pure tone, in the near field too. ESPRIT (R. Roy and T. Kailath, "ESPRIT: estimation of signal parameters via
-//! rotational invariance techniques", 1989) on the Hankel matrix of the chirp resolves them without a grid, as finely as the noise allows. The signal subspace comes from a random projection (N.
-//! Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which costs little where the tones are few.
+//! rotational invariance techniques", 1989) on the Hankel matrix of the chirp resolves them without a grid, as finely as the noise allows. The signal
+//! subspace comes from a random projection (N. Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which costs little
+//! where the tones are few.
 
 use crate::signal::floor::unit_noise;
 use faer::Mat;

@@ -55,7 +55,7 @@ struct PendingPeak {
 }
 
 /// Reflectors found so far, with their residual.
-pub(super) struct Settled<'a> {
+pub(super) struct Refinement<'a> {
     radar: &'a Radar,
     task: &'a Task,
     fitter: Fitter<'a>,
@@ -68,20 +68,20 @@ pub(super) struct Settled<'a> {
     complete_energy: f64,
 }
 
-impl<'a> Settled<'a> {
+impl<'a> Refinement<'a> {
     /// The start for `ends`, without reflectors.
     pub fn new(radar: &'a Radar, ends: &TwoEnds, task: &'a Task) -> Self {
         let flat = ends.flat();
         let fitter = Fitter::new(radar, &hann(radar.samples), task, MAX_WORK).with_channels_of(&flat);
         let samples = Samples::new(&fitter.sensor, &flat);
         let fit = fitter.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
-        let (detector, settings, complete_energy) =
-            (Detector::of(radar), Settings::default(), fit.cost() * COMPLETE_PART);
-        Settled { radar, task, fitter, detector, settings, samples, trace: Trace::default(), fit, complete_energy }
+        let (detector, settings) = (Detector::of(radar), Settings::default());
+        let complete_energy = fit.cost() * COMPLETE_PART;
+        Refinement { radar, task, fitter, detector, settings, samples, trace: Trace::default(), fit, complete_energy }
     }
 
     fn search(&self) -> Search<'_> {
-        let Settled { radar, task, fitter, detector, settings, samples, trace, .. } = self;
+        let Refinement { radar, task, fitter, detector, settings, samples, trace, .. } = self;
         Search { radar, fitter, detector, samples, has_white_noise: false, settings, task, trace }
     }
 
@@ -156,7 +156,7 @@ impl<'a> Settled<'a> {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
-        let Settled { radar, task, fitter, samples, mut fit, complete_energy, .. } = self;
+        let Refinement { radar, task, fitter, samples, mut fit, complete_energy, .. } = self;
         fit = with_tied_gains(&fitter, &samples, fit, false);
         let is_certain = fit.cost() <= complete_energy * CERTAIN_RESIDUAL_RATIO;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
