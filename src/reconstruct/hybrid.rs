@@ -1,7 +1,7 @@
-//! A search that draws its objects, a network, and the rule that weighs them cell by cell.
+//! The method `hybrid`: the average of a search's map and a network's, weighted in each cell.
 
 use super::error::Result;
-use super::judge::scales_joined;
+use super::judge::stretch_to_common_scale;
 use super::own_threshold::own_threshold;
 use super::search::{Found, Settings, find, find_from};
 use super::{About, Family, Reconstruction, Reconstructor, Request, Weights, blended, network_weight};
@@ -10,13 +10,13 @@ use crate::radar::{Decibels, Radar};
 use crate::signal::TwoEnds;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// [`super::search::Nomp`], and a network for scenes that the search can't explain, or not in time.
+/// [`super::search::Nomp`] with a network for scenes that the search can't explain, or not within its budget.
 #[derive(Clone)]
 pub struct Hybrid {
     network: Arc<dyn Reconstructor>,
     settings: Settings,
-    /// The last answer of a method that starts from it where it may. Answers that it followed agree with those from scratch within the floor, and
-    /// depend on what came before in their last digits: figures that are printed come from answers from scratch.
+    /// The last result, for a method that may start from it. The results agree with those from scratch within the floor, but their last digits depend on
+    /// the samples before: printed figures are from scratch.
     last: Option<Arc<Mutex<LastFound>>>,
 }
 
@@ -27,34 +27,33 @@ impl Hybrid {
         Hybrid { network, settings: Settings::default(), last: None }
     }
 
-    /// The hybrid with other limits of the search.
     pub fn with_settings(self, settings: Settings) -> Self {
         Hybrid { settings, ..self }
     }
 
-    /// The map of the objects in `found`, weighed against the network's map by the judge.
+    /// The average of the map of the objects in `found` and the network's map ([`network_weight`]).
     fn judged(&self, found: &Found, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
-        // Where rounding alone is left, the objects are right; white noise hides much that they may lack.
-        let is_certain = found.complete && !request.noise.is_white();
+        // A residual of rounding alone proves the objects; white noise may hide missing ones.
+        let is_certain = found.is_complete && !request.noise.is_white();
         if is_certain || found.atoms.is_empty() || self.network.check_array(radar).is_err() {
             return Ok(found.reconstruction(radar, request));
         }
         let corrected = found.element_gains.as_ref().map(|gains| gains.taken_from(ends));
         let ends = corrected.as_ref().unwrap_or(ends);
-        // A dynamic range counts from the peak of the judged map, so both maps are joined on a scale that cuts off nothing.
+        // A dynamic range begins at the peak of the averaged map, so the average is taken on a scale that cuts off nothing.
         let shown = Shown::of(request.normalisation);
         let whole = Request { normalisation: shown.whole, ..request.clone() };
         let (mut expected, mut network) =
             (found.expected(radar, &whole), self.network.reconstruct(radar, ends, &whole)?);
-        let left = found.left_decades(radar, ends, &expected);
+        let residual = found.residual_decades(radar, ends, &expected);
         let mut least_etas = [expected.least_eta, network.least_eta.unwrap_or(0.0)];
-        // A dynamic range is no guess, and cuts off most of what noise hides.
+        // A dynamic range is exact, and cuts off most cells in which noise hides objects.
         let is_hidden = request.noise.is_white() && shown.part == 1.0;
         if is_hidden {
-            least_etas = scales_joined([&mut expected.map, &mut network.lambda], least_etas);
+            least_etas = stretch_to_common_scale([&mut expected.map, &mut network.lambda], least_etas);
         }
         let doubt = network.doubt.as_ref();
-        let weight = network_weight(&expected.map, &network.lambda, doubt, &left, shown.part, is_hidden);
+        let weight = network_weight(&expected.map, &network.lambda, doubt, &residual, shown.part, is_hidden);
         let mut lambda = blended(expected.map, &network.lambda, &weight);
         let least_eta = shown.cut(&mut lambda, least_etas[0].max(least_etas[1]));
         let eta = own_threshold(&lambda, network.doubt.map(|doubt| shown.doubt(doubt)).as_ref());
@@ -92,7 +91,7 @@ impl Reconstructor for Hybrid {
         let Some(memory) = &self.last else {
             return self.judged(&find(radar, ends, request, &self.settings)?, radar, ends, request);
         };
-        // The lock is held for a copy only: a thread that waits for it may be the one that the computation waits for.
+        // The lock is held for a copy only: the computation may wait for a thread that waits for the lock.
         let last = memory.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let found = match last.filter(|(of, _)| request.may_follow && of == radar) {
             Some((_, last)) => find_from(&last, radar, ends, request, &self.settings)?,
@@ -112,38 +111,40 @@ impl Reconstructor for Hybrid {
     }
 }
 
-/// Dynamic range without a cell beyond it, decibels: rounding in f64 lies some 320 below the peak.
+/// A dynamic range that cuts off no cell: rounding in f64 is some 320 dB below the peak.
 const WHOLE_RANGE: Decibels = Decibels(400.0);
 
-/// The requested dynamic range, as the upper part of a whole one.
+/// A requested normalisation as the upper part of one that cuts off nothing.
 #[derive(Debug, Clone, Copy)]
 struct Shown {
+    /// The one that cuts off nothing.
     whole: Normalisation,
+    /// The requested part of it, 0 to 1.
     part: f32,
 }
 
 impl Shown {
-    fn of(asked: Normalisation) -> Self {
-        match asked {
-            Normalisation::MinMax => Shown { whole: asked, part: 1.0 },
+    fn of(requested: Normalisation) -> Self {
+        match requested {
+            Normalisation::MinMax => Shown { whole: requested, part: 1.0 },
             Normalisation::DynamicRange(range) => {
                 Shown { whole: Normalisation::DynamicRange(WHOLE_RANGE), part: (range.0 / WHOLE_RANGE.0) as f32 }
             }
         }
     }
 
-    /// Cuts the shown part, counted from the peak, out of a map of the whole range; returns `eta` as a Lambda of that part.
+    /// Converts a map of the whole range to Lambda of the part below its peak; returns `eta` on that scale.
     fn cut(self, map: &mut RangeAngleMap, eta: f32) -> f32 {
         if self.whole == Normalisation::MinMax {
             return eta;
         }
-        let peak = map.lambda.iter().fold(0.0f32, |most, v| most.max(*v));
+        let peak = map.lambda.iter().fold(0.0f32, |max, v| max.max(*v));
         let of = |v: f32| (1.0 - (peak - v) / self.part).clamp(0.0, 1.0);
         map.lambda.par_mapv_inplace(of);
         of(eta)
     }
 
-    /// Errors of the whole range as those of the shown part.
+    /// `doubt` on the scale of the shown part.
     fn doubt(self, mut doubt: RangeAngleMap) -> RangeAngleMap {
         doubt.lambda.par_mapv_inplace(|v| (v / self.part).min(1.0));
         doubt
@@ -179,7 +180,7 @@ mod tests {
         let ends = ends_of(&radar, &scene);
         let request = Request::default();
         // One point can't explain a cloud.
-        let few = Settings { most_atoms: 1, ..Settings::default() };
+        let few = Settings { max_atoms: 1, ..Settings::default() };
         let hybrid = Hybrid::new(Arc::new(Baseline)).with_settings(few).reconstruct(&radar, &ends, &request).unwrap();
         let drawn = Nomp::with_settings(few).reconstruct(&radar, &ends, &request).unwrap().lambda;
         let network = Baseline.reconstruct(&radar, &ends, &request).unwrap().lambda;

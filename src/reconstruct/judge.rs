@@ -42,19 +42,19 @@ const MEAN_SIDE_CELLS: [usize; 2] = [2, 8];
 /// Weight of the map `network` in each cell, 0 to 1. The rest is the weight of `drawn`, the search's map. All arrays are `[range bins, columns]`, and
 /// both maps are Lambda on one scale.
 ///
-/// `left_decades` is the search's residual over its drawn map, decades of power
-/// ([`Found::left_decades`](super::search::Found::left_decades)). `doubt` is the bound, in Lambda, which nine of ten errors of the network stay
+/// `residual` is the search's residual over its drawn map, decades of power
+/// ([`Found::residual_decades`](super::search::Found::residual_decades)). `doubt` is the bound, in Lambda, which nine of ten errors of the network stay
 /// below. Without it the residual alone sets the weight. Cells of a Lambda of `1 - shown_part` or less are not shown. `is_hidden` says whether
 /// noise may hide objects that the search lacks.
 pub fn network_weight(
     drawn: &RangeAngleMap,
     network: &RangeAngleMap,
     doubt: Option<&RangeAngleMap>,
-    left_decades: &Array2<f32>,
+    residual: &Array2<f32>,
     shown_part: f32,
     is_hidden: bool,
 ) -> Array2<f32> {
-    let shown = || left_decades.iter().zip(&drawn.lambda).filter(|(_, drawn)| **drawn > 1.0 - shown_part);
+    let shown = || residual.iter().zip(&drawn.lambda).filter(|(_, drawn)| **drawn > 1.0 - shown_part);
     let unexplained_part = shown().filter(|(left, _)| **left > 0.0).count() as f32 / shown().count().max(1) as f32;
     let scene_unexplained = ramp(UNEXPLAINED_PART, unexplained_part);
     let mut square = &drawn.lambda - &network.lambda;
@@ -65,8 +65,8 @@ pub fn network_weight(
     let unexplained = |left: f32| ramp(RESIDUAL_DECADES, left - shift).max(least);
     let agreed = |contradiction: f32| AGREED_WEIGHT + (1.0 - AGREED_WEIGHT) * contradiction;
     match doubt {
-        None => Zip::from(&mut weight).and(left_decades).par_for_each(|w, left| *w = unexplained(*left)),
-        Some(doubt) => Zip::from(&mut weight).and(left_decades).and(&doubt.lambda).par_for_each(|w, left, doubt| {
+        None => Zip::from(&mut weight).and(residual).par_for_each(|w, left| *w = unexplained(*left)),
+        Some(doubt) => Zip::from(&mut weight).and(residual).and(&doubt.lambda).par_for_each(|w, left, doubt| {
             let expected = (doubt / DOUBT_DEVIATIONS).powi(2).max(f32::MIN_POSITIVE);
             let contradiction = ramp(CONTRADICTION_RATIO, *w / expected);
             let hidden = if is_hidden { contradiction } else { 0.0 };
@@ -80,7 +80,7 @@ pub fn network_weight(
 /// Returns the thresholds `etas` on that scale.
 ///
 /// Under min-max over noise, the smallest of all cells sets the scale by chance. The mean of the two scales has a smaller error than either.
-pub fn scales_joined(maps: [&mut RangeAngleMap; 2], etas: [f32; 2]) -> [f32; 2] {
+pub fn stretch_to_common_scale(maps: [&mut RangeAngleMap; 2], etas: [f32; 2]) -> [f32; 2] {
     let depths = maps[0].lambda.iter().zip(&maps[1].lambda).map(|(a, b)| [1.0 - f64::from(*a), 1.0 - f64::from(*b)]);
     let [square, product] = depths.fold([0.0; 2], |[square, product], [a, b]| [square + a * a, product + a * b]);
     // The least-squares ratio of the second map's depths below the peak to the first's, and its square root.
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn two_scales_become_their_geometric_mean() {
         let [mut deep, mut shallow] = [flat(0.2), flat(0.8)];
-        let etas = scales_joined([&mut deep, &mut shallow], [0.6, 0.9]);
+        let etas = stretch_to_common_scale([&mut deep, &mut shallow], [0.6, 0.9]);
         for value in [deep.lambda[[0, 0]], shallow.lambda[[0, 0]]] {
             assert!((value - 0.6).abs() < 1e-6, "{value}");
         }

@@ -1,57 +1,56 @@
-//! A threshold derived from the answer itself, for any floor and normalisation.
+//! A threshold computed from a map and its expected error, for any floor and normalisation.
 //!
-//! P_D counts the cells whose true Lambda exceeds 0.9, and P_FA the others ([`Metrics`](crate::evaluate::Metrics)). An exact map would need a
-//! threshold of 0.9. A map with an error needs a lower one, so that cells which it draws too dark are not missed; its own false alarms are the
-//! lower bound.
+//! P_D is of the cells whose true Lambda exceeds 0.9, P_FA of the others ([`Metrics`](crate::evaluate::Metrics)). An exact map would need a threshold of
+//! 0.9. A map with errors needs a lower one, so that cells which are too dark in it are detected. Its false alarms bound the threshold from below.
 
 use crate::maps::RangeAngleMap;
 
 /// Lambda beyond which a cell of the target counts as an object (thesis section 4.2).
 const TARGET_ETA: f32 = 0.9;
 
-/// Part of the answer's cells at or below [`TARGET_ETA`] that may exceed the threshold: P_FA of the answer against itself. A little below the 1 %
-/// that is wanted against the target.
-const FALSE_ALARM: f64 = 0.0092;
+/// Largest part of the map's cells at or below [`TARGET_ETA`] that exceed the threshold: a little below the 1 % of P_FA that is the aim.
+const MAX_FALSE_ALARM_PART: f64 = 0.0092;
 
-/// Cells whose doubt decides how far below [`TARGET_ETA`] the threshold lies: those whose own Lambda is as near to it.
+/// Lambda of the cells near [`TARGET_ETA`] whose doubt lowers the threshold.
 const DOUBT_LAMBDAS: std::ops::Range<f32> = 0.75..0.95;
 
-/// The part of those cells whose doubt is covered.
-const COVERED: f64 = 0.9;
+/// Part of those cells whose doubt is smaller than the threshold's distance from [`TARGET_ETA`].
+const COVERED_PART: f64 = 0.9;
 
-/// Highest threshold, for a map without doubt.
-const EXACT_ETA: f32 = 0.896;
+/// Largest threshold, that of an exact map.
+const MAX_ETA: f32 = 0.896;
 
-/// Steps of Lambda, in which both quantiles are taken.
-const STEPS: usize = 4096;
+/// Steps of Lambda in the histograms of quantiles.
+const HISTOGRAM_STEPS: usize = 4096;
 
-/// The threshold for an answer: at most 0.92 % of its own cells at or below 0.9 exceed it, and it is no lower than the answer's doubt requires.
-/// Rounded to three decimals, for readers. `examples/experts.rs` prints the resulting rates.
+/// The threshold on the Lambda of `answer`, `[range bins, columns]`, rounded to three decimals. `doubt` is the bound, in Lambda, below which nine of ten
+/// errors are. `examples/experts.rs` prints the resulting rates.
 pub(crate) fn own_threshold(answer: &RangeAngleMap, doubt: Option<&RangeAngleMap>) -> f32 {
-    let below = quantile(answer.lambda.iter().copied().filter(|v| *v <= TARGET_ETA), 1.0 - FALSE_ALARM).unwrap_or(0.0);
+    let below =
+        quantile(answer.lambda.iter().copied().filter(|v| *v <= TARGET_ETA), 1.0 - MAX_FALSE_ALARM_PART).unwrap_or(0.0);
     let doubtful = doubt.map(|doubt| {
         let near = answer.lambda.iter().zip(&doubt.lambda).filter(|(v, _)| DOUBT_LAMBDAS.contains(*v));
-        TARGET_ETA - quantile(near.map(|(_, doubt)| *doubt), COVERED).unwrap_or(0.0)
+        TARGET_ETA - quantile(near.map(|(_, doubt)| *doubt), COVERED_PART).unwrap_or(0.0)
     });
-    let eta = doubtful.unwrap_or(0.0).max(below).min(EXACT_ETA);
+    let eta = doubtful.unwrap_or(0.0).max(below).min(MAX_ETA);
     (eta * 1e3).round() / 1e3
 }
 
-/// The value that this part of `values`, 0 to 1 each, doesn't exceed; `None` without any.
+/// The quantile at `part` of `values`, which are 0 to 1; `None` without any.
 fn quantile(values: impl Iterator<Item = f32>, part: f64) -> Option<f32> {
-    let mut counts = [0u32; STEPS + 1];
-    let mut all = 0u32;
+    let mut counts = [0u32; HISTOGRAM_STEPS + 1];
+    let mut total = 0u32;
     for value in values {
-        counts[(value.clamp(0.0, 1.0) * STEPS as f32) as usize] += 1;
-        all += 1;
+        counts[(value.clamp(0.0, 1.0) * HISTOGRAM_STEPS as f32) as usize] += 1;
+        total += 1;
     }
-    let wanted = (part * f64::from(all)).ceil() as u32;
+    let rank = (part * f64::from(total)).ceil() as u32;
     let mut sum = 0;
     let step = counts.iter().position(|count| {
         sum += count;
-        sum >= wanted
+        sum >= rank
     })?;
-    (all > 0).then(|| (step as f32 + 1.0).min(STEPS as f32) / STEPS as f32)
+    (total > 0).then(|| (step as f32 + 1.0).min(HISTOGRAM_STEPS as f32) / HISTOGRAM_STEPS as f32)
 }
 
 #[cfg(test)]
@@ -94,7 +93,7 @@ mod tests {
             }
         });
         let with = |doubt: f32| own_threshold(&few, Some(&map(|_| doubt)));
-        assert_eq!((with(0.0), with(0.05)), (EXACT_ETA, 0.85));
+        assert_eq!((with(0.0), with(0.05)), (MAX_ETA, 0.85));
         let bright = map(|i| i as f32 / 10_000.0);
         assert_eq!(own_threshold(&bright, Some(&map(|_| 0.5))), own_threshold(&bright, None));
     }

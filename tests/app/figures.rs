@@ -111,7 +111,7 @@ fn at_rest_the_answer_is_that_from_scratch() {
     let asked = Arc::new([AtomicU32::new(0), AtomicU32::new(0)]);
     let count = |i: usize| asked[i].load(SeqCst);
     // Work enough for two points.
-    let few = Settings { most_work: 1000, ..Settings::default() };
+    let few = Settings { max_work: 1000, ..Settings::default() };
     let hybrid = Arc::new(Hybrid::new(Arc::new(Baseline)).with_settings(few));
     let mut s = Session::with_methods(vec![Arc::new(Watched { method: hybrid.clone(), asked: asked.clone() })]);
     let scratch = count(0);

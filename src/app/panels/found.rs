@@ -5,7 +5,7 @@ use crate::app::jobs::Want;
 use crate::app::state::{Command, EditCommand, MapKind, MethodSlot};
 use crate::app::widgets::{CONVENTION, angle_degrees, headings, padded, plain, right_aligned, signed};
 use crate::interact::SelectionMode;
-use crate::reconstruct::search::{LADDER, MOST_ATTEMPTS};
+use crate::reconstruct::search::{LADDER, MAX_ATTEMPTS};
 use crate::reconstruct::{Attempt, Detection};
 use crate::scene::Object;
 use eframe::egui::{CollapsingHeader, Grid, ScrollArea, Ui};
@@ -136,8 +136,8 @@ fn attempts(ui: &mut Ui, attempts: &[Attempt], objects: &[Object], asked: &mut V
                 asked.extend(attempt_line(ui, attempt, objects));
             }
         });
-        if attempts.len() == MOST_ATTEMPTS {
-            ui.weak(format!("The search tried more. The first {MOST_ATTEMPTS} attempts are listed."));
+        if attempts.len() == MAX_ATTEMPTS {
+            ui.weak(format!("The search tried more. The first {MAX_ATTEMPTS} attempts are listed."));
         }
     });
 }

@@ -1,36 +1,32 @@
-//! The elements of both ends whose samples are not zero.
+//! The elements of both ends that have samples, and their range profiles.
 
 use crate::radar::{End, Pair, Radar};
 use crate::reconstruct::profiles::Profiles;
 use crate::signal::TwoEnds;
 use crate::signal::path::PairBlocks;
-use crate::signal::simd::{LANES_F64, Lanes};
+use crate::signal::simd::{LANES_F64 as W, Lanes};
 use num_complex::Complex64;
 
-/// Rows of a range profile for each range bin: linear interpolation is then wrong by a few parts in a thousand.
+/// BinSpans of a range profile for each range bin: linear interpolation is then wrong by a few parts in a thousand.
 const PROFILE_ROWS_PER_BIN: usize = 16;
 
 /// Least distance of a place from an element, metres: amplitudes are divided by it.
-const NEAREST_METRES: f64 = 1e-6;
+const MIN_DISTANCE_METRES: f64 = 1e-6;
 
-/// Elements side by side.
-const W: usize = LANES_F64;
-
-/// Elements with samples, those of the first end first, one that is in both ends once; dead elements are missing samples.
+/// Elements whose samples are not all 0, those of the first end first. An element of both ends is there once.
 pub(super) struct Ends {
     pub x_metres: Vec<f64>,
     /// Number of the first end's elements.
     pub first_count: usize,
-    /// Range profiles, one an element.
+    /// Range profile of each element.
     pub profiles: Profiles,
     /// Antennas of each element.
     pub pairs: Vec<Pair>,
-    /// The antennas in lanes, the last ones repeated.
+    /// The antennas in lanes; the last one is repeated.
     lanes: Vec<PairBlocks<W>>,
 }
 
 impl Ends {
-    /// The elements of `radar` whose samples in `ends` are not all zero.
     pub fn new(radar: &Radar, ends: &TwoEnds) -> Self {
         let (mut x_metres, mut pairs) = (Vec::new(), Vec::new());
         let mut channels = Vec::new();
@@ -57,18 +53,18 @@ impl Ends {
         self.x_metres.len()
     }
 
-    /// Writes into `heard` the profile of each element at a place in the centre's polar grid, without the phase of the element's distance: the
-    /// profiles of a reflector there differ by the distance alone. `heard` has an entry an element.
+    /// Writes the profile of each element at a place in the centre's polar grid into `snapshot`, `[elements]`. The phase of the element's distance is
+    /// taken out.
     #[inline(always)]
-    pub fn listen<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, heard: &mut [Complex64]) {
-        for (i, (pairs, heard)) in self.lanes.iter().zip(heard.chunks_mut(W)).enumerate() {
+    pub fn fill_snapshot<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, snapshot: &mut [Complex64]) {
+        for (i, (pairs, snapshot)) in self.lanes.iter().zip(snapshot.chunks_mut(W)).enumerate() {
             let distances = distances_metres(*pairs, range_metres, Lanes::splat(cos_theta));
-            self.profiles.lanes_at::<W, FMA>(i * W, distances, heard);
+            self.profiles.lanes_at::<W, FMA>(i * W, distances, snapshot);
         }
     }
 }
 
-/// Ranges of places in the centre's polar grid for pairs of antennas, metres: half the way there and back.
+/// Ranges of places in the centre's polar grid for pairs of antennas, metres: half of the path from transmitter to receiver.
 #[inline(always)]
 pub(super) fn distances_metres<const W: usize>(
     pairs: PairBlocks<W>,
@@ -77,5 +73,5 @@ pub(super) fn distances_metres<const W: usize>(
 ) -> Lanes<f64, W> {
     let range = Lanes::splat(range_metres);
     let ahead = (Lanes::splat(1.0) - cos_theta * cos_theta).map(|square| square.max(0.0)).sqrt() * range;
-    pairs.ranges_metres(range * cos_theta, ahead).map(|distance| distance.max(NEAREST_METRES))
+    pairs.ranges_metres(range * cos_theta, ahead).map(|distance| distance.max(MIN_DISTANCE_METRES))
 }

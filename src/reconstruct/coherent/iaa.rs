@@ -20,9 +20,9 @@ pub const IAA: CoherentMethod = CoherentMethod {
     },
     update: Update {
         // |a^H R^-1 z / a^H R^-1 a|^2
-        next: |share| share.matched / (share.held * share.held),
-        iterations: 12,
-        least_noise: 1e-4,
+        next: |v| v.matched / (v.norm * v.norm),
+        max_iterations: 12,
+        min_noise: 1e-4,
     },
-    least_part: 0.2,
+    min_peak_part: 0.2,
 };

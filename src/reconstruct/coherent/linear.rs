@@ -1,6 +1,6 @@
-//! The linear algebra of one iteration, for wide vectors: one lane a steering vector, element after element.
+//! The linear algebra of one iteration, with a steering vector in each lane.
 //!
-//! In f32, with the covariance's factor in f64: the least noise in use lies far above the rounding of either.
+//! It is in f32, with the factor of the covariance in f64: the least noise is far above the rounding of both.
 
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F32, Lanes, Simd};
 use num_complex::Complex64;
@@ -8,19 +8,19 @@ use num_complex::Complex64;
 /// Steering vectors in one lane group.
 pub(super) const W: usize = LANES_F32;
 
-/// Lane groups that are computed together: enough to hide the latency of an addition.
-const TOGETHER: usize = 4;
+/// Lanes of a group, which are computed together: enough to hide the latency of an addition.
+const GROUP_LANES: usize = 4;
 
-/// Rows and columns of the covariance kept in registers.
+/// Rows and columns of the covariance that are kept in registers.
 const TILE: (usize, usize) = (2, 4);
 
 /// One element of `W` steering vectors.
 pub(super) type Lane = ComplexLanes<f32, W>;
 
 /// One element of neighbouring steering vectors.
-type Group = [Lane; TOGETHER];
+type Group = [Lane; GROUP_LANES];
 
-/// Steering vectors, padded to whole groups by vectors of zeros.
+/// Steering vectors, padded to whole groups with zeros.
 #[derive(Debug, Clone)]
 pub(super) struct Steering {
     elements: usize,
@@ -29,34 +29,34 @@ pub(super) struct Steering {
 }
 
 impl Steering {
-    /// Space for `lanes` times `W` vectors of `elements` elements, all zero.
+    /// `lanes * W` vectors of `elements` elements, all zero.
     pub fn zero(elements: usize, lanes: usize) -> Self {
-        Steering { elements, values: vec![[Lane::zero(); TOGETHER]; elements * lanes.div_ceil(TOGETHER)] }
+        Steering { elements, values: vec![[Lane::zero(); GROUP_LANES]; elements * lanes.div_ceil(GROUP_LANES)] }
     }
 
     /// Number of vectors, the padding included.
     pub fn vectors(&self) -> usize {
-        self.values.len() / self.elements.max(1) * TOGETHER * W
+        self.values.len() / self.elements.max(1) * GROUP_LANES * W
     }
 
     /// `element` of the vectors from `lane * W` on.
     #[inline(always)]
     pub fn lane_mut(&mut self, element: usize, lane: usize) -> &mut Lane {
-        &mut self.values[lane / TOGETHER * self.elements + element][lane % TOGETHER]
+        &mut self.values[lane / GROUP_LANES * self.elements + element][lane % GROUP_LANES]
     }
 }
 
-/// Figures of the samples z under the covariance `R = sum_k power_k a_k a_k^H + noise`, one number a vector.
+/// Figures of the samples z under the covariance `R = sum_k power_k a_k a_k^H + noise`, `[vectors]`.
 #[derive(Debug, Clone)]
-pub(super) struct Explained {
+pub(super) struct Whitened {
     /// `|a_k^H R^-1 z|^2`.
     pub matched: Vec<f32>,
     /// `a_k^H R^-1 a_k`.
-    pub held: Vec<f32>,
+    pub norm: Vec<f32>,
 }
 
 /// One iteration; `None` where the covariance is not positive definite. `powers` has one value a vector, the padding included.
-pub(super) fn explained(steering: &Steering, powers: &[f32], noise: f64, z: &[Complex64]) -> Option<Explained> {
+pub(super) fn whitened(steering: &Steering, powers: &[f32], noise: f64, z: &[Complex64]) -> Option<Whitened> {
     Simd::chosen().run(Iteration { steering, powers, noise, z })
 }
 
@@ -68,7 +68,7 @@ struct Iteration<'a> {
 }
 
 impl Kernel for Iteration<'_> {
-    type Output = Option<Explained>;
+    type Output = Option<Whitened>;
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
@@ -113,8 +113,8 @@ impl Iteration<'_> {
         let rows: [usize; TILE.0] = std::array::from_fn(|a| (i + a).min(n - 1));
         let columns: [usize; TILE.1] = std::array::from_fn(|b| (j + b).min(n - 1));
         let mut sums = [[Lane::zero(); TILE.1]; TILE.0];
-        for (group, powers) in self.steering.values.chunks_exact(n).zip(powers.chunks_exact(TOGETHER)) {
-            for l in 0..TOGETHER {
+        for (group, powers) in self.steering.values.chunks_exact(n).zip(powers.chunks_exact(GROUP_LANES)) {
+            for l in 0..GROUP_LANES {
                 let left: [Lane; TILE.0] = std::array::from_fn(|a| group[rows[a]][l].scaled(powers[l]));
                 for b in 0..TILE.1 {
                     let right = group[columns[b]][l];
@@ -128,10 +128,10 @@ impl Iteration<'_> {
         sums
     }
 
-    /// `L^-1` applied to all steering vectors and to the samples, and the figures of [`Explained`].
+    /// `L^-1` applied to all steering vectors and to the samples, and the figures of [`Whitened`].
     #[inline(always)]
     #[allow(clippy::needless_range_loop)] // constant bounds keep the rows in registers
-    fn whitened<const FMA: bool>(&self, factor: &[Complex64]) -> Explained {
+    fn whitened<const FMA: bool>(&self, factor: &[Complex64]) -> Whitened {
         let n = self.steering.elements;
         let mut z = self.z.to_vec();
         for i in 0..n {
@@ -140,36 +140,36 @@ impl Iteration<'_> {
         }
         let splat = |v: Complex64| Lane { re: Lanes::splat(v.re as f32), im: Lanes::splat(v.im as f32) };
         let size = self.steering.vectors();
-        let mut explained = Explained { matched: Vec::with_capacity(size), held: Vec::with_capacity(size) };
-        let mut rows = vec![[Lane::zero(); TOGETHER]; n];
+        let mut out = Whitened { matched: Vec::with_capacity(size), norm: Vec::with_capacity(size) };
+        let mut rows = vec![[Lane::zero(); GROUP_LANES]; n];
         for group in self.steering.values.chunks_exact(n) {
-            let mut held = [Lanes::splat(0.0); TOGETHER];
-            let mut matched = [Lane::zero(); TOGETHER];
+            let mut norm = [Lanes::splat(0.0); GROUP_LANES];
+            let mut matched = [Lane::zero(); GROUP_LANES];
             for i in 0..n {
                 let mut row = group[i];
                 for j in 0..i {
                     let l = splat(-factor[i * n + j]);
-                    for b in 0..TOGETHER {
+                    for b in 0..GROUP_LANES {
                         row[b] = row[b].plus_product::<FMA>(l, rows[j][b]);
                     }
                 }
                 let scale = Lanes::splat((1.0 / factor[i * n + i].re) as f32);
                 let y = splat(z[i]);
-                for b in 0..TOGETHER {
+                for b in 0..GROUP_LANES {
                     let value = row[b].scaled(scale);
-                    held[b] = value.re.mul_add::<FMA>(value.re, value.im.mul_add::<FMA>(value.im, held[b]));
+                    norm[b] = value.re.mul_add::<FMA>(value.re, value.im.mul_add::<FMA>(value.im, norm[b]));
                     let conjugate = Lane { re: value.re, im: -value.im };
                     matched[b] = matched[b].plus_product::<FMA>(conjugate, y);
                     rows[i][b] = value;
                 }
             }
-            for b in 0..TOGETHER {
+            for b in 0..GROUP_LANES {
                 let matched = matched[b];
-                explained.matched.extend((matched.re * matched.re + matched.im * matched.im).0);
-                explained.held.extend(held[b].0);
+                out.matched.extend((matched.re * matched.re + matched.im * matched.im).0);
+                out.norm.extend(norm[b].0);
             }
         }
-        explained
+        out
     }
 }
 
@@ -215,7 +215,7 @@ mod tests {
         powers.resize(steering.vectors(), 0.0);
         let z: Vec<Complex64> = (0..elements).map(|n| Complex64::new(n as f64 - 1.0, 0.5 * n as f64)).collect();
         let noise = 0.3;
-        let got = explained(&steering, &powers, noise, &z).unwrap();
+        let got = whitened(&steering, &powers, noise, &z).unwrap();
         let covariance = Mat::from_fn(elements, elements, |i, j| {
             let sum: Complex64 = (0..vectors).map(|k| value(i, k) * value(j, k).conj() * f64::from(powers[k])).sum();
             sum + if i == j { noise } else { 0.0 }
@@ -225,12 +225,12 @@ mod tests {
         for k in 0..vectors {
             let with =
                 |column: usize| -> Complex64 { (0..elements).map(|n| value(n, k).conj() * solved[(n, column)]).sum() };
-            assert!((f64::from(got.held[k]) / with(k).re - 1.0).abs() < 1e-4, "{k}");
+            assert!((f64::from(got.norm[k]) / with(k).re - 1.0).abs() < 1e-4, "{k}");
             let matched = with(vectors).norm_sqr();
             assert!((f64::from(got.matched[k]) - matched).abs() < 1e-4 * (matched + 1.0), "{k}");
         }
-        assert_eq!((got.held[vectors], got.matched[vectors]), (0.0, 0.0), "padding");
+        assert_eq!((got.norm[vectors], got.matched[vectors]), (0.0, 0.0), "padding");
         let nothing = vec![0.0; steering.vectors()];
-        assert!(explained(&steering, &nothing, 0.0, &z).is_none(), "nothing explains anything");
+        assert!(whitened(&steering, &nothing, 0.0, &z).is_none(), "nothing explains anything");
     }
 }

@@ -1,11 +1,11 @@
-//! Coherent methods: each is one closure, and the steps around it are shared.
+//! The steps that all coherent methods share.
 
 use super::ends::Ends;
 use super::model::{Model, Update};
-use super::peaks::{Peak, apart, gains, peaks};
+use super::peaks::{Peak, distinct, gains, peaks};
 use super::places::places;
+use super::refinement::Refinement;
 use super::sectors::Sectors;
-use super::settle::Settled;
 use crate::radar::Radar;
 use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
@@ -18,19 +18,19 @@ use crate::signal::TwoEnds;
 use crate::task::Task;
 use rayon::prelude::*;
 
-/// Most elements with samples: a model's work grows with the cube of their number.
-const MOST_HEARD_ELEMENTS: usize = 96;
+/// Largest number of elements with samples: the work of a model grows with the cube of their number.
+const MAX_ELEMENTS: usize = 96;
 
-/// Most looks: searches for peaks in the samples and in the residuals of the reflectors found so far.
-const LOOKS: usize = 4;
+/// Largest number of searches for peaks, in the samples and in the residuals of the reflectors found so far.
+const MAX_SEARCHES: usize = 4;
 
-/// Peaks are the same reflector when nearer than this in range bins and in periods of the ends' fringes.
+/// Distance of peaks, in range bins and in periods of the ends' fringes, within which they are one reflector.
 const SAME_PEAK: (f64, f64) = (1.0, 0.75);
 
-/// Most sectors, those of an array as long as so many range bins.
-const MOST_SECTORS: f64 = 1000.0;
+/// Largest length of the array, range bins: it has as many sectors.
+const MAX_SECTORS: f64 = 1000.0;
 
-/// The assumptions of every coherent method, [`About::told`](crate::reconstruct::About::told).
+/// [`About::told`](crate::reconstruct::About::told) of the coherent methods.
 pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor; it measures the noise itself";
 
 /// A method that finds the powers of steering vectors of both ends together.
@@ -38,8 +38,8 @@ pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor;
 pub struct CoherentMethod {
     pub(super) about: About,
     pub(super) update: Update,
-    /// Least power of a reflector's direction, as a part of its model's strongest.
-    pub(super) least_part: f64,
+    /// Least power of a reflector over the largest of its model.
+    pub(super) min_peak_part: f64,
 }
 
 impl Reconstructor for CoherentMethod {
@@ -67,8 +67,8 @@ impl Reconstructor for CoherentMethod {
         self.check_size(radar, radar.end_elements.saturating_mul(2))
     }
 
-    fn check_halves(&self, halves: &Radar, heard: usize) -> Result<(), ReconstructError> {
-        self.check_size(halves, heard)
+    fn check_halves(&self, halves: &Radar, elements: usize) -> Result<(), ReconstructError> {
+        self.check_size(halves, elements)
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -78,25 +78,25 @@ impl Reconstructor for CoherentMethod {
             // A single sample has no ranges along which reflectors could be moved.
             gains(radar, &self.peaks(radar, ends, &hearing, task)?, ends, task)?
         } else {
-            let look = |ends: &TwoEnds| self.peaks(radar, ends, &hearing, task);
-            explained(radar, ends, task, look)?
+            let search = |ends: &TwoEnds| self.peaks(radar, ends, &hearing, task);
+            found_in_residuals(radar, ends, task, search)?
         };
         Ok(of_echoes(radar, ends, &found, hearing.ends_noise_variance(radar, ends), request))
     }
 }
 
 impl CoherentMethod {
-    /// Whether models can be made of `heard` elements of `radar`'s ends.
-    fn check_size(&self, radar: &Radar, heard: usize) -> Result<(), ReconstructError> {
-        if heard > MOST_HEARD_ELEMENTS {
+    /// Whether models can be made of `elements` elements of `radar`'s ends.
+    fn check_size(&self, radar: &Radar, elements: usize) -> Result<(), ReconstructError> {
+        if elements > MAX_ELEMENTS {
             return Err(self.unusable(format!(
-                "its models take at most {MOST_HEARD_ELEMENTS} elements, and {heard} are heard; matched-filter takes any number"
+                "its models take at most {MAX_ELEMENTS} elements, and {elements} are heard; matched-filter takes any number"
             )));
         }
         let bins = radar.bin_of_range(radar.aperture_metres());
-        if radar.samples > 1 && bins > MOST_SECTORS {
+        if radar.samples > 1 && bins > MAX_SECTORS {
             return Err(self.unusable(format!(
-                "the array is {bins:.0} range bins long; a sector of directions for each bin is taken up to {MOST_SECTORS}"
+                "the array is {bins:.0} range bins long; a sector of directions for each bin is taken up to {MAX_SECTORS}"
             )));
         }
         no_plane_waves(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
@@ -110,38 +110,38 @@ impl CoherentMethod {
         hearing: &Hearing,
         task: &Task,
     ) -> Result<Vec<Peak>, ReconstructError> {
-        let heard = Ends::new(radar, ends);
-        let sectors = Sectors::new(radar, &heard);
-        // The window's mean square over its squared mean, divided by the number of samples.
+        let elements = Ends::new(radar, ends);
+        let sectors = Sectors::new(radar, &elements);
+        // The noise bandwidth of the window is 1.5 bins.
         let noise_power = hearing.ends_noise_variance(radar, ends) * 1.5 / radar.samples as f64;
-        let places = places(radar, &heard, &sectors, noise_power, task)?;
+        let places = places(radar, &elements, &sectors, noise_power, task)?;
         let found: Vec<Vec<Peak>> = places
             .par_iter()
             .map(|place| {
-                let powers = Model::new(radar, &heard, &sectors, place, noise_power).powers(&self.update, task)?;
-                Ok(peaks(&sectors, place, &powers, self.least_part))
+                let powers = Model::new(radar, &elements, &sectors, place, noise_power).powers(&self.update, task)?;
+                Ok(peaks(&sectors, place, &powers, self.min_peak_part))
             })
             .collect::<Result<_, ReconstructError>>()?;
-        Ok(apart(radar, found.concat(), [SAME_PEAK.0, SAME_PEAK.1 * sectors.fringe_cos]))
+        Ok(distinct(radar, found.concat(), [SAME_PEAK.0, SAME_PEAK.1 * sectors.fringe_cos]))
     }
 }
 
-/// Reflectors behind the peaks that `look` finds in `ends`, and in the residuals of those found so far.
+/// Reflectors behind the peaks that `search` finds in `ends`, and in the residuals of those found so far.
 ///
 /// # Errors
-/// [`ReconstructError::Cancelled`], and those of `look`.
-pub(in crate::reconstruct) fn explained(
+/// [`ReconstructError::Cancelled`], and those of `search`.
+pub(in crate::reconstruct) fn found_in_residuals(
     radar: &Radar,
     ends: &TwoEnds,
     task: &Task,
-    look: impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
+    search: impl Fn(&TwoEnds) -> Result<Vec<Peak>, ReconstructError>,
 ) -> Result<Vec<Gained>, ReconstructError> {
-    let mut settled = Settled::new(radar, ends, task);
-    for round in 0..LOOKS {
-        task.set_progress(0.9 * round as f32 / LOOKS as f32);
-        if !settled.take(&look(&settled.left())?)? {
+    let mut refinement = Refinement::new(radar, ends, task);
+    for round in 0..MAX_SEARCHES {
+        task.set_progress(0.9 * round as f32 / MAX_SEARCHES as f32);
+        if !refinement.add(&search(&refinement.residual())?)? {
             break;
         }
     }
-    settled.ordered()?.found(ends)
+    refinement.with_model_order()?.found(ends)
 }

@@ -1,16 +1,14 @@
-//! The methods that use both ends as one aperture, phase between them included.
+//! Methods with both ends as one aperture, the phase between them included.
 //!
-//! Every place with energy at both ends gets one linear model: the profile of each element at its own distance from the place, as a sum of
-//! steering vectors over all elements. A method is one closure, which computes the next power of each vector from the model; the rest is shared.
+//! Each place with energy at both ends has a linear model: the range profile of each element at its own distance from the place, as a sum of steering
+//! vectors of all elements. The methods differ in one closure, which computes the next power of each vector.
 //!
-//! Where the array is small against a range bin, one model holds a whole range row without loss. Where the ranges of a reflector at the elements
-//! differ by more than half a bin over the directions (table 3.1: up to 13 bins to either side), directions are cut into sectors, and each model
-//! is registered for its own: exact at its middle, half a bin off at the edges. The echoes of other sectors are lost: in a model they are plane
-//! waves at one end alone. Reflectors at ranges between those of two stronger ones less than two bins apart in the same sector have no model of
-//! their own, since models stand where the echo is strongest; they show once the stronger ones' exact echoes have been subtracted, in a few
-//! further looks. Where rows of reflectors stand closer than that over hundreds of bins, there are too few looks, and the map shows fewer of
-//! them.
-//! Places right in front of the array's middle are lost too, too near for the ends to resolve.
+//! Where the array is short against a range bin, one model has a whole range row. Where a reflector's ranges at the elements differ by more than half a
+//! bin over the directions (table 3.1: up to 13 bins to either side), directions are divided into sectors. Each model is exact in its sector's middle and
+//! half a bin off at the edges. Echoes of other sectors are plane waves at one end alone. Between two stronger reflectors of a sector that are less than
+//! two bins apart there is no model, since models are at range peaks. Such reflectors are found in the residual of the stronger ones, in a few further
+//! searches. Dense rows over hundreds of bins need more searches than that, and lose reflectors. So do places right in front of the array's middle, too
+//! near for the ends to resolve.
 //!
 //! | file | content |
 //! |---|---|
@@ -19,9 +17,9 @@
 //! | `places` | ranges and sectors with energy at both ends |
 //! | `model` | steering vectors of one place, and the iteration that gives their powers |
 //! | `linear` | that iteration's linear algebra, for wide vectors |
-//! | `peaks` | reflectors from powers, and their gains |
-//! | `settle` | reflectors moved off the grid, without needless ones |
-//! | `method` | all of these in order |
+//! | `peaks` | directions of local maxima of power, and their gains |
+//! | `refinement` | refinement of reflectors off the grid, and removal of needless ones |
+//! | `method` | the whole method |
 
 #[cfg(test)]
 mod close_tests;
@@ -32,12 +30,12 @@ mod method;
 mod model;
 mod peaks;
 mod places;
+mod refinement;
 mod sbl;
 mod sectors;
-mod settle;
 
 pub use iaa::IAA;
 pub use method::CoherentMethod;
-pub(super) use method::explained;
+pub(super) use method::found_in_residuals;
 pub(super) use peaks::{Peak, gains};
 pub use sbl::SBL;

@@ -1,7 +1,7 @@
-//! The linear model of one place: steering vectors of both ends together, and their powers.
+//! The linear model of a place: steering vectors of both ends together, and their powers.
 
 use super::ends::{Ends, distances_metres};
-use super::linear::{Lane, Steering, W, explained};
+use super::linear::{Lane, Steering, W, whitened};
 use super::places::Place;
 use super::sectors::Sectors;
 use crate::radar::{Pair, Radar};
@@ -12,48 +12,49 @@ use crate::signal::simd::{Kernel, Lanes, Simd};
 use crate::task::Task;
 use num_complex::Complex64;
 
-/// Number of plane waves at one end alone for each of its beam widths.
-const BEAMS_PER_WIDTH: f64 = 2.0;
+/// Number of plane waves at one end alone in each of its beam widths.
+const WAVES_PER_BEAM_WIDTH: f64 = 2.0;
 
-/// Beam widths around the sector from which no such waves are taken: both ends' own vectors account for them.
+/// Beam widths beside the sector without such waves: its steering vectors are similar there.
 const CLEAR_WIDTHS: f64 = 0.2;
 
-/// Change of all powers, as a part of the largest, at which the iteration ends.
-const SETTLED: f32 = 1e-3;
+/// Largest change of a power over the largest power at which the iteration ends.
+const MAX_CONVERGED_CHANGE: f32 = 1e-3;
 
-/// Powers below this part of the mean power of the samples are set to 0: denormal numbers slow the processor down.
-const NO_POWER: f32 = 1e-20;
+/// Power, as a part of the samples' mean, below which it is set to 0: denormal numbers are slow.
+const MIN_POWER: f32 = 1e-20;
 
-/// The profiles of both ends at a place, and their steering vectors.
+/// The range profiles of both ends at a place, and their steering vectors.
 pub(super) struct Model {
-    /// First the sector's directions, then the plane waves at one end; zeros at the other end and in the padding.
+    /// First the sector's directions, then plane waves at one end alone, 0 at the other. The padding is 0.
     steering: Steering,
     /// The profile of each element at the place.
-    heard: Vec<Complex64>,
+    snapshot: Vec<Complex64>,
     directions: usize,
-    /// Power of the noise in an element.
+    /// Mean power of the noise of an element.
     noise: f64,
 }
 
-/// Figures of one steering vector, in units in which the samples' mean power is 1.
+/// Figures of one steering vector, in units of the mean power of the profiles.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Share {
+pub(super) struct VectorFigures {
     /// The vector's present power.
     pub power: f32,
-    /// `|a^H R^-1 z|^2` of the vector a, the covariance R of all powers and noise, and the samples z.
+    /// `|a^H R^-1 z|^2` of the vector a, the covariance R of all powers and noise, and the profiles z.
     pub matched: f32,
     /// `a^H R^-1 a`.
-    pub held: f32,
+    pub norm: f32,
 }
 
+/// The iteration of a method.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Update {
     /// The next power of a vector.
-    pub next: fn(Share) -> f32,
-    /// Most updates of all powers.
-    pub iterations: usize,
-    /// Least noise of the model, as a part of the mean power of the samples: the error of steering vectors for a real echo.
-    pub least_noise: f64,
+    pub next: fn(VectorFigures) -> f32,
+    /// Largest number of updates of all powers.
+    pub max_iterations: usize,
+    /// Least noise of the model, as a part of the mean power of the profiles: steering vectors have errors.
+    pub min_noise: f64,
 }
 
 impl Model {
@@ -67,32 +68,32 @@ impl Model {
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn powers(&self, update: &Update, task: &Task) -> Result<Vec<f64>, ReconstructError> {
-        let mean = self.heard.iter().map(Complex64::norm_sqr).sum::<f64>() / self.heard.len() as f64;
-        let noise = (self.noise / mean).max(update.least_noise);
+        let mean = self.snapshot.iter().map(Complex64::norm_sqr).sum::<f64>() / self.snapshot.len() as f64;
+        let noise = (self.noise / mean).max(update.min_noise);
         let scale = 1.0 / mean.sqrt();
         if !scale.is_finite() {
             return Ok(vec![0.0; self.directions]);
         }
-        let heard: Vec<Complex64> = self.heard.iter().map(|h| h * scale).collect();
+        let snapshot: Vec<Complex64> = self.snapshot.iter().map(|h| h * scale).collect();
         let mut powers = vec![0.0; self.steering.vectors()];
-        // Without any power the covariance is the noise alone: the matched filter.
-        if let Some(start) = explained(&self.steering, &powers, noise, &heard) {
-            for ((power, matched), held) in powers.iter_mut().zip(start.matched).zip(start.held) {
-                *power = if held > 0.0 { matched / (held * held) } else { 0.0 };
+        // The covariance of noise alone gives the powers of the matched filter.
+        if let Some(start) = whitened(&self.steering, &powers, noise, &snapshot) {
+            for ((power, matched), norm) in powers.iter_mut().zip(start.matched).zip(start.norm) {
+                *power = if norm > 0.0 { matched / (norm * norm) } else { 0.0 };
             }
         }
-        for _ in 0..update.iterations {
+        for _ in 0..update.max_iterations {
             task.check()?;
-            let Some(now) = explained(&self.steering, &powers, noise, &heard) else { break };
+            let Some(now) = whitened(&self.steering, &powers, noise, &snapshot) else { break };
             let (mut change, mut largest) = (0.0f32, 0.0f32);
-            for ((power, matched), held) in powers.iter_mut().zip(now.matched).zip(now.held) {
-                let next = (update.next)(Share { power: *power, matched, held });
-                let next = if next.is_finite() && next > NO_POWER { next } else { 0.0 };
+            for ((power, matched), norm) in powers.iter_mut().zip(now.matched).zip(now.norm) {
+                let next = (update.next)(VectorFigures { power: *power, matched, norm });
+                let next = if next.is_finite() && next > MIN_POWER { next } else { 0.0 };
                 change = change.max((next - *power).abs());
                 largest = largest.max(next);
                 *power = next;
             }
-            if change <= SETTLED * largest {
+            if change <= MAX_CONVERGED_CHANGE * largest {
                 break;
             }
         }
@@ -119,17 +120,17 @@ impl Kernel for Make<'_> {
         let middle = Lanes([place.sector.middle_cos]);
         let own = |pair: &Pair| distances_metres(PairBlocks::from(*pair), range, middle).0[0];
         let own: Vec<f64> = ends.pairs.iter().map(own).collect();
-        let mut heard = vec![Complex64::default(); ends.len()];
-        ends.listen::<FMA>(range, place.sector.middle_cos, &mut heard);
+        let mut snapshot = vec![Complex64::default(); ends.len()];
+        ends.fill_snapshot::<FMA>(range, place.sector.middle_cos, &mut snapshot);
         let mut noise = 0.0;
-        for (heard, own) in heard.iter_mut().zip(&own) {
-            // Amplitudes fall with the square of the distance; this scales them to the same distance for all elements.
+        for (snapshot, own) in snapshot.iter_mut().zip(&own) {
+            // Amplitudes, which fall with the square of the distance, are scaled to the same distance.
             let nearer = (own / range).powi(2);
-            *heard *= nearer;
+            *snapshot *= nearer;
             noise += self.noise_power * nearer * nearer / ends.len() as f64;
         }
         let directions = self.sectors.steps_cos.len();
-        let waves = if self.sectors.all.len() > 1 { beside(self.radar, place) } else { Vec::new() };
+        let waves = if self.sectors.all.len() > 1 { waves_outside(self.radar, place) } else { Vec::new() };
         let (own_lanes, wave_lanes) = (directions.div_ceil(W), waves.len().div_ceil(W));
         let mut steering = Steering::zero(ends.len(), own_lanes + 2 * wave_lanes);
         for (lane, steps) in self.sectors.steps_cos.chunks(W).enumerate() {
@@ -143,7 +144,7 @@ impl Kernel for Make<'_> {
                 *steering.lane_mut(n, own_lanes + end + lane) = only(wave, |i| i < steps.len());
             }
         }
-        Model { steering, heard, directions, noise }
+        Model { steering, snapshot, directions, noise }
     }
 }
 
@@ -176,14 +177,14 @@ fn only(mut wave: Lane, exists: impl Fn(usize) -> bool) -> Lane {
     wave
 }
 
-/// Directions outside the sector, relative to its middle, of plane waves at one end at the place's range: those that differ at its elements.
-fn beside(radar: &Radar, place: &Place) -> Vec<f64> {
+/// Directions of plane waves at one end, relative to the sector's middle and outside of it, one for each set of phases at the elements.
+fn waves_outside(radar: &Radar, place: &Place) -> Vec<f64> {
     let turns_per_metre = radar.carrier_turns_per_metre().abs();
     let period_cos = 1.0 / (turns_per_metre * radar.element_spacing_metres);
     let width_cos = period_cos / radar.end_elements as f64;
     let clear_cos = place.sector.half_width_cos + CLEAR_WIDTHS * width_cos;
     let reach_cos = period_cos.min(2.0);
-    let count = (BEAMS_PER_WIDTH * reach_cos / width_cos).round() as usize;
+    let count = (WAVES_PER_BEAM_WIDTH * reach_cos / width_cos).round() as usize;
     let cosines = (0..count).map(|i| reach_cos * ((i as f64 + 0.5) / count as f64 - 0.5));
     let step = |cos: f64| {
         let step = cos - place.sector.middle_cos;

@@ -1,4 +1,4 @@
-//! Reflectors from powers over direction, with their gains.
+//! Local maxima of power over direction, and the gains of reflectors there.
 
 use super::places::Place;
 use super::sectors::Sectors;
@@ -12,19 +12,19 @@ use faer::{Mat, Side};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Most peaks of one model: two ends of a dozen elements resolve no more.
-const MOST_A_PLACE: usize = 8;
+/// Largest number of peaks of a model: two ends of a dozen elements resolve no more.
+const MAX_PEAKS_PER_PLACE: usize = 8;
 
-/// Most reflectors: the time for their gains grows with the square of their number, and faster.
-const MOST_REFLECTORS: usize = 400;
+/// Largest number of reflectors: the time for their gains grows with the square of their number, and faster.
+const MAX_REFLECTORS: usize = 400;
 
-/// Added to the Gram matrix of unit echoes, so that gains of close ones don't grow against each other.
+/// Ridge on the gains of unit echoes, so that those of close ones don't cancel each other.
 const CLOSE_GAINS_RIDGE: f64 = 1e-3;
 
-/// Energy of an echo, relative to the strongest, beneath which it is left out.
-const LEAST_ENERGY: f64 = 1e-6;
+/// Least energy of an echo over that of the strongest.
+const MIN_ENERGY_PART: f64 = 1e-6;
 
-/// A direction whose power stands out.
+/// A local maximum of power over direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::reconstruct) struct Peak {
     /// Distance from the array's centre, metres.
@@ -34,17 +34,17 @@ pub(in crate::reconstruct) struct Peak {
     pub power: f64,
 }
 
-/// The largest maxima of `powers` over the sector's directions of at least `least_part` of the largest of all.
-pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], least_part: f64) -> Vec<Peak> {
+/// The largest local maxima of `powers`, one for each of the sector's directions, that are at least `min_part` of the largest.
+pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], min_part: f64) -> Vec<Peak> {
     let largest = powers.iter().copied().fold(0.0, f64::max);
     let powers = &powers[..sectors.steps_cos.len().min(powers.len())];
     let at = |i: usize| powers[i];
-    // A maximum at the edge belongs to the neighbouring sector, whose own directions reach over it.
+    // A maximum at the edge belongs to the neighbouring sector, whose directions extend over it.
     let mut maxima: Vec<usize> = (1..powers.len().saturating_sub(1))
-        .filter(|&i| at(i) > 0.0 && at(i) >= least_part * largest && at(i) > at(i - 1) && at(i) >= at(i + 1))
+        .filter(|&i| at(i) > 0.0 && at(i) >= min_part * largest && at(i) > at(i - 1) && at(i) >= at(i + 1))
         .collect();
     maxima.sort_by(|a, b| at(*b).total_cmp(&at(*a)));
-    maxima.truncate(MOST_A_PLACE);
+    maxima.truncate(MAX_PEAKS_PER_PLACE);
     maxima
         .into_iter()
         .map(|i| {
@@ -57,20 +57,20 @@ pub(super) fn peaks(sectors: &Sectors, place: &Place, powers: &[f64], least_part
         .collect()
 }
 
-/// One peak for each reflector, strongest first: of peaks nearer than these range bins and this difference of cosines the strongest stays.
-pub(super) fn apart(radar: &Radar, mut peaks: Vec<Peak>, [bins, cos]: [f64; 2]) -> Vec<Peak> {
+/// `peaks` without those nearer to a stronger one than so many range bins and such a difference of cosines, the strongest first.
+pub(super) fn distinct(radar: &Radar, mut peaks: Vec<Peak>, [bins, cos]: [f64; 2]) -> Vec<Peak> {
     peaks.sort_by(|a, b| b.power.total_cmp(&a.power));
-    let mut kept: Vec<Peak> = Vec::new();
+    let mut found: Vec<Peak> = Vec::new();
     for peak in peaks {
         let same = |k: &Peak| {
             radar.bin_of_range((k.range_metres - peak.range_metres).abs()) < bins
                 && (k.cos_theta - peak.cos_theta).abs() < cos
         };
-        if kept.len() < MOST_REFLECTORS && !kept.iter().any(same) {
-            kept.push(peak);
+        if found.len() < MAX_REFLECTORS && !found.iter().any(same) {
+            found.push(peak);
         }
     }
-    kept
+    found
 }
 
 /// Gains of the peaks' exact echoes by least squares on all samples of both ends.
@@ -90,7 +90,7 @@ pub(in crate::reconstruct) fn gains(
         .filter(|echo| echo.norm().is_finite() && echo.norm() > 0.0)
         .collect();
     let count = echoes.len();
-    let heard: Vec<Complex64> = echoes.par_iter().map(|e| e.correlate(&samples)).collect();
+    let products: Vec<Complex64> = echoes.par_iter().map(|e| e.correlate(&samples)).collect();
     task.check()?;
     let mut gram = vec![Complex64::default(); count * count];
     gram.par_chunks_mut(count.max(1)).enumerate().for_each(|(i, row)| {
@@ -104,8 +104,8 @@ pub(in crate::reconstruct) fn gains(
         value + if i == j { CLOSE_GAINS_RIDGE } else { 0.0 }
     });
     let Ok(factor) = Llt::new(gram.as_ref(), Side::Lower) else { return Ok(Vec::new()) };
-    let gains = factor.solve(Mat::from_fn(count, 1, |i, _| heard[i]));
+    let gains = factor.solve(Mat::from_fn(count, 1, |i, _| products[i]));
     let strongest = (0..count).map(|i| gains[(i, 0)].norm_sqr()).fold(0.0, f64::max);
-    let found = echoes.iter().enumerate().filter(|(i, _)| gains[(*i, 0)].norm_sqr() > strongest * LEAST_ENERGY);
+    let found = echoes.iter().enumerate().filter(|(i, _)| gains[(*i, 0)].norm_sqr() > strongest * MIN_ENERGY_PART);
     Ok(found.map(|(i, e)| Gained { reflector: e.reflector, gain: gains[(i, 0)] / e.norm() }).collect())
 }

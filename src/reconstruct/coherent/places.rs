@@ -11,26 +11,23 @@ use crate::task::Task;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Ranges that are searched, for each range bin.
-const PER_BIN: usize = 4;
+/// Number of searched ranges in each range bin.
+const RANGES_PER_BIN: usize = 4;
 
-/// Range bins beyond the last that are searched: they wrap to the first ones, where next to nothing can stand.
-const BINS_BEYOND: usize = 1;
+/// Least power of a place over the noise of a beam.
+const MIN_PLACE_OVER_NOISE: f64 = 10.0;
 
-/// Power by which a place must stand above the noise of one beam.
-const LEAST_PLACE_OVER_NOISE: f64 = 10.0;
+/// Least power of a place over that of the strongest direction at its range. A weaker place may be a side lobe of an end.
+const MIN_DIRECTION_PART: f64 = 0.05;
 
-/// Least power of a place relative to the strongest other direction at its range; a weaker place counts as an end's side lobe.
-const LEAST_OF_DIRECTION: f64 = 0.05;
+/// Margin of the power of range side lobes over the window's response.
+const SIDE_LOBE_MARGIN: f64 = 8.0;
 
-/// Margin in power of range side lobes over the window's response to a single reflector.
-const SIDE_LOBE_ROOM: f64 = 8.0;
+/// Least power of a place over the strongest. Weaker ones may be residuals of it, and are found by a later search.
+const MIN_PLACE_PART: f64 = 1e-4;
 
-/// Least power of a place relative to the strongest of all; weaker places wait for another look, since residuals of the strongest ones may resemble them.
-const LEAST_IN_A_LOOK: f64 = 1e-4;
-
-/// Most places with a model; the strongest.
-const MOST_PLACES: usize = 512;
+/// Largest number of places.
+const MAX_PLACES: usize = 512;
 
 /// A range and a sector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +46,7 @@ struct Beams {
 }
 
 impl Beams {
-    /// As many beams as cover the sectors without a gap.
+    /// Beams that cover a sector without a gap.
     fn new(radar: &Radar, ends: &Ends, half_width_cos: f64) -> Self {
         let count = (4.0 * half_width_cos / end_beam_cos(radar)).ceil().max(1.0);
         let step = |i: usize| (2 * i + 1) as f64 * half_width_cos / count - half_width_cos;
@@ -57,50 +54,50 @@ impl Beams {
         Beams { weights: (0..count as usize).map(weights).collect() }
     }
 
-    /// Largest power over the beams at the weaker end.
-    fn power(&self, heard: &[Complex64], first_count: usize) -> f64 {
+    /// Power of the strongest beam, each counted at its weaker end.
+    fn power(&self, snapshot: &[Complex64], first_count: usize) -> f64 {
         let of = |weights: &Vec<Complex64>| {
             let beam = |part: std::ops::Range<usize>| {
                 let count = part.len() as f64;
-                let sum: Complex64 = heard[part.clone()].iter().zip(&weights[part]).map(|(h, w)| h * w).sum();
+                let sum: Complex64 = snapshot[part.clone()].iter().zip(&weights[part]).map(|(h, w)| h * w).sum();
                 sum.norm_sqr() / (count * count)
             };
-            beam(0..first_count).min(beam(first_count..heard.len()))
+            beam(0..first_count).min(beam(first_count..snapshot.len()))
         };
         self.weights.iter().map(of).fold(0.0, f64::max)
     }
 }
 
 /// Kernel of the powers of one direction at the weaker end, over range.
-struct Listen<'a> {
+struct RangePowers<'a> {
     radar: &'a Radar,
     ends: &'a Ends,
     beams: &'a Beams,
     middle_cos: f64,
 }
 
-impl Kernel for Listen<'_> {
+impl Kernel for RangePowers<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Vec<f64> {
         let mut powers = vec![0.0; ranges(self.radar)];
-        let mut heard = vec![Complex64::default(); self.ends.len()];
+        let mut snapshot = vec![Complex64::default(); self.ends.len()];
         for (i, power) in powers.iter_mut().enumerate().skip(1) {
-            let range = self.radar.range_of_bin_metres(i as f64 / PER_BIN as f64);
-            self.ends.listen::<FMA>(range, self.middle_cos, &mut heard);
-            *power = self.beams.power(&heard, self.ends.first_count);
+            let range = self.radar.range_of_bin_metres(i as f64 / RANGES_PER_BIN as f64);
+            self.ends.fill_snapshot::<FMA>(range, self.middle_cos, &mut snapshot);
+            *power = self.beams.power(&snapshot, self.ends.first_count);
         }
         powers
     }
 }
 
-/// Number of ranges that are searched, from range 0 on.
+/// Number of ranges that are searched, from range 0 to a bin beyond the last.
 fn ranges(radar: &Radar) -> usize {
-    PER_BIN * (radar.samples + BINS_BEYOND)
+    RANGES_PER_BIN * (radar.samples + 1)
 }
 
-/// Every place that is no side lobe of another and not too weak beside the strongest, strongest first. `noise_power` is that of one element's profile.
+/// Places above the noise that are no side lobes of others, the strongest first. `noise_power` is that of one element's profile.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
@@ -118,24 +115,24 @@ pub(super) fn places(
         let range_metres = row_ranges_metres(radar)[0];
         return Ok(sectors.all.iter().map(|sector| Place { range_metres, sector: *sector, power: 1.0 }).collect());
     }
-    let range = |i: f64| radar.range_of_bin_metres(i / PER_BIN as f64);
+    let range = |i: f64| radar.range_of_bin_metres(i / RANGES_PER_BIN as f64);
     let count = ranges(radar);
     let beams = Beams::new(radar, ends, sectors.all.first().map_or(1.0, |s| s.half_width_cos));
-    let heard: Vec<Vec<f64>> = sectors
+    let powers: Vec<Vec<f64>> = sectors
         .all
         .par_iter()
         .map(|sector| {
             task.check()?;
-            Ok(Simd::chosen().run(Listen { radar, ends, beams: &beams, middle_cos: sector.middle_cos }))
+            Ok(Simd::chosen().run(RangePowers { radar, ends, beams: &beams, middle_cos: sector.middle_cos }))
         })
         .collect::<Result<_, ReconstructError>>()?;
-    let strongest: Vec<f64> = (0..count).map(|i| heard.iter().map(|h| h[i]).fold(0.0, f64::max)).collect();
-    let least = side_lobes(&strongest, PER_BIN * radar.samples);
-    let noise = LEAST_PLACE_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
+    let strongest: Vec<f64> = (0..count).map(|i| powers.iter().map(|powers| powers[i]).fold(0.0, f64::max)).collect();
+    let least = side_lobes(&strongest, RANGES_PER_BIN * radar.samples);
+    let noise = MIN_PLACE_OVER_NOISE * noise_power / ends.first_count.min(ends.len() - ends.first_count) as f64;
     let mut found = Vec::new();
-    for (sector, heard) in sectors.all.iter().zip(&heard) {
+    for (sector, powers) in sectors.all.iter().zip(&powers) {
         for i in 1..count.saturating_sub(1) {
-            let [before, here, after] = [heard[i - 1], heard[i], heard[i + 1]];
+            let [before, here, after] = [powers[i - 1], powers[i], powers[i + 1]];
             if here > before && here >= after && here > least[i].max(noise) {
                 let offset = vertex(before, here, after);
                 found.push(Place { range_metres: range(i as f64 + offset), sector: *sector, power: here });
@@ -143,31 +140,30 @@ pub(super) fn places(
         }
     }
     found.sort_by(|a, b| b.power.total_cmp(&a.power));
-    found.truncate(MOST_PLACES);
-    let least = found.first().map_or(0.0, |strongest| LEAST_IN_A_LOOK * strongest.power);
+    found.truncate(MAX_PLACES);
+    let least = found.first().map_or(0.0, |strongest| MIN_PLACE_PART * strongest.power);
     found.retain(|place| place.power > least);
     Ok(found)
 }
 
-/// The power at every range above which a place is no side lobe of the `strongest` at all ranges. Ranges wrap after `period` of them: the last
-/// bin lies beside the first.
+/// The power at each range above which a place is no side lobe of the `strongest` powers at all ranges. Ranges wrap after `period`.
 fn side_lobes(strongest: &[f64], period: usize) -> Vec<f64> {
     let count = strongest.len();
     let envelope: Vec<f64> = (0..=period / 2)
         .map(|i| {
-            let bins = i as f64 / PER_BIN as f64;
-            // Beyond the main lobe the level is that of each side lobe's peak, at half bins.
+            let bins = i as f64 / RANGES_PER_BIN as f64;
+            // Beyond the main lobe the level is that of the side lobes' peaks, which are at half bins.
             let level = range_response(bins.floor() + 0.5);
-            if bins < 2.0 { LEAST_OF_DIRECTION } else { (level * level * SIDE_LOBE_ROOM).min(LEAST_OF_DIRECTION) }
+            if bins < 2.0 { MIN_DIRECTION_PART } else { (level * level * SIDE_LOBE_MARGIN).min(MIN_DIRECTION_PART) }
         })
         .collect();
-    let apart = |i: usize, j: usize| {
+    let distance = |i: usize, j: usize| {
         let steps = i.abs_diff(j) % period;
         steps.min(period - steps)
     };
     (0..count)
         .into_par_iter()
-        .map(|i| strongest.iter().enumerate().map(|(j, power)| power * envelope[apart(i, j)]).fold(0.0, f64::max))
+        .map(|i| strongest.iter().enumerate().map(|(j, power)| power * envelope[distance(i, j)]).fold(0.0, f64::max))
         .collect()
 }
 
@@ -190,10 +186,10 @@ mod tests {
         let radar = Radar { elements: 128, ..Radar::default() };
         let scene = Scene::of_points([(2.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let heard = Ends::new(&radar, &ends);
-        let sectors = Sectors::new(&radar, &heard);
+        let snapshot = Ends::new(&radar, &ends);
+        let sectors = Sectors::new(&radar, &snapshot);
         let noise = ends_noise_variance(&radar, &ends, Floor::Thesis.into()) * 1.5 / radar.samples as f64;
-        let found = places(&radar, &heard, &sectors, noise, &Task::default()).unwrap();
+        let found = places(&radar, &snapshot, &sectors, noise, &Task::default()).unwrap();
         let range = 2f64.hypot(9.0);
         assert!(!found.is_empty() && found.len() < 4 * sectors.all.len(), "{} places", found.len());
         for place in &found {

@@ -4,8 +4,7 @@ use super::method::{CoherentMethod, TOLD_TO_COHERENT};
 use super::model::Update;
 use crate::reconstruct::reconstructor::About;
 
-/// Each direction's gain has a normal distribution with a variance of its own. The powers are the variances under which the samples are
-/// likeliest; most turn out zero.
+/// Each direction's gain has a normal distribution with its own variance. The powers are the variances of maximum likelihood; most are zero.
 ///
 /// M. E. Tipping, "Sparse Bayesian learning and the relevance vector machine", J. Mach. Learn. Res. 1, 2001, with MacKay's fixed-point
 /// update; for directions of arrival P. Gerstoft, C. F. Mecklenbraeuker, A. Xenaki and S. Nannuru, "Multisnapshot sparse Bayesian
@@ -18,10 +17,10 @@ pub const SBL: CoherentMethod = CoherentMethod {
         eta: 0.782, // by examples/choose_eta.rs
     },
     update: Update {
-        // The update whose fixed point is the variance: the square of the posterior gain over its determination.
-        next: |share| share.power * share.matched / share.held,
-        iterations: 16,
-        least_noise: 3e-3,
+        // MacKay's update: the squared mean of the posterior gain over its degrees of freedom.
+        next: |v| v.power * v.matched / v.norm,
+        max_iterations: 16,
+        min_noise: 3e-3,
     },
-    least_part: 0.05,
+    min_peak_part: 0.05,
 };

@@ -1,8 +1,8 @@
-//! The dictionary: the atoms into which a scene is decomposed.
+//! Atoms: single reflectors and rows of them, without their gains.
 
 use crate::scene::Reflector;
 
-/// One object without its gain. Distances in metres; y and -y have the same echoes at a line array, so that y is kept at 0 or above.
+/// One object without its gain. At a line array y and -y have the same echoes, so that a point's y is 0 or more.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Atom {
     Point {
@@ -11,8 +11,8 @@ pub enum Atom {
         /// Position ahead of the array.
         y_metres: f64,
     },
-    /// Reflectors of equal strength at equal steps along a straight line of any slant.
-    Segment {
+    /// A row: reflectors of equal strength at equal steps along a straight line of any direction.
+    Row {
         /// Position of the first reflector along the array.
         x_metres: f64,
         /// Position of the first reflector ahead of the array.
@@ -27,24 +27,23 @@ pub enum Atom {
 }
 
 impl Atom {
-    /// Number of continuous parameters: (x, y^2) or (x, y, dx, dy).
+    /// Number of continuous parameters: (x, y^2) of a point, (x, y, dx, dy) of a row.
     ///
-    /// A point's distance from the array follows the square of its y: near the array's axis y itself hardly changes anything, its
-    /// square does.
-    pub fn parameters(&self) -> usize {
+    /// Near the array's axis a point's distance hardly depends on y, but linearly on its square.
+    pub fn parameter_count(&self) -> usize {
         match self {
             Atom::Point { .. } => 2,
-            Atom::Segment { .. } => 4,
+            Atom::Row { .. } => 4,
         }
     }
 
-    /// The atom with its continuous parameters moved by `step`, in the order of [`Atom::parameters`].
+    /// The atom with `step` added to its parameters, in the order of [`Atom::parameter_count`], metres or square metres.
     pub fn moved(&self, step: &[f64]) -> Atom {
         match *self {
             Atom::Point { x_metres, y_metres } => {
                 Atom::Point { x_metres: x_metres + step[0], y_metres: (y_metres * y_metres + step[1]).max(0.0).sqrt() }
             }
-            Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count } => Atom::Segment {
+            Atom::Row { x_metres, y_metres, dx_metres, dy_metres, count } => Atom::Row {
                 x_metres: x_metres + step[0],
                 y_metres: y_metres + step[1],
                 dx_metres: dx_metres + step[2],
@@ -57,22 +56,22 @@ impl Atom {
     pub fn reflector_count(&self) -> usize {
         match self {
             Atom::Point { .. } => 1,
-            Atom::Segment { count, .. } => *count,
+            Atom::Row { count, .. } => *count,
         }
     }
 
-    /// Position (x, y) of reflector `i`, metres; beyond the segment's ends where `i` is.
+    /// Position (x, y) of reflector `i`, metres. Beyond the row's ends it goes on at the same steps.
     pub fn position_metres(&self, i: f64) -> [f64; 2] {
         match *self {
             Atom::Point { x_metres, y_metres } => [x_metres, y_metres],
-            Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, .. } => {
+            Atom::Row { x_metres, y_metres, dx_metres, dy_metres, .. } => {
                 [x_metres + i * dx_metres, y_metres + i * dy_metres]
             }
         }
     }
 
-    /// Derivatives of reflector `i`'s x and of half the square of its y by the parameter.
-    pub fn share(&self, i: usize, parameter: usize) -> [f64; 2] {
+    /// Derivatives of reflector `i`'s x and of half the square of its y by a parameter, numbered as in [`Atom::parameter_count`].
+    pub fn derivatives(&self, i: usize, parameter: usize) -> [f64; 2] {
         let i = i as f64;
         let [_, y] = self.position_metres(i);
         match (self, parameter) {
@@ -117,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_segment_walks_in_equal_steps() {
-        let wall = Atom::Segment { x_metres: 1.0, y_metres: 5.0, dx_metres: 0.5, dy_metres: -0.25, count: 3 };
+        let wall = Atom::Row { x_metres: 1.0, y_metres: 5.0, dx_metres: 0.5, dy_metres: -0.25, count: 3 };
         let places: Vec<[f64; 2]> = wall.reflectors(2.0).map(|r| [r.x_metres, r.y_metres]).collect();
         assert_eq!(places, [[1.0, 5.0], [1.5, 4.75], [2.0, 4.5]]);
         assert_eq!(wall.position_metres(-1.0), [0.5, 5.25]);

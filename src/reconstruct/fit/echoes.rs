@@ -1,6 +1,6 @@
-//! Echoes of many reflectors at every channel of both ends: sums of them, and their products with a residual.
+//! The residual of samples without the echoes of many reflectors, and the products of the echoes with it.
 
-use super::sensor::{Sensor, W, kept_apart};
+use super::sensor::{Sensor, W, with_min_distance};
 use crate::scene::Reflector;
 use crate::signal::path::PairBlocks;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
@@ -8,35 +8,34 @@ use crate::signal::split::{Product, STRIDE, add_products, fill_factors, rows_of}
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Samples of both ends, neighbouring channels side by side: `[block of channels][sample]`, samples padded with zeros.
+/// Samples of both ends: `[block of channels][sample]`, a channel in each lane. Samples are padded with zeros.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
-    /// One lane a channel.
     pub blocks: Vec<Vec<ComplexLanes<f64, W>>>,
 }
 
-/// Products of one echo and of its echo times time with a residual, channel by channel.
+/// Inner products of one reflector's echo with a residual, one for each channel of both ends.
 #[derive(Debug, Clone)]
 pub struct Products {
-    /// `sum w^2 conj(echo) residual`.
+    /// `sum w^2 conj(echo) residual` over the samples, for the window `w`.
     pub zeroth: Vec<Complex64>,
-    /// `zeroth` with a factor `tau = (t - middle) / samples` in the sum.
+    /// The same sum with a factor `tau = (t - middle) / samples`.
     pub first: Vec<Complex64>,
 }
 
-/// The residual of samples without some echoes.
+/// Samples without some echoes.
 #[derive(Debug, Clone)]
 pub struct Remainder {
-    /// Samples less the echoes times their gains.
+    /// Samples minus the echoes times their gains, not windowed.
     pub residual: Samples,
     /// Energy of the windowed residual at each end.
     pub energy: [f64; 2],
-    /// Products of every echo with the residual.
+    /// Products of each echo with the residual, as requested.
     pub products: Vec<Products>,
 }
 
 impl Samples {
-    /// The samples of `flat`, laid out channel by channel.
+    /// From samples channel by channel, `[channels * samples]`.
     pub fn new(sensor: &Sensor, flat: &[Complex64]) -> Self {
         let padded = rows_of(sensor.samples) * STRIDE;
         let channels: Vec<&[Complex64]> = flat.chunks_exact(sensor.samples).collect();
@@ -52,7 +51,7 @@ impl Samples {
         Samples { blocks: channels.chunks(W).map(block).collect() }
     }
 
-    /// The samples, laid out channel by channel.
+    /// The samples channel by channel, `[channels * samples]`.
     pub fn flat(&self, sensor: &Sensor) -> Vec<Complex64> {
         let mut out = Vec::with_capacity(sensor.sample_count());
         for channel in 0..sensor.element_x.len() {
@@ -63,80 +62,83 @@ impl Samples {
     }
 }
 
-/// Fewest reflectors that are divided among processors, block by block of channels; there are few blocks.
-const LEAST_SHARED: usize = 12;
+/// Least number of reflectors that are split into parts for processors. There are few blocks of channels, which are for processors too.
+const MIN_SPLIT_REFLECTORS: usize = 12;
 
-/// Number of parts into which they are divided.
-const SHARES: usize = 2;
+/// Number of these parts.
+const SPLIT_PARTS: usize = 2;
 
-/// The requested products of echoes with the residual.
+/// The products of echoes with a residual that are requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asked {
-    /// None.
-    Nothing,
-    /// Products of the echoes themselves.
+pub enum ProductKind {
+    None,
+    /// [`Products::zeroth`].
     Values,
-    /// Products of the echoes and of echoes times time.
+    /// Both.
     Slopes,
 }
 
-/// `samples` less the echoes of `reflectors` times their gains at the first and at the last end, under the squared window `squared`; with the
-/// requested products of all echoes with the residual.
+/// `samples` without the echoes of `reflectors`, each with its gains at the first and at the last end. Energy and products are under the window whose
+/// squares are `squared`, `[samples]`.
 pub fn remainder(
     sensor: &Sensor,
     squared: &[f64],
     samples: &Samples,
     reflectors: &[(Reflector, [Complex64; 2])],
-    asked: Asked,
+    kind: ProductKind,
 ) -> Remainder {
     let simd = Simd::chosen();
-    let shares = if reflectors.len() < LEAST_SHARED { 1 } else { SHARES };
-    let share = reflectors.len().div_ceil(shares).max(1);
-    let sum = |block: usize, share_at: usize| {
-        let start = if share_at == 0 { Start::Samples(&samples.blocks[block]) } else { Start::Silence };
-        let reflectors = reflectors.chunks(share).nth(share_at).unwrap_or_default();
-        simd.run(Sum { sensor, first_channel: block * W, reflectors, start, keep: asked != Asked::Nothing })
+    let parts = if reflectors.len() < MIN_SPLIT_REFLECTORS { 1 } else { SPLIT_PARTS };
+    let part_size = reflectors.len().div_ceil(parts).max(1);
+    let sum = |block: usize, part_at: usize| {
+        let start = (part_at == 0).then(|| &samples.blocks[block][..]);
+        let reflectors = reflectors.chunks(part_size).nth(part_at).unwrap_or_default();
+        simd.run(Sum { sensor, first_channel: block * W, reflectors, start, keeps_echoes: kind != ProductKind::None })
     };
-    let subtract = |sums: &mut [Summed]| simd.run(Subtract { squared, sums, weighted: asked != Asked::Nothing });
-    let multiply = |summed: &Summed, left: &Left| match asked {
-        Asked::Nothing => Vec::new(),
-        _ => simd.run(Multiply { samples: sensor.samples, echoes: &summed.echoes, weighted: &left.weighted, asked }),
+    let subtract = |sums: &mut [BlockSum]| simd.run(Subtract { squared, sums, weighted: kind != ProductKind::None });
+    let multiply = |summed: &BlockSum, residual: &BlockResidual| match kind {
+        ProductKind::None => Vec::new(),
+        _ => simd.run(Multiply { samples: sensor.samples, echoes: &summed.echoes, weighted: &residual.weighted, kind }),
     };
     let blocks = 0..samples.blocks.len();
-    let (left, products): (Vec<Left>, Vec<Vec<BlockProducts>>) = if shares == 1 {
+    let (residuals, products): (Vec<BlockResidual>, Vec<Vec<BlockProducts>>) = if parts == 1 {
         let of_block = |block: usize| {
             let mut summed = sum(block, 0);
-            let left = subtract(std::slice::from_mut(&mut summed));
-            let products = multiply(&summed, &left);
-            (left, products)
+            let residual = subtract(std::slice::from_mut(&mut summed));
+            let products = multiply(&summed, &residual);
+            (residual, products)
         };
         blocks.into_par_iter().map(of_block).unzip()
     } else {
-        let tasks = blocks.len() * shares;
-        let mut sums: Vec<Summed> = (0..tasks).into_par_iter().map(|task| sum(task / shares, task % shares)).collect();
-        let left: Vec<Left> = sums.chunks_mut(shares).map(subtract).collect();
-        let product = |task: usize| multiply(&sums[task], &left[task / shares]);
+        let tasks = blocks.len() * parts;
+        let mut sums: Vec<BlockSum> = (0..tasks).into_par_iter().map(|task| sum(task / parts, task % parts)).collect();
+        let residuals: Vec<BlockResidual> = sums.chunks_mut(parts).map(subtract).collect();
+        let product = |task: usize| multiply(&sums[task], &residuals[task / parts]);
         let products: Vec<Vec<BlockProducts>> = (0..tasks).into_par_iter().map(product).collect();
-        (left, products.chunks(shares).map(<[_]>::concat).collect())
+        (residuals, products.chunks(parts).map(<[_]>::concat).collect())
     };
     let mut energy = [0.0; 2];
     for channel in 0..sensor.element_x.len() {
-        energy[channel / sensor.end_elements] += left[channel / W].energy.0[channel % W];
+        energy[channel / sensor.end_elements] += residuals[channel / W].energy.0[channel % W];
     }
-    let products = if asked == Asked::Nothing { Vec::new() } else { channel_by_channel(sensor, &products) };
-    Remainder { residual: Samples { blocks: left.into_iter().map(|l| l.residual).collect() }, energy, products }
+    let products = if kind == ProductKind::None { Vec::new() } else { channel_by_channel(sensor, &products) };
+    Remainder {
+        residual: Samples { blocks: residuals.into_iter().map(|block| block.residual).collect() },
+        energy,
+        products,
+    }
 }
 
-/// Echoes of all `reflectors` together, of gain 1, at one block of channels.
+/// Sum of the echoes of all `reflectors` of gain 1 at one block of channels, `[padded samples]`.
 pub fn echo_of_all(sensor: &Sensor, reflectors: &[Reflector], block: usize) -> Vec<ComplexLanes<f64, W>> {
     let negative = [Complex64::from(-1.0); 2];
     let reflectors: Vec<(Reflector, [Complex64; 2])> = reflectors.iter().map(|r| (*r, negative)).collect();
     let first_channel = block * W;
-    let sum = Sum { sensor, first_channel, reflectors: &reflectors, start: Start::Silence, keep: false };
+    let sum = Sum { sensor, first_channel, reflectors: &reflectors, start: None, keeps_echoes: false };
     Simd::chosen().run(sum).sum
 }
 
-/// Products of every echo, from those of each block of channels.
+/// Products of each echo at all channels, from those of each block of channels, `[block][echo]`.
 fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Products> {
     let channels = sensor.element_x.len();
     let of_echo = |i: usize| {
@@ -150,73 +152,66 @@ fn channel_by_channel(sensor: &Sensor, blocks: &[Vec<BlockProducts>]) -> Vec<Pro
     (0..blocks.first().map_or(0, Vec::len)).map(of_echo).collect()
 }
 
-/// Number of echoes subtracted together: their phasors fit the first-level cache.
-const TOGETHER: usize = 4;
+/// Number of reflectors whose echoes are subtracted together: their phasors fit into the first-level cache.
+const BATCH_REFLECTORS: usize = 4;
 
-/// The start of a sum of echoes.
-enum Start<'a> {
-    Silence,
-    Samples(&'a [ComplexLanes<f64, W>]),
-}
-
-/// Echoes of some reflectors at one block of channels.
+/// Kernel of the echoes of some reflectors at one block of channels.
 struct Sum<'a> {
     sensor: &'a Sensor,
     first_channel: usize,
     reflectors: &'a [(Reflector, [Complex64; 2])],
-    start: Start<'a>,
-    /// Whether the echoes of gain 1 are kept, too.
-    keep: bool,
+    /// Initial value of the sum; 0 where there is none.
+    start: Option<&'a [ComplexLanes<f64, W>]>,
+    /// Whether the phasors of all echoes are part of the output.
+    keeps_echoes: bool,
 }
 
-/// Phasors of some reflectors, see [`Factors`](crate::signal::split::Factors).
+/// Factors of the echoes of some reflectors ([`Factors`](crate::signal::split::Factors)).
 struct Phasors {
-    /// One reflector's phasors after another's.
+    /// `[reflector * rows + row]`.
     rows: Vec<ComplexLanes<f64, W>>,
     columns: Vec<[ComplexLanes<f64, W>; STRIDE]>,
 }
 
 impl Phasors {
     #[inline(always)]
-    fn room(reflectors: usize, rows: usize) -> Self {
+    fn zero(reflectors: usize, rows: usize) -> Self {
         let zero = ComplexLanes::zero();
         Phasors { rows: vec![zero; reflectors * rows], columns: vec![[zero; STRIDE]; reflectors] }
     }
 }
 
-struct Summed {
-    /// The echoes of the reflectors, of gain 1; not all of them unless they are kept.
+struct BlockSum {
+    /// The echoes of gain 1: of all reflectors if they are requested, else of the last batch.
     echoes: Phasors,
-    /// The sum of all echoes times minus their gains, added to the start.
+    /// The initial value minus all echoes times their gains.
     sum: Vec<ComplexLanes<f64, W>>,
 }
 
 impl Kernel for Sum<'_> {
-    type Output = Summed;
+    type Output = BlockSum;
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> Summed {
-        let Sum { sensor, reflectors, keep, .. } = self;
+    fn run<const FMA: bool>(self) -> BlockSum {
+        let Sum { sensor, reflectors, keeps_echoes, .. } = self;
         let last = sensor.element_x.len() - 1;
         let channel = |lane: usize| (self.first_channel + lane).min(last);
         let pairs = PairBlocks::new(|lane| sensor.pairs[channel(lane)]);
         let many = rows_of(sensor.samples);
-        let mut echoes = Phasors::room(if keep { reflectors.len() } else { reflectors.len().min(TOGETHER) }, many);
-        let mut scaled = vec![ComplexLanes::zero(); TOGETHER * many];
-        let mut sum = match self.start {
-            Start::Silence => vec![ComplexLanes::zero(); many * STRIDE],
-            Start::Samples(samples) => samples.to_vec(),
-        };
-        // Gains mostly start at 0.
+        let mut echoes =
+            Phasors::zero(if keeps_echoes { reflectors.len() } else { reflectors.len().min(BATCH_REFLECTORS) }, many);
+        let mut scaled = vec![ComplexLanes::zero(); BATCH_REFLECTORS * many];
+        let mut sum = self.start.map_or_else(|| vec![ComplexLanes::zero(); many * STRIDE], <[_]>::to_vec);
+        // The gains of a fit begin at 0.
         let is_silent = reflectors.iter().all(|(_, gains)| *gains == [Complex64::default(); 2]);
-        for (at, reflectors) in reflectors.chunks(TOGETHER).enumerate() {
-            let first = if keep { at * TOGETHER } else { 0 };
+        for (at, reflectors) in reflectors.chunks(BATCH_REFLECTORS).enumerate() {
+            let first = if keeps_echoes { at * BATCH_REFLECTORS } else { 0 };
             let rows = &mut echoes.rows[first * many..(first + reflectors.len()) * many];
             let columns = &mut echoes.columns[first..first + reflectors.len()];
             let each = rows.chunks_exact_mut(many).zip(columns.iter_mut()).zip(scaled.chunks_exact_mut(many));
             for (((rows, columns), scaled), (reflector, gains)) in each.zip(reflectors) {
-                fill_factors::<f64, W, FMA>(&sensor.model, pairs, &kept_apart(sensor, reflector), rows, columns);
-                let gain = |lane: usize| match sensor.hears[channel(lane)] {
+                fill_factors::<f64, W, FMA>(&sensor.model, pairs, &with_min_distance(sensor, reflector), rows, columns);
+                let gain = |lane: usize| match sensor.has_samples[channel(lane)] {
                     true => -gains[channel(lane) / sensor.end_elements],
                     false => Complex64::default(),
                 };
@@ -229,45 +224,44 @@ impl Kernel for Sum<'_> {
                 }
             }
             if !is_silent {
-                let products: [_; TOGETHER] = std::array::from_fn(|i| Product {
+                let products: [_; BATCH_REFLECTORS] = std::array::from_fn(|i| Product {
                     rows: &scaled[i * many..(i + 1) * many],
                     columns: &columns[i.min(columns.len() - 1)],
                 });
                 add_products::<f64, W, FMA>(&products[..columns.len()], &mut sum);
             }
         }
-        Summed { echoes, sum }
+        BlockSum { echoes, sum }
     }
 }
 
-/// All sums of one block of channels together.
+/// Kernel of the residual at one block of channels, from the sums of all parts of the reflectors.
 struct Subtract<'a> {
     squared: &'a [f64],
-    /// Samples less some echoes, and sums of other echoes times minus their gains. The first becomes the residual.
-    sums: &'a mut [Summed],
-    /// Whether the weighted residual is requested.
+    /// The first contains the samples; its sum is moved out.
+    sums: &'a mut [BlockSum],
     weighted: bool,
 }
 
-struct Left {
+struct BlockResidual {
     residual: Vec<ComplexLanes<f64, W>>,
-    /// The residual times the squared window; empty where it isn't requested.
+    /// The residual times the squared window; empty unless requested.
     weighted: Vec<ComplexLanes<f64, W>>,
     energy: Lanes<f64, W>,
 }
 
 impl Kernel for Subtract<'_> {
-    type Output = Left;
+    type Output = BlockResidual;
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> Left {
+    fn run<const FMA: bool>(self) -> BlockResidual {
         let Some((first, others)) = self.sums.split_first_mut() else {
-            return Left { residual: Vec::new(), weighted: Vec::new(), energy: Lanes::splat(0.0) };
+            return BlockResidual { residual: Vec::new(), weighted: Vec::new(), energy: Lanes::splat(0.0) };
         };
         let mut residual = std::mem::take(&mut first.sum);
         for part in others {
-            for (left, echoes) in residual.iter_mut().zip(&part.sum) {
-                *left = *left + *echoes;
+            for (v, echoes) in residual.iter_mut().zip(&part.sum) {
+                *v = *v + *echoes;
             }
         }
         let mut energy = Lanes::splat(0.0);
@@ -282,19 +276,19 @@ impl Kernel for Subtract<'_> {
                 energy = (v.re * v.re + v.im * v.im).mul_add::<FMA>(Lanes::splat(*w), energy);
             }
         }
-        Left { residual, weighted, energy }
+        BlockResidual { residual, weighted, energy }
     }
 }
 
-/// Products of an echo, and of the echo times time, with the residual at one block of channels.
+/// [`Products`] at one block of channels: order 0, order 1.
 type BlockProducts = [ComplexLanes<f64, W>; 2];
 
-/// Products of some echoes of one block of channels with the residual there, plain and, if requested, times time.
+/// Kernel of the products of echoes with the weighted residual at one block of channels, `[echo]`.
 struct Multiply<'a> {
     samples: usize,
     echoes: &'a Phasors,
     weighted: &'a [ComplexLanes<f64, W>],
-    asked: Asked,
+    kind: ProductKind,
 }
 
 impl Kernel for Multiply<'_> {
@@ -310,7 +304,7 @@ impl Kernel for Multiply<'_> {
             let mut sums = [ComplexLanes::zero(); 2];
             for (a, (row, part)) in rows.iter().zip(self.weighted.chunks_exact(STRIDE)).enumerate() {
                 let row = row.conj();
-                if self.asked == Asked::Values {
+                if self.kind == ProductKind::Values {
                     let mut plain = ComplexLanes::zero();
                     for (column, v) in columns.iter().zip(part) {
                         plain = plain.plus_product::<FMA>(column.conj(), *v);
@@ -319,7 +313,7 @@ impl Kernel for Multiply<'_> {
                     continue;
                 }
                 let (mut plain, mut timed) = (ComplexLanes::zero(), ComplexLanes::zero());
-                // The sum of b times what comes at b is that of all sums from 1, from 2, and so on.
+                // The sum of b times the product of column b is the sum of all partial sums from column 1, 2, … on.
                 for (column, v) in columns.iter().zip(part).skip(1).rev() {
                     plain = plain.plus_product::<FMA>(column.conj(), *v);
                     timed = timed + plain;
@@ -351,18 +345,24 @@ mod tests {
         let samples = Samples::new(&sensor, &noise);
         let at = |i: usize| Reflector { x_metres: i as f64 - 9.0, y_metres: 4.0 + i as f64, reflectivity: 1.0 };
         let gain = |i: usize| Complex64::from_polar(30.0, i as f64);
-        let reflectors: Vec<_> = (0..2 * LEAST_SHARED + 1).map(|i| (at(i), [gain(i), -gain(2 * i)])).collect();
-        let together = remainder(&sensor, &squared, &samples, &reflectors, Asked::Slopes);
-        let mut left = samples;
-        for few in reflectors.chunks(LEAST_SHARED - 1) {
-            left = remainder(&sensor, &squared, &left, few, Asked::Nothing).residual;
+        let reflectors: Vec<_> = (0..2 * MIN_SPLIT_REFLECTORS + 1).map(|i| (at(i), [gain(i), -gain(2 * i)])).collect();
+        let together = remainder(&sensor, &squared, &samples, &reflectors, ProductKind::Slopes);
+        let mut residual = samples;
+        for few in reflectors.chunks(MIN_SPLIT_REFLECTORS - 1) {
+            residual = remainder(&sensor, &squared, &residual, few, ProductKind::None).residual;
         }
-        for (a, b) in together.residual.flat(&sensor).iter().zip(left.flat(&sensor)) {
+        for (a, b) in together.residual.flat(&sensor).iter().zip(residual.flat(&sensor)) {
             assert!((a - b).norm() < 1e-11, "{a} {b}");
         }
         // In the order of the reflectors, whichever thread computed them.
         for ((reflector, _), found) in reflectors.iter().zip(&together.products) {
-            let alone = remainder(&sensor, &squared, &left, &[(*reflector, [Complex64::default(); 2])], Asked::Slopes);
+            let alone = remainder(
+                &sensor,
+                &squared,
+                &residual,
+                &[(*reflector, [Complex64::default(); 2])],
+                ProductKind::Slopes,
+            );
             for (a, b) in found.zeroth.iter().zip(&alone.products[0].zeroth) {
                 assert!((a - b).norm() < 1e-11, "{a} {b}");
             }

@@ -1,6 +1,6 @@
 //! The banded Gram matrix of atoms and of their derivatives, in closed form.
 //!
-//! No sample is touched: an inner product of two echoes is one entry of the window's [`Moments`] a channel, and echoes far apart in
+//! No samples are used: an inner product of two echoes is one entry of the window's [`Moments`] a channel, and echoes far apart in
 //! range are orthogonal.
 
 use super::atom::Atom;
@@ -14,29 +14,30 @@ use faer::Mat;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Atoms with the echoes of all their reflectors.
+/// Columns of a linear model: the echo of each atom of gain 1, and its derivatives.
 pub struct Dictionary<'a> {
     sensor: &'a Sensor,
     moments: &'a Moments,
     pub atoms: &'a [Atom],
     echoes: Vec<Vec<Echo>>,
-    /// Column of each atom's value; its derivatives follow, where there are any.
+    /// Column of each atom's echo. Its derivatives follow if they are requested.
     pub first_column: Vec<usize>,
+    /// Number of columns.
     pub columns: usize,
     derivatives: bool,
 }
 
-/// Parameters an atom may have, and its value.
-const MOST_COLUMNS: usize = 5;
+/// Largest number of columns of an atom.
+const MAX_COLUMNS: usize = 5;
 
-/// Inner products of the columns of two atoms at one end.
-type BlockOfAtoms = [[Complex64; MOST_COLUMNS]; MOST_COLUMNS];
+/// Inner products of the columns of two atoms at one end, `[column of the first][column of the second]`.
+type AtomProducts = [[Complex64; MAX_COLUMNS]; MAX_COLUMNS];
 
-/// Value, derivative by x and derivative by half the square of y of one echo against those of another.
-type Block = [[Complex64; 3]; 3];
+/// Inner products of two echoes at one end. In each dimension: the echo, its derivative by x, its derivative by half the square of y.
+type EchoProducts = [[Complex64; 3]; 3];
 
 impl<'a> Dictionary<'a> {
-    /// The dictionary of `atoms`, with a column for every parameter of each if `derivatives` are wanted.
+    /// The columns of `atoms`, with `derivatives` by all parameters or without.
     pub fn new(sensor: &'a Sensor, moments: &'a Moments, atoms: &'a [Atom], derivatives: bool) -> Self {
         let simd = Simd::chosen();
         let echoes_of = |atom: &Atom| {
@@ -48,17 +49,17 @@ impl<'a> Dictionary<'a> {
         let mut columns = 0;
         for atom in atoms {
             first_column.push(columns);
-            columns += 1 + if derivatives { atom.parameters() } else { 0 };
+            columns += 1 + if derivatives { atom.parameter_count() } else { 0 };
         }
         Dictionary { sensor, moments, atoms, echoes, first_column, columns, derivatives }
     }
 
-    /// Inner products of all columns at the first and at the last end.
+    /// Gram matrices of the first and of the last end, `[columns, columns]`.
     pub fn grams(&self) -> [Mat<Complex64>; 2] {
         let n = self.atoms.len();
-        let rows: Vec<Vec<(usize, BlockOfAtoms)>> = (0..2 * n)
+        let rows: Vec<Vec<(usize, AtomProducts)>> = (0..2 * n)
             .into_par_iter()
-            .map(|at| Simd::chosen().run(Row { dictionary: self, i: at / 2, end: at % 2 }))
+            .map(|at| Simd::chosen().run(GramRow { dictionary: self, i: at / 2, end: at % 2 }))
             .collect();
         let mut grams = [Mat::zeros(self.columns, self.columns), Mat::zeros(self.columns, self.columns)];
         for (at, row) in rows.into_iter().enumerate() {
@@ -76,7 +77,7 @@ impl<'a> Dictionary<'a> {
         grams
     }
 
-    /// Inner products of all columns with a residual at the first and at the last end, from those of the reflectors' echoes.
+    /// Inner products of the columns with a residual at the first and at the last end, `[columns]`, from `products`, those of each reflector's echo.
     pub fn slopes(&self, products: &[Products]) -> [Vec<Complex64>; 2] {
         let mut slopes = [vec![Complex64::default(); self.columns], vec![Complex64::default(); self.columns]];
         let [rate, drift] = self.sensor.radians_per_metre_over_chirp();
@@ -92,8 +93,8 @@ impl<'a> Dictionary<'a> {
                     slopes[0] += zeroth;
                     if self.derivatives {
                         let along = Complex64::new(-part.decay.0[lane], -rate) * zeroth - Complex64::I * drift * first;
-                        for p in 0..atom.parameters() {
-                            let [x, half_square] = atom.share(member, p);
+                        for p in 0..atom.parameter_count() {
+                            let [x, half_square] = atom.derivatives(member, p);
                             slopes[1 + p] +=
                                 along * (x * part.by_x.0[lane] + half_square * part.by_half_square.0[lane]);
                         }
@@ -105,10 +106,10 @@ impl<'a> Dictionary<'a> {
     }
 
     fn width(&self, atom: usize) -> usize {
-        1 + if self.derivatives { self.atoms[atom].parameters() } else { 0 }
+        1 + if self.derivatives { self.atoms[atom].parameter_count() } else { 0 }
     }
 
-    /// Whether two echoes at one end are so far apart in range that they are orthogonal.
+    /// Whether two echoes are so far apart in range at one end that they count as orthogonal.
     #[inline(always)]
     fn are_apart(&self, a: &Echo, b: &Echo, end: usize) -> bool {
         let middle =
@@ -117,26 +118,25 @@ impl<'a> Dictionary<'a> {
         bins.min((self.sensor.samples as f64 - bins).abs()) > self.moments.reach_bins
     }
 
-    /// Inner products of two echoes and their derivatives at one end.
     #[inline(always)]
-    fn block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> Block {
-        if self.derivatives { self.whole_block::<FMA>(a, b, end) } else { self.value_block::<FMA>(a, b, end) }
+    fn block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> EchoProducts {
+        if self.derivatives { self.derivative_block::<FMA>(a, b, end) } else { self.value_block::<FMA>(a, b, end) }
     }
 
     #[inline(always)]
-    fn value_block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> Block {
+    fn value_block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> EchoProducts {
         let mut sum = ComplexLanes::zero();
         for (a, b) in a.end(end).iter().zip(b.end(end)) {
             let m = self.moments.at::<false, FMA>(b.bins - a.bins);
             sum = sum + a.middle.conj().times::<FMA>(b.middle).scaled(m.zeroth);
         }
-        let mut out = Block::default();
+        let mut out = EchoProducts::default();
         out[0][0] = total(sum);
         out
     }
 
     #[inline(always)]
-    fn whole_block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> Block {
+    fn derivative_block<const FMA: bool>(&self, a: &Echo, b: &Echo, end: usize) -> EchoProducts {
         let [rate, drift] = self.sensor.radians_per_metre_over_chirp().map(Lanes::<f64, W>::splat);
         let mut sums = [[ComplexLanes::zero(); 3]; 3];
         for (a, b) in a.end(end).iter().zip(b.end(end)) {
@@ -170,53 +170,43 @@ fn total(v: ComplexLanes<f64, W>) -> Complex64 {
     Complex64::new(v.re.total(), v.im.total())
 }
 
-/// Inner products of one atom with all before it and with itself, at one end.
-struct Row<'a, 'b> {
+/// Kernel of the inner products of atom `i` with those up to itself at one end; orthogonal ones are left out.
+struct GramRow<'a, 'b> {
     dictionary: &'a Dictionary<'b>,
     i: usize,
     end: usize,
 }
 
-impl Kernel for Row<'_, '_> {
-    type Output = Vec<(usize, BlockOfAtoms)>;
+impl Kernel for GramRow<'_, '_> {
+    type Output = Vec<(usize, AtomProducts)>;
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let Row { dictionary: d, i, end } = self;
+        let GramRow { dictionary: d, i, end } = self;
         let mut row = Vec::new();
         for j in 0..=i {
-            let mut sums = BlockOfAtoms::default();
-            let mut touched = false;
+            let mut sums = AtomProducts::default();
+            let mut is_coupled = false;
             for (k, a) in d.echoes[i].iter().enumerate() {
-                // Of an atom with itself every two reflectors are visited once; the other order is the conjugate transpose.
+                // In an atom each two reflectors are visited once: the other order is the conjugate transpose.
                 let others = if j == i { k } else { d.echoes[j].len() };
                 for (l, b) in d.echoes[j][..others].iter().enumerate() {
                     if d.are_apart(a, b, end) {
                         continue;
                     }
-                    touched = true;
-                    add_shared(
-                        &mut sums,
-                        &d.block::<FMA>(a, b, end),
-                        (&d.atoms[i], k),
-                        (&d.atoms[j], l),
-                        d.derivatives,
-                    );
+                    is_coupled = true;
+                    let block = d.block::<FMA>(a, b, end);
+                    add_by_parameters(&mut sums, &block, (&d.atoms[i], k), (&d.atoms[j], l), d.derivatives);
                 }
             }
             if j == i {
                 sums = plus_adjoint(sums);
                 for (k, a) in d.echoes[i].iter().enumerate() {
-                    add_shared(
-                        &mut sums,
-                        &d.block::<FMA>(a, a, end),
-                        (&d.atoms[i], k),
-                        (&d.atoms[i], k),
-                        d.derivatives,
-                    );
+                    let (own, block) = ((&d.atoms[i], k), d.block::<FMA>(a, a, end));
+                    add_by_parameters(&mut sums, &block, own, own, d.derivatives);
                 }
             }
-            if touched || j == i {
+            if is_coupled || j == i {
                 row.push((j, sums));
             }
         }
@@ -225,15 +215,15 @@ impl Kernel for Row<'_, '_> {
 }
 
 /// The sum of a block and its conjugate transpose.
-fn plus_adjoint(block: BlockOfAtoms) -> BlockOfAtoms {
+fn plus_adjoint(block: AtomProducts) -> AtomProducts {
     std::array::from_fn(|p| std::array::from_fn(|q| block[p][q] + block[q][p].conj()))
 }
 
-/// Adds a block of two reflectors to that of their atoms' parameters.
+/// Adds the products of two reflectors, numbers `k` and `l` of their atoms, to those of the atoms by the chain rule.
 #[inline(always)]
-fn add_shared(
-    sums: &mut BlockOfAtoms,
-    block: &Block,
+fn add_by_parameters(
+    sums: &mut AtomProducts,
+    block: &EchoProducts,
     (left, k): (&Atom, usize),
     (right, l): (&Atom, usize),
     derivatives: bool,
@@ -242,16 +232,16 @@ fn add_shared(
     if !derivatives {
         return;
     }
-    for q in 0..right.parameters() {
-        let [x, h] = right.share(l, q);
+    for q in 0..right.parameter_count() {
+        let [x, h] = right.derivatives(l, q);
         sums[0][1 + q] += block[0][1] * x + block[0][2] * h;
     }
-    for p in 0..left.parameters() {
-        let [x, h] = left.share(k, p);
+    for p in 0..left.parameter_count() {
+        let [x, h] = left.derivatives(k, p);
         let line: [Complex64; 3] = std::array::from_fn(|c| block[1][c] * x + block[2][c] * h);
         sums[1 + p][0] += line[0];
-        for q in 0..right.parameters() {
-            let [x, h] = right.share(l, q);
+        for q in 0..right.parameter_count() {
+            let [x, h] = right.derivatives(l, q);
             sums[1 + p][1 + q] += line[1] * x + line[2] * h;
         }
     }
@@ -261,24 +251,24 @@ fn add_shared(
 mod tests {
     use super::*;
     use crate::radar::{Radar, hann};
-    use crate::reconstruct::fit::echoes::{Asked, Samples, remainder};
+    use crate::reconstruct::fit::echoes::{ProductKind, Samples, remainder};
 
-    const WALL: Atom = Atom::Segment { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 5 };
+    const WALL: Atom = Atom::Row { x_metres: -4.0, y_metres: 9.0, dx_metres: 0.03, dy_metres: 0.1, count: 5 };
 
     /// The echo of `atom` in the samples of both ends.
     fn value(sensor: &Sensor, atom: &Atom) -> Vec<Complex64> {
         let silence = Samples::new(sensor, &vec![Complex64::default(); sensor.sample_count()]);
         let echoes: Vec<_> = atom.reflectors(1.0).map(|r| (r, [Complex64::from(-1.0); 2])).collect();
-        remainder(sensor, &vec![1.0; sensor.samples], &silence, &echoes, Asked::Nothing).residual.flat(sensor)
+        remainder(sensor, &vec![1.0; sensor.samples], &silence, &echoes, ProductKind::None).residual.flat(sensor)
     }
 
     fn columns(sensor: &Sensor, window: &[f64], atoms: &[Atom]) -> Vec<Vec<Complex64>> {
         let mut out = Vec::new();
         for atom in atoms {
             out.push(value(sensor, atom));
-            for k in 0..atom.parameters() {
+            for k in 0..atom.parameter_count() {
                 let moved = |h: f64| {
-                    let mut step = vec![0.0; atom.parameters()];
+                    let mut step = vec![0.0; atom.parameter_count()];
                     step[k] = h;
                     value(sensor, &atom.moved(&step))
                 };
@@ -334,7 +324,7 @@ mod tests {
         let dictionary = Dictionary::new(&sensor, &moments, &atoms, true);
         let echoes: Vec<_> =
             atoms.iter().flat_map(|a| a.reflectors(1.0)).map(|r| (r, [Complex64::default(); 2])).collect();
-        let left = remainder(&sensor, &squared, &Samples::new(&sensor, &target), &echoes, Asked::Slopes);
+        let left = remainder(&sensor, &squared, &Samples::new(&sensor, &target), &echoes, ProductKind::Slopes);
         let slopes = dictionary.slopes(&left.products);
         let end_len = sensor.sample_count() / 2;
         for (c, column) in columns(&sensor, &window, &atoms).iter().enumerate() {

@@ -1,22 +1,22 @@
-//! Least squares on the samples of both ends: places and gains of reflectors or lines of them, by the exact near-field model.
+//! Least-squares fits of places and gains of reflectors, or of rows of them, to the samples of both ends, by the exact near-field model.
 //!
-//! The search (`search`) and the coherent methods (`coherent`) fit with it. It proposes nothing and judges nothing.
+//! The search (`search`) and the coherent methods (`coherent`) use it; candidates and decisions are theirs.
 //!
 //! | file | content |
 //! |---|---|
-//! | `atom` | the dictionary: one reflector, or a line of them |
-//! | `sensor` | geometry of both ends |
-//! | `echo` | one reflector's echo at each channel |
-//! | `echoes` | sums of reflectors' echoes in the samples, and their products with a residual |
-//! | `moments` | inner products of two echoes: moments of the window |
+//! | `atom` | one reflector, or a row of them |
+//! | `sensor` | geometry of both ends' channels |
+//! | `echo` | phase, amplitude and derivatives of a reflector's echo at each channel |
+//! | `echoes` | samples without echoes, and the echoes' products with them |
+//! | `moments` | moments of the window, for inner products of two echoes |
 //! | `gram` | the banded Gram matrix of atoms and their derivatives |
 //! | `solver` | small systems that may be nearly singular |
-//! | `refine` | Levenberg-Marquardt on positions, gains projected out |
-//! | `alone` | one atom by itself |
+//! | `refine` | Levenberg-Marquardt steps of places, gains projected out |
+//! | `alone` | the fit of a single atom |
 //! | `groups` | atoms that are neighbours in range |
-//! | `narrow` | a fit within the range bins around an atom |
-//! | `profile` | unexplained energy over range |
-//! | `work` | a bound on work, counted and not timed |
+//! | `range_gate` | a fit within the range bins around an atom |
+//! | `profile` | energy of a residual over range |
+//! | `work` | a budget of work, counted and not timed |
 
 mod alone;
 mod atom;
@@ -25,8 +25,8 @@ mod echoes;
 mod gram;
 mod groups;
 mod moments;
-mod narrow;
 mod profile;
+mod range_gate;
 mod refine;
 mod sensor;
 mod solver;
@@ -34,8 +34,8 @@ mod work;
 
 pub use atom::Atom;
 pub use echoes::Samples;
-pub use groups::{Rows, distance_bins, groups, rows_of};
-pub use narrow::{Narrow, Spectra};
+pub use groups::{BinSpans, bin_spans, distance_bins, groups};
 pub use profile::{Profile, union_of};
-pub use refine::{Fit, Gains, Limits, Tie, Workbench};
+pub use range_gate::{RangeGate, Spectra};
+pub use refine::{Fit, Fitter, Gains, Limits, Tie};
 pub use solver::damped_step;

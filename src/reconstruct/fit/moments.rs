@@ -1,8 +1,7 @@
-//! Moments of a window over a chirp: the inner products of two echoes.
+//! Moments of a window over a chirp, from which the inner products of two echoes and of their derivatives follow.
 //!
-//! Two echoes of a chirp differ by a tone of some range bins; their inner product and those of their derivatives are sums of the
-//! squared window times powers of time times that tone. Under a window whose side lobes fall fast they vanish some bins away, so that
-//! the Gram matrix of many echoes is banded.
+//! The product of two echoes in a chirp is a tone, whose frequency is the difference of their ranges. So the inner products are sums of the squared
+//! window times powers of time times that tone. Under a window whose side lobes fall fast they vanish some bins away, and the Gram matrix is banded.
 
 use super::sensor::W;
 use crate::signal::simd::Lanes;
@@ -14,52 +13,51 @@ use std::sync::Arc;
 /// Nodes of the table for each range bin.
 const NODES_PER_BIN: usize = 8;
 
-/// Terms of the Taylor series around each node, and how far from it, in range bins, they reach: the last ones are below 1e-14 of the first there.
-const TERMS: usize = 18;
-const MAX_SERIES_ARGUMENT: f64 = 0.3;
+/// Number of terms of the Taylor series around each node, and the largest distance from the node, range bins, for which it is used. The last terms are
+/// below 1e-14 of the first there.
+const TAYLOR_TERMS: usize = 18;
+const MAX_NODE_DISTANCE_BINS: f64 = 0.3;
 
-/// Bins beyond which echoes under a Hann window count as orthogonal: the square of the window falls by 180 dB there.
+/// Distance in range beyond which echoes under a Hann window count as orthogonal: the transform of the squared window is 180 dB down there.
 const HANN_REACH_BINS: f64 = 12.0;
 
 /// `sum over t of w(t)^2 tau^m exp(2 pi j d tau)` for m = 0, 1, 2 over the difference d in range bins, with tau = (t - middle) / samples.
 #[derive(Debug, Clone)]
 pub struct Moments {
-    /// Taylor coefficients of the moment of order 0 around every node.
-    table: Arc<Vec<[f64; TERMS]>>,
-    /// Number of range bins after which the range repeats.
+    /// Taylor coefficients of the moment of order 0 around each node, `[node][term]`.
+    table: Arc<Vec<[f64; TAYLOR_TERMS]>>,
+    /// Number of range bins, after which the range repeats.
     bins: f64,
-    /// Sign of the phase at the chirp's middle after a wrap of the range by all bins.
+    /// Factor of a moment after a wrap of the range, 1 or -1: the phase is that at the chirp's middle.
     wrap_sign: f64,
-    /// Largest difference in bins at which echoes are not orthogonal.
+    /// Largest difference, range bins, at which echoes don't count as orthogonal.
     pub reach_bins: f64,
 }
 
-/// The moments of order 0, 1 and 2 at some neighbouring channels.
+/// The moments of order 0, 1 and 2, a channel in each lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentsAt {
-    /// The moment of order 0.
     pub zeroth: Lanes<f64, W>,
-    /// The moment of order 1, over j.
+    /// The moment of order 1 divided by j.
     pub first: Lanes<f64, W>,
-    /// The moment of order 2.
     pub second: Lanes<f64, W>,
 }
 
 impl Moments {
-    /// The moments of a symmetric window of any length.
+    /// The moments of a symmetric `window`, `[samples]`.
     #[allow(clippy::needless_range_loop)] // a term is a column of the table
     pub fn new(window: &[f64]) -> Self {
         let samples = window.len();
         let nodes = samples * NODES_PER_BIN;
         let middle = (samples as f64 - 1.0) / 2.0;
         let fft = FftPlanner::new().plan_fft_inverse(nodes);
-        let mut table = vec![[0.0; TERMS]; nodes];
-        // Referred to the middle of the chirp; nodes in the upper half stand for negative differences.
-        let d = |node: usize| signed(node, nodes) / NODES_PER_BIN as f64;
+        let mut table = vec![[0.0; TAYLOR_TERMS]; nodes];
+        // The phase is referred to the middle of the chirp. Nodes of the upper half are negative differences.
+        let d = |node: usize| signed_node(node, nodes) / NODES_PER_BIN as f64;
         let turns: Vec<Complex64> =
             (0..nodes).map(|node| Complex64::cis(-TAU * (d(node) * middle / samples as f64).fract())).collect();
         let mut factorial = 1.0;
-        for term in 0..TERMS {
+        for term in 0..TAYLOR_TERMS {
             factorial *= term.max(1) as f64;
             let mut line = vec![Complex64::default(); nodes];
             for (t, w) in window.iter().enumerate() {
@@ -69,7 +67,7 @@ impl Moments {
             fft.process(&mut line);
             for (node, v) in line.iter().enumerate() {
                 let turned = v * turns[node];
-                // j^term times a real number, or that times j.
+                // A real number times a power of j.
                 table[node][term] = match term % 4 {
                     0 => turned.re,
                     1 => -turned.im,
@@ -85,19 +83,19 @@ impl Moments {
         Moments { table: Arc::new(table), bins: samples as f64, wrap_sign, reach_bins: reach }
     }
 
-    /// The same window over chirps of so many samples, an even part of the original number.
+    /// The moments for chirps of `samples`, an integer fraction of the number of before.
     pub fn sampled_as(&self, samples: usize) -> Self {
         let wrap_sign = if samples.is_multiple_of(2) { -1.0 } else { 1.0 };
         Moments { bins: samples as f64, wrap_sign, ..self.clone() }
     }
 
-    /// The moments at differences of `bins`, which may exceed the number of range bins, since ranges wrap. The orders above 0 only if `ALL`.
+    /// The moments at differences of `bins`, which wrap at the number of range bins. Orders 1 and 2 are 0 unless `ALL`.
     #[inline(always)]
     pub fn at<const ALL: bool, const FMA: bool>(&self, bins: Lanes<f64, W>) -> MomentsAt {
-        // Channels of an end differ by parts of a bin: mostly one node serves all.
+        // The channels of an end mostly differ by so little that one node is near all.
         let (node, line, sign) = self.node(bins.0[W / 2]);
         let gaps = bins - Lanes::splat(node / NODES_PER_BIN as f64);
-        if gaps.0.iter().all(|gap| gap.abs() <= MAX_SERIES_ARGUMENT) {
+        if gaps.0.iter().all(|gap| gap.abs() <= MAX_NODE_DISTANCE_BINS) {
             return taylor::<ALL, FMA>(gaps, Lanes::splat(sign), |term| Lanes::splat(line[term]));
         }
         let nodes = bins.0.map(|bins| self.node(bins));
@@ -107,9 +105,9 @@ impl Moments {
         })
     }
 
-    /// The node next to a difference, counted from the one at 0, its coefficients, and the sign of its wraps.
+    /// The node nearest to a difference, its coefficients, and the factor of the wraps.
     #[inline(always)]
-    fn node(&self, bins: f64) -> (f64, &[f64; TERMS], f64) {
+    fn node(&self, bins: f64) -> (f64, &[f64; TAYLOR_TERMS], f64) {
         let wraps = (bins / self.bins).round();
         let node = (bins * NODES_PER_BIN as f64).round();
         let index = (node - wraps * self.bins * NODES_PER_BIN as f64) as i64;
@@ -118,7 +116,7 @@ impl Moments {
     }
 }
 
-/// The Taylor series of these coefficients and of its first two derivatives, as moments.
+/// The moments at distances `h` from a node, by the Taylor series and its first two derivatives.
 #[inline(always)]
 fn taylor<const ALL: bool, const FMA: bool>(
     h: Lanes<f64, W>,
@@ -126,19 +124,21 @@ fn taylor<const ALL: bool, const FMA: bool>(
     coefficients: impl Fn(usize) -> Lanes<f64, W>,
 ) -> MomentsAt {
     let zero = Lanes::splat(0.0);
-    let (mut value, mut slope, mut bend) = (coefficients(TERMS - 1), zero, zero);
-    for term in (0..TERMS - 1).rev() {
+    let (mut value, mut slope, mut half_curvature) = (coefficients(TAYLOR_TERMS - 1), zero, zero);
+    for term in (0..TAYLOR_TERMS - 1).rev() {
         if ALL {
-            bend = bend.mul_add::<FMA>(h, slope);
+            half_curvature = half_curvature.mul_add::<FMA>(h, slope);
             slope = slope.mul_add::<FMA>(h, value);
         }
         value = value.mul_add::<FMA>(h, coefficients(term));
     }
-    let per = |v: f64| sign * Lanes::splat(v);
-    MomentsAt { zeroth: value * sign, first: slope * per(-1.0 / TAU), second: bend * per(-2.0 / (TAU * TAU)) }
+    let scaled = |v: f64| sign * Lanes::splat(v);
+    let second = half_curvature * scaled(-2.0 / (TAU * TAU));
+    MomentsAt { zeroth: value * sign, first: slope * scaled(-1.0 / TAU), second }
 }
 
-fn signed(node: usize, nodes: usize) -> f64 {
+/// The number of a node, negative in the upper half.
+fn signed_node(node: usize, nodes: usize) -> f64 {
     if node > nodes / 2 { node as f64 - nodes as f64 } else { node as f64 }
 }
 

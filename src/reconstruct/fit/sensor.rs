@@ -1,4 +1,4 @@
-//! The two ends as a measuring device: positions of their channels, and phases of echoes.
+//! Geometry of both ends' channels, and the phase of an echo over distance and time.
 
 use crate::radar::{End, Pair, Radar};
 use crate::scene::Reflector;
@@ -7,26 +7,27 @@ use crate::signal::simd::LANES_F64;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Nearest a reflector may come to an element in a fit, metres: keeps a wandering step finite.
-pub const NEAREST_METRES: f64 = 1e-3;
+/// Least distance of a reflector from an antenna in a fit, metres: amplitudes are divided by its square.
+pub const MIN_DISTANCE_METRES: f64 = 1e-3;
 
-/// Channels evaluated together, one lane each.
+/// Channels that are computed together, one in each lane.
 pub const W: usize = LANES_F64;
 
-/// Geometry and constants of both ends. A vector over all samples of both ends is laid out channel by channel, first end first.
+/// Geometry and constants of both ends. A channel is an element of an end; those of the first end come first.
 #[derive(Debug, Clone)]
 pub struct Sensor {
     pub model: EchoModel,
-    /// x of every channel's element, metres, first end first.
+    /// x of each channel's element, metres.
     pub element_x: Vec<f64>,
-    /// Antennas of every channel's element, first end first.
+    /// Antennas of each channel's element.
     pub pairs: Vec<Pair>,
-    /// Whether each element transmits and receives by itself.
+    /// Whether each element transmits and receives.
     pub is_monostatic: bool,
+    /// Samples of a chirp.
     pub samples: usize,
     pub end_elements: usize,
-    /// Whether each channel has samples: a silent one has no echoes.
-    pub hears: Vec<bool>,
+    /// Whether each channel has samples; one without has no echoes.
+    pub has_samples: Vec<bool>,
     carrier_radians_per_metre: f64,
     beat_radians_per_metre: f64,
 }
@@ -41,51 +42,47 @@ impl Sensor {
             is_monostatic: radar.is_monostatic(),
             samples: radar.samples,
             end_elements: radar.end_elements,
-            hears: vec![true; 2 * radar.end_elements],
+            has_samples: vec![true; 2 * radar.end_elements],
             carrier_radians_per_metre: TAU * radar.carrier.turns_per_wavelength() / radar.wavelength_metres(),
             beat_radians_per_metre: TAU / radar.max_range_metres(),
         }
     }
 
-    /// The sensor with the channels of `flat` that aren't silent; `flat` are the samples channel by channel.
-    pub fn hearing(mut self, flat: &[Complex64]) -> Self {
-        for (hears, channel) in self.hears.iter_mut().zip(flat.chunks_exact(self.samples)) {
-            *hears = channel.iter().any(|v| v.norm_sqr() > 0.0);
+    /// The sensor for the channels of `flat`, `[channels * samples]`, that are not all zero.
+    pub fn with_channels_of(mut self, flat: &[Complex64]) -> Self {
+        for (has_samples, channel) in self.has_samples.iter_mut().zip(flat.chunks_exact(self.samples)) {
+            *has_samples = channel.iter().any(|v| v.norm_sqr() > 0.0);
         }
         self
     }
 
+    /// The sensor for chirps with the samples of `radar`.
     pub fn sampled_as(&self, radar: &Radar) -> Self {
-        Sensor { hears: self.hears.clone(), ..Sensor::new(radar) }
+        Sensor { has_samples: self.has_samples.clone(), ..Sensor::new(radar) }
     }
 
-    /// Samples of both ends together.
+    /// Number of samples of both ends together.
     pub fn sample_count(&self) -> usize {
         self.element_x.len() * self.samples
     }
 
-    /// Distance at which the carrier's phase repeats.
+    /// Distance after which the carrier's phase repeats, metres.
     pub fn wavelength_metres(&self) -> f64 {
         TAU / self.carrier_radians_per_metre.abs()
     }
 
-    /// Phase of sample `n` for each metre of distance.
-    #[inline(always)]
-    fn radians_per_metre(&self, n: f64) -> f64 {
-        self.carrier_radians_per_metre + self.beat_radians_per_metre * n
-    }
-
-    /// Phase for each metre of distance at the middle of the chirp, and its growth over the whole chirp.
+    /// Phase for each metre of distance at the middle of the chirp, and its increase over the whole chirp, radians.
     pub fn radians_per_metre_over_chirp(&self) -> [f64; 2] {
         let middle = (self.samples as f64 - 1.0) / 2.0;
-        [self.radians_per_metre(middle), self.beat_radians_per_metre * self.samples as f64]
+        let at_middle = self.carrier_radians_per_metre + self.beat_radians_per_metre * middle;
+        [at_middle, self.beat_radians_per_metre * self.samples as f64]
     }
 }
 
-/// `r`, moved so that its distance from every element is large enough to divide by.
-pub fn kept_apart(sensor: &Sensor, r: &Reflector) -> Reflector {
-    let is_near = |[x, y]: &[f64; 2]| (x - r.x_metres).powi(2) + (y - r.y_metres).powi(2) < NEAREST_METRES.powi(2);
+/// `r`, moved ahead of an antenna that is nearer than [`MIN_DISTANCE_METRES`].
+pub fn with_min_distance(sensor: &Sensor, r: &Reflector) -> Reflector {
+    let is_near = |[x, y]: &[f64; 2]| (x - r.x_metres).powi(2) + (y - r.y_metres).powi(2) < MIN_DISTANCE_METRES.powi(2);
     let nearest = sensor.pairs.iter().flat_map(Pair::places_metres).find(is_near);
-    let y_metres = nearest.map_or(r.y_metres, |[_, y]| y + NEAREST_METRES);
+    let y_metres = nearest.map_or(r.y_metres, |[_, y]| y + MIN_DISTANCE_METRES);
     Reflector { y_metres, ..*r }
 }

@@ -5,14 +5,14 @@ use faer::{Mat, Side};
 use num_complex::Complex64;
 
 /// Cholesky solver of a positive semi-definite Hermitian system. The matrix is scaled to unit diagonal, and a ridge is added to it.
-pub struct Ridge {
+pub struct RidgeSolver {
     /// The Cholesky factor; `None` where no ridge made the matrix positive definite.
     factor: Option<Llt<Complex64>>,
     /// Inverse square roots of the diagonal.
     scale: Vec<f64>,
 }
 
-impl Ridge {
+impl RidgeSolver {
     /// Factors `matrix`, `[n, n]`, with `ridge` times its diagonal added. The ridge is raised to 1e-14, 1e-11, 1e-8 or 1e-4, the first of them that
     /// makes the matrix positive definite.
     pub fn new(matrix: &Mat<Complex64>, ridge: f64) -> Self {
@@ -25,7 +25,7 @@ impl Ridge {
                 Mat::from_fn(n, n, |i, j| matrix[(i, j)] * (scale[i] * scale[j]) + if i == j { ridge } else { 0.0 });
             scaled.llt(Side::Lower).ok()
         });
-        Ridge { factor, scale }
+        RidgeSolver { factor, scale }
     }
 
     /// The solution for the right-hand sides `rhs`; both are `[n, right-hand sides]`. Zeros where no ridge made the matrix positive definite.

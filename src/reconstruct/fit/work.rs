@@ -1,44 +1,43 @@
-//! A bound on the work of a search: counted and not timed, so that the search ends at the same place on every machine.
+//! A budget of work, counted and not timed, so that a search ends with the same result on every machine.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Work done and granted. The unit is about the time of one reflector's echo in all samples of both ends: ten microseconds.
+/// Work done and its limit. The unit is about ten microseconds, the time of one reflector's echo in all samples of both ends.
 #[derive(Debug)]
-pub struct Work {
+pub struct WorkBudget {
     done: AtomicUsize,
-    most: usize,
+    limit: usize,
 }
 
-impl Work {
-    /// A budget of `most` units.
-    pub fn granted(most: usize) -> Self {
-        Work { done: AtomicUsize::new(0), most }
+impl WorkBudget {
+    pub fn new(limit: usize) -> Self {
+        WorkBudget { done: AtomicUsize::new(0), limit }
     }
 
-    /// Counts work; any thread may call it.
+    /// Adds `units` to the work done; any thread may call it.
     pub fn spend(&self, units: usize) {
         self.done.fetch_add(units, Ordering::Relaxed);
     }
 
-    /// Grants as much as makes the remaining work at least `units`.
+    /// Lowers the work done so far that `units` remain at least.
     pub fn grant(&self, units: usize) {
-        let done = self.most.saturating_sub(units);
+        let done = self.limit.saturating_sub(units);
         self.done.fetch_min(done, Ordering::Relaxed);
     }
 
-    /// Gives up the remaining work.
-    pub fn give_up(&self) {
-        self.done.fetch_max(self.most, Ordering::Relaxed);
+    /// Uses up the budget.
+    pub fn exhaust(&self) {
+        self.done.fetch_max(self.limit, Ordering::Relaxed);
     }
 
-    /// The work done; call it where nothing runs in parallel.
+    /// The work done. It is the same each time only where nothing runs in parallel.
     pub fn done(&self) -> usize {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// Whether the granted work is done. Call it where nothing runs in parallel: only there is the answer the same every time.
+    /// Whether the budget is used up. The result is the same each time only where nothing runs in parallel.
     pub fn is_spent(&self) -> bool {
-        self.done.load(Ordering::Relaxed) >= self.most
+        self.done.load(Ordering::Relaxed) >= self.limit
     }
 }
 
@@ -48,7 +47,7 @@ mod tests {
 
     #[test]
     fn what_is_granted_is_spent() {
-        let work = Work::granted(10);
+        let work = WorkBudget::new(10);
         work.spend(9);
         assert!(!work.is_spent());
         work.spend(1);
@@ -60,7 +59,7 @@ mod tests {
         work.spend(1);
         assert!(work.is_spent());
         work.grant(10);
-        work.give_up();
+        work.exhaust();
         assert!(work.is_spent());
     }
 }

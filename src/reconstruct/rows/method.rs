@@ -6,7 +6,7 @@ use super::row::RowSnapshot;
 use crate::maps::peaks::{Peak as MapPeak, peaks as map_peaks};
 use crate::maps::{Spectrum, range_transform};
 use crate::radar::{End, Radar};
-use crate::reconstruct::coherent::{Peak, explained, gains};
+use crate::reconstruct::coherent::{Peak, found_in_residuals, gains};
 use crate::reconstruct::echoes::of_echoes;
 use crate::reconstruct::error::Result;
 use crate::reconstruct::hearing::{Hearing, ends_noise_variance};
@@ -89,7 +89,7 @@ impl Reconstructor for RowMethod {
         let found = if radar.samples == 1 {
             gains(radar, &look(ends)?, ends, &request.task)?
         } else {
-            explained(radar, ends, &request.task, look)?
+            found_in_residuals(radar, ends, &request.task, look)?
         };
         Ok(of_echoes(radar, ends, &found, noise_variance, request))
     }

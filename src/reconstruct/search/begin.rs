@@ -1,121 +1,119 @@
-//! Beginnings of walls: rows over two points or from the edge of a wall, tested against the samples.
+//! The test of candidates for rows against the samples.
 
-use super::grow::LOOK_ECHOES;
-use super::on_wall::is_on;
+use super::grow::DETECTION_WORK;
+use super::on_row::is_on_row;
 use super::propose::edges::rows_from_edges;
-use super::propose::end_beams::beam_noise_power;
 use super::propose::phased::PhasedBeams;
 use super::propose::strides::{MIN_REFLECTORS, rows_over_pairs};
 use super::state::{Search, tried};
 use super::trace::decades;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Profile, Rows, Spectra, rows_of};
+use crate::reconstruct::fit::{Atom, BinSpans, Fit, Profile, Spectra, bin_spans};
 use rayon::prelude::*;
 
-/// Rows that are held against the samples themselves at each look, and points, those first on which the ends agree best, that a wall may begin at
-/// alone: there is one row a point.
-const MOST_TRIED: usize = 24;
+/// Largest number of candidates from one source that are fitted to the samples, and of points from which edges are searched: each gives one row.
+const MAX_CANDIDATES: usize = 24;
 
-/// Least part of the energy in its range bins that a row must explain to be followed to its ends.
-const LEAST_BEGUN: f64 = 0.3;
+/// Least part of the energy in its range bins that a candidate explains, for its ends to be searched.
+const MIN_CANDIDATE_PART: f64 = 0.3;
 
-/// Reflectors of a wall, and the part that it must explain: the fewer, the more of them may be what makes up for something else.
-const LEAST_EXPLAINED: [(usize, f64); 2] = [(17, 0.85), (MIN_REFLECTORS, 0.97)];
+/// Least number of reflectors of a row, and least part of the energy in its range bins that it explains. Rows of few reflectors fit other objects too.
+const MIN_EXPLAINED_PARTS: [(usize, f64); 2] = [(17, 0.85), (MIN_REFLECTORS, 0.97)];
 
-/// This part for a long wall: a wrong row of so many reflectors explains little, and other objects may stand in its range bins.
-const LEAST_OF_LONG: f64 = 0.6;
+/// This part for a long row. A wrong row of so many reflectors explains little, and a right one shares its range bins with other objects.
+const MIN_LONG_ROW_PART: f64 = 0.6;
 
-/// Fewest reflectors of a long wall, and fewest range bins that it goes through.
-const LEAST_LONG: usize = 45;
+/// Least number of reflectors of a long row, and of range bins of its length.
+const MIN_LONG_ROW_REFLECTORS: usize = 45;
 
-/// Whether a wall that explains this part of the energy in its range bins can be believed.
-fn is_borne_out(radar: &Radar, wall: &Atom, explained: f64) -> bool {
-    let count = wall.reflector_count();
-    (is_long(radar, wall) && explained >= LEAST_OF_LONG)
-        || LEAST_EXPLAINED.iter().any(|&(least, part)| count >= least && explained >= part)
+/// Whether a row is accepted that explains the part `explained` of the energy in its range bins.
+fn is_accepted(radar: &Radar, row: &Atom, explained: f64) -> bool {
+    let count = row.reflector_count();
+    (is_long(radar, row) && explained >= MIN_LONG_ROW_PART)
+        || MIN_EXPLAINED_PARTS.iter().any(|&(least, part)| count >= least && explained >= part)
 }
 
-/// Whether `wall` has many reflectors, most of them told apart.
-fn is_long(radar: &Radar, wall: &Atom) -> bool {
-    let [first, last] = [0.0, wall.reflector_count() as f64 - 1.0].map(|i| wall.position_metres(i));
+/// Whether `row` has many reflectors, most of them resolved in range.
+fn is_long(radar: &Radar, row: &Atom) -> bool {
+    let [first, last] = [0.0, row.reflector_count() as f64 - 1.0].map(|i| row.position_metres(i));
     let bins = (last[0] - first[0]).hypot(last[1] - first[1]) / radar.range_resolution_metres();
-    wall.reflector_count() >= LEAST_LONG && bins >= LEAST_LONG as f64
+    row.reflector_count() >= MIN_LONG_ROW_REFLECTORS && bins >= MIN_LONG_ROW_REFLECTORS as f64
 }
 
-/// The residual in which another wall is searched.
-struct Left<'a> {
+/// The residual in which a row is searched.
+struct SearchedResidual<'a> {
     fit: &'a Fit,
     profile: Profile,
-    /// Energy that noise gives to a range bin of an end.
-    noise_a_bin: f64,
+    /// Energy of the noise in a range bin of an end.
+    noise_energy: f64,
     spectra: Spectra<'a>,
 }
 
-impl Left<'_> {
-    /// Energy in the range bins of a row, less that of the noise.
-    fn energy_at(&self, rows: &Rows) -> f64 {
-        self.profile.over_noise(rows, self.noise_a_bin).max(f64::MIN_POSITIVE)
+impl SearchedResidual<'_> {
+    /// Energy in range bins, without that of the noise.
+    fn energy(&self, spans: &BinSpans) -> f64 {
+        self.profile.energy_over_noise(spans, self.noise_energy).max(f64::MIN_POSITIVE)
     }
 }
 
-/// The first reflectors of a wall.
+/// The first reflectors of a row.
 #[derive(Debug, Clone, Copy)]
-struct Begun {
+struct Candidate {
     atom: Atom,
-    /// Part of the energy in their range bins that they explain.
-    part: f64,
+    /// Part of the energy in its range bins that it explains.
+    explained: f64,
 }
 
 impl Search<'_> {
-    /// A wall that begins at one of `points` (x, y; metres), followed to its ends in what `fit` leaves, that is borne out by how much it explains.
-    /// Points on the walls of `fit` are taken from `points`.
-    pub fn next_wall(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {
-        let flat = fit.residual.flat(&self.bench.sensor);
+    /// A row in the residual of `fit` that begins at one of `points` (x, y; metres) and explains enough. Points on the rows of `fit` are removed from
+    /// `points`.
+    pub fn next_row(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {
+        let flat = fit.residual.flat(&self.fitter.sensor);
         let profile = Profile::new(self.radar, &flat);
-        let noise_a_bin = beam_noise_power(self.radar, self.bench.hearing.noise_variance(self.radar, &flat));
-        let left = Left { fit, profile, noise_a_bin, spectra: Spectra::new(self.radar, self.bench, &fit.residual) };
+        let spectra = Spectra::new(self.radar, self.fitter, &fit.residual);
+        let residual = SearchedResidual { fit, profile, noise_energy: self.noise_power(&flat), spectra };
         points.retain(|&[x_metres, y_metres]| {
-            !fit.atoms.iter().any(|wall| is_on(wall, &Atom::Point { x_metres, y_metres }))
+            !fit.atoms.iter().any(|row| is_on_row(row, &Atom::Point { x_metres, y_metres }))
         });
-        self.bench.work.spend(LOOK_ECHOES / 10 * points.len());
+        self.fitter.work.spend(DETECTION_WORK / 10 * points.len());
         let beams = PhasedBeams::new(self.radar, &flat);
-        // Looks from one point alone take longest.
-        self.borne_out(&left, &rows_over_pairs(&beams, points, self.task)).or_else(|| {
-            let is_near = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
-            let first: Vec<[f64; 2]> = points.iter().filter(is_near).take(MOST_TRIED).copied().collect();
-            let from_edges = if self.is_long(&flat) { rows_from_edges(&beams, &first, self.task) } else { Vec::new() };
-            self.borne_out(&left, &from_edges)
+        // The search for edges takes longest.
+        self.accepted(&residual, &rows_over_pairs(&beams, points, self.task)).or_else(|| {
+            let is_unwrapped = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
+            let first: Vec<[f64; 2]> = points.iter().filter(is_unwrapped).take(MAX_CANDIDATES).copied().collect();
+            let from_edges = self.has_long_run(&flat).then(|| rows_from_edges(&beams, &first, self.task));
+            self.accepted(&residual, &from_edges.unwrap_or_default())
         })
     }
 
-    /// The row with the part that it explains, where it is, of the energy in its range bins.
-    fn begun(&self, left: &Left, atom: Atom) -> Begun {
-        let rows = rows_of(self.radar, &atom);
-        let near = left.spectra.around(&rows, 0.0);
-        let energy = near.energy - near.bench.solve_alone(&near.samples, atom).cost();
-        Begun { atom, part: energy / left.energy_at(&rows) }
+    fn candidate(&self, residual: &SearchedResidual, atom: Atom) -> Candidate {
+        let spans = bin_spans(self.radar, &atom);
+        let gate = residual.spectra.gate(&spans, 0.0);
+        let energy = gate.energy - gate.fitter.solve_alone(&gate.samples, atom).cost();
+        Candidate { atom, explained: energy / residual.energy(&spans) }
     }
 
-    /// The row that explains the greatest part of the energy in its range bins.
-    fn best_begun(&self, left: &Left, rows: &[Atom]) -> Option<Begun> {
-        let begun: Vec<Begun> = rows.par_iter().take(MOST_TRIED).map(|&atom| self.begun(left, atom)).collect();
+    /// The best of `rows`, if it is accepted with the ends that are found.
+    fn accepted(&self, residual: &SearchedResidual, rows: &[Atom]) -> Option<Fit> {
+        let fit = residual.fit;
+        let tested = rows.par_iter().take(MAX_CANDIDATES).map(|&atom| self.candidate(residual, atom));
+        let candidates: Vec<Candidate> = tested.collect();
         tracing::debug!(rows = rows.len(), "rows");
-        begun.into_iter().max_by(|a, b| a.part.total_cmp(&b.part))
-    }
-
-    /// The best of `rows`, if it is accepted after it was followed to its ends.
-    fn borne_out(&self, left: &Left, rows: &[Atom]) -> Option<Fit> {
-        let fit = left.fit;
-        let best = self.best_begun(left, rows).filter(|row| row.part > LEAST_BEGUN)?;
-        let wall = self.followed_to_its_ends(&fit.residual, best.atom);
-        let explained = (fit.cost() - wall.cost()) / left.energy_at(&rows_of(self.radar, &wall.atoms[0]));
-        tracing::debug!(?best, explained, before = fit.cost(), cost = wall.cost(), atom = ?wall.atoms[0], "wall");
-        let part = best.part.max(explained);
-        if is_borne_out(self.radar, &wall.atoms[0], part) {
-            return Some(wall);
+        let best = candidates.into_iter().max_by(|a, b| a.explained.total_cmp(&b.explained));
+        let best = best.filter(|row| row.explained > MIN_CANDIDATE_PART)?;
+        let row = self.extended_to_its_ends(&fit.residual, best.atom);
+        let explained = (fit.cost() - row.cost()) / residual.energy(&bin_spans(self.radar, &row.atoms[0]));
+        tracing::debug!(?best, explained, before = fit.cost(), cost = row.cost(), atom = ?row.atoms[0], "row");
+        let explained = best.explained.max(explained);
+        if is_accepted(self.radar, &row.atoms[0], explained) {
+            return Some(row);
         }
-        self.refuse(tried(&wall.atoms[0]), decades(fit.cost(), wall.cost()), Refusal::ExplainsTooLittle(part));
+        self.record_refusal(
+            tried(&row.atoms[0]),
+            decades(fit.cost(), row.cost()),
+            Refusal::ExplainsTooLittle(explained),
+        );
         None
     }
 }

@@ -1,142 +1,142 @@
-//! Gains of the ends' elements, estimated beside the objects: self-calibration.
+//! Self-calibration: gains of the ends' elements, estimated together with the objects.
 //!
-//! Elements that are off by some tenths of a decibel and some degrees leave a residual that no object explains. The search is told of loud noise
-//! first, so that it finds the strongest objects alone; each element's gain is fitted to them by least squares, and the noise that the search is told
-//! of falls, level by level. The gains are believed where they explain nearly all that was left without them.
+//! Elements with errors of some tenths of a decibel and some degrees cause a residual that no object explains. The search is given a high noise level
+//! first, so that it finds the strongest objects alone, and each element's gain is fitted to them by least squares. The level is lowered in steps. The
+//! gains are accepted where they remove nearly all of the residual.
 
 use super::element_gains::ElementGains;
 use super::finish::Found;
-use super::rungs::WORTH_ANOTHER;
+use super::rungs::MAX_ROUND_RESIDUAL_PART;
 use super::settings::Settings;
-use super::state::NEARLY_NOTHING;
-use super::trace::{CALIBRATION, MOST_ATTEMPTS, decades};
+use super::state::NEARLY_COMPLETE_RESIDUAL_PART;
+use super::trace::{CALIBRATION, MAX_ATTEMPTS, decades};
 use crate::radar::{Radar, hann};
 use crate::reconstruct::attempt::{Attempt, Verdict};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, Samples, Tie};
 use crate::reconstruct::hearing::range_energy;
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
-/// Noise that the search is told of, as a part of the samples' power, level by level. After the first two an offset and a slope of phase are taken
-/// from each end's gains: while places are rough, both are a place of all objects.
+/// Noise levels that the search is given, as parts of the samples' power. From the second on an offset and a slope of phase are subtracted from each
+/// end's gains: while places are inexact, both are a shift of all objects.
 const NOISE_LEVELS: [f64; 5] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4];
 
-/// Part of a search's work that is granted to a level: what takes longer is no scene of a few objects.
-const WORK_SHARE: usize = 4;
+/// Divisor of a search's budget for a level: only a scene of a few objects is calibrated.
+const LEVEL_WORK_DIVISOR: usize = 4;
 
-/// Turns of fitting the objects' gains and the elements' in a level.
-const TURNS: usize = 6;
+/// Alternating fits of the objects' gains and the elements' in a level.
+const LEVEL_TURNS: usize = 6;
 
-/// Maximum energy that a level leaves, as a part of the samples' energy.
+/// Largest residual of a level, as a part of the samples' energy.
 const MAX_LEVEL_ENERGY_RATIO: f64 = 0.3;
 
-/// Most turns of places, gains of objects and of elements after the last level.
+/// Largest number of alternating fits of places, objects' gains and elements' gains after the last level.
 const MAX_LAST_TURNS: usize = 30;
 
-/// Maximum energy that calibrated objects leave over the rounding floor, as a part of the samples' energy. More than that is an echo.
+/// Largest residual of calibrated objects over the rounding floor, as a part of the samples' energy. A larger one contains an echo.
 const MAX_ROUNDING_ENERGY_RATIO: f64 = 1e-6;
 
-/// Noise over what is left, as a ratio of powers: a level leaves at most that over the noise that its search was told of, and the last search is told of that
-/// over what the gains leave.
+/// Ratio of powers: the largest residual of a level over the noise level that its search was given, and the noise level that the last search is given
+/// over the residual of the gains.
 const NOISE_MARGIN_RATIO: f64 = 3.0;
 
-/// Least gain of an object that elements are fitted to, as a part of the strongest.
+/// Least gain of an object to which elements are fitted, over the largest.
 const MIN_GAIN_RATIO: f64 = 0.03;
 
-/// Price of an object's gain, as a part of its echo's energy.
+/// Ridge on objects' gains ([`Limits::ridge`]).
 const OBJECT_RIDGE: f64 = 1e-4;
 
-/// Mean square of an element's error before anything is known of it: 0.8 dB and 6 degrees.
-const EXPECTED_SQUARE: f64 = 0.02;
+/// Prior mean square of an element's error: 0.8 dB and 6 degrees.
+const EXPECTED_SQUARED_ERROR: f64 = 0.02;
 
-/// Gains that differ more from 1 in the mean square's root are no tolerances.
+/// Largest root mean square of the gains' differences from 1 that are tolerances of elements.
 const MAX_DEVIATION: f64 = 0.3;
 
-/// Maximum energy that calibrated objects leave over noise, as a part of the samples' energy.
+/// Largest residual of calibrated objects over white noise, as a part of the samples' energy.
 const MAX_ENERGY_RATIO: f64 = 1e-2;
 
-/// Maximum residual energy with gains of the elements, relative to the residual energy without them.
+/// Largest residual energy with gains of the elements, over that without them.
 const MAX_PLAIN_RATIO: f64 = 0.1;
 
-/// Whether the residual of objects found in samples is larger than equal elements would leave.
+/// Whether the residual of `plain` is larger than that of equal elements.
 pub(super) fn asks_for_gains(plain: &Found) -> bool {
-    !plain.complete && !plain.atoms.is_empty() && plain.drawn_left() > NEARLY_NOTHING
+    !plain.is_complete && !plain.atoms.is_empty() && plain.drawn_residual_part() > NEARLY_COMPLETE_RESIDUAL_PART
 }
 
-/// The objects in samples of equal elements, starting from those of an answer where there is one.
+/// The objects in samples of equal elements, from those of a previous answer if there is one.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub type SearchEnds<'a> = &'a dyn Fn(Option<&Found>, &TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
+pub type SearchFn<'a> = &'a dyn Fn(Option<&Found>, &TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
 
 /// The input of an estimate of the elements' gains.
 pub(super) struct Calibration<'a> {
-    /// Searches without gains.
-    pub search: SearchEnds<'a>,
+    pub search: SearchFn<'a>,
     pub radar: &'a Radar,
     /// Samples of a peak between 1 and 2.
     pub ends: &'a TwoEnds,
     pub request: &'a Request,
-    /// Limits of a search.
     pub settings: &'a Settings,
     /// The answer without gains.
     pub plain: &'a Found,
 }
 
-/// Gains of the elements, the objects in samples without them, and the remaining part of the samples' energy.
+/// Gains of the elements, and the objects in samples without them.
 struct Fitted {
     gains: ElementGains,
     fit: Fit,
-    left: f64,
+    /// Residual, as a part of the samples' energy.
+    residual_part: f64,
 }
 
 impl Calibration<'_> {
-    /// The objects with gains of the elements, where these explain most of the residual without them.
+    /// The objects with gains of the elements; `None` unless these explain most of the residual.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn found(&self) -> Result<Option<Found>, ReconstructError> {
-        let Some(Fitted { gains, fit, left }) = self.fitted()? else { return Ok(None) };
-        tracing::debug!(left, deviation = gains.deviation(), "gains");
+        let Some(Fitted { gains, fit, residual_part }) = self.fitted()? else { return Ok(None) };
+        tracing::debug!(residual_part, deviation = gains.deviation(), "gains");
         if gains.deviation() > MAX_DEVIATION {
             return Ok(None);
         }
-        let told = match self.request.noise.is_white() {
+        let request = match self.request.noise.is_white() {
             true => self.request.clone(),
-            false if left > MAX_ROUNDING_ENERGY_RATIO => return Ok(None),
-            false => self.over_noise(NOISE_MARGIN_RATIO * left),
+            false if residual_part > MAX_ROUNDING_ENERGY_RATIO => return Ok(None),
+            false => self.over_noise(NOISE_MARGIN_RATIO * residual_part),
         };
-        let start = Found { complete: true, atoms: fit.atoms, gains: fit.gains, ..self.plain.clone() };
-        let found = (self.search)(Some(&start), &gains.taken_from(self.ends), &told, self.settings)?;
-        let (left, before) = (found.drawn_left(), self.plain.drawn_left());
-        tracing::debug!(left, before, deviation = gains.deviation(), complete = found.complete, "calibrated");
-        let is_certain = found.complete || self.request.noise.is_white();
-        if !is_certain || left >= MAX_ENERGY_RATIO.min(MAX_PLAIN_RATIO * before) {
+        let start = Found { is_complete: true, atoms: fit.atoms, gains: fit.gains, ..self.plain.clone() };
+        let found = (self.search)(Some(&start), &gains.taken_from(self.ends), &request, self.settings)?;
+        let (after, before) = (found.drawn_residual_part(), self.plain.drawn_residual_part());
+        tracing::debug!(after, before, deviation = gains.deviation(), is_complete = found.is_complete, "calibrated");
+        let is_certain = found.is_complete || self.request.noise.is_white();
+        if !is_certain || after >= MAX_ENERGY_RATIO.min(MAX_PLAIN_RATIO * before) {
             return Ok(None);
         }
-        let kept = Attempt {
+        let attempt = Attempt {
             rung: CALIBRATION,
             tried: gains.tried(),
-            gain_decades: decades(before, left),
+            gain_decades: decades(before, after),
             verdict: Verdict::Kept,
             work: 0,
         };
-        let trace = std::iter::once(kept).chain(found.trace).take(MOST_ATTEMPTS).collect();
+        let trace = std::iter::once(attempt).chain(found.trace).take(MAX_ATTEMPTS).collect();
         Ok(Some(Found { element_gains: Some(gains), trace, ..found }))
     }
 
+    /// The request over white noise whose power is `part` of the samples'.
     fn over_noise(&self, part: f64) -> Request {
         let sigma = Some((part * self.plain.sample_power).sqrt());
         Request { noise: NoisePrior::White { sigma }, ..self.request.clone() }
     }
 
-    /// Gains of the elements after all levels; `None` where a level leaves much more than its noise.
+    /// Gains of the elements after all levels; `None` where the residual of a level is much larger than its noise.
     fn fitted(&self) -> Result<Option<Fitted>, ReconstructError> {
         let &Calibration { radar, ends, request, plain, .. } = self;
         let window = hann(radar.samples);
-        let bench = Workbench::new(radar, &window, &request.task, usize::MAX).hearing(&ends.flat());
-        let quick = Settings { most_work: self.settings.most_work / WORK_SHARE, ..*self.settings };
+        let fitter = Fitter::new(radar, &window, &request.task, usize::MAX).with_channels_of(&ends.flat());
+        let quick = Settings { max_work: self.settings.max_work / LEVEL_WORK_DIVISOR, ..*self.settings };
         let noise = if request.noise.is_white() { plain.noise_variance / plain.sample_power } else { 0.0 };
         let mut gains = ElementGains::ones(radar);
         let mut last = None;
@@ -146,24 +146,22 @@ impl Calibration<'_> {
             if atoms.is_empty() {
                 return Ok(None);
             }
-            for _ in 0..TURNS {
-                let turned = turned(radar, &bench, ends, &atoms, &gains, false);
+            for _ in 0..LEVEL_TURNS {
+                let turned = turned(radar, &fitter, ends, &atoms, &gains, false);
                 gains = turned.gains.clone().normalised(*level >= NOISE_LEVELS[1]);
                 last = Some(turned);
             }
-            if last
-                .as_ref()
-                .is_some_and(|last| last.left > MAX_LEVEL_ENERGY_RATIO.min(NOISE_MARGIN_RATIO * level) + noise)
-            {
+            let max_part = MAX_LEVEL_ENERGY_RATIO.min(NOISE_MARGIN_RATIO * level) + noise;
+            if last.as_ref().is_some_and(|last| last.residual_part > max_part) {
                 return Ok(None);
             }
         }
         let Some(mut last) = last else { return Ok(None) };
         for _ in 0..MAX_LAST_TURNS {
             request.task.check()?;
-            let before = last.left;
-            last = turned(radar, &bench, ends, &last.fit.atoms, &last.gains.normalised(false), true);
-            if last.left > WORTH_ANOTHER * before {
+            let before = last.residual_part;
+            last = turned(radar, &fitter, ends, &last.fit.atoms, &last.gains.normalised(false), true);
+            if last.residual_part > MAX_ROUND_RESIDUAL_PART * before {
                 break;
             }
         }
@@ -171,47 +169,40 @@ impl Calibration<'_> {
     }
 }
 
-/// The objects of `found` whose gains are not much less than the strongest.
+/// The objects of `found` with gains of at least [`MIN_GAIN_RATIO`].
 fn strongest(found: &Found) -> Vec<Atom> {
     let gain = |gains: &[Complex64; 2]| gains[0].norm().max(gains[1].norm());
-    let most = found.gains.iter().map(gain).fold(0.0, f64::max);
-    let is_strong = |gains: &[Complex64; 2]| gain(gains) >= MIN_GAIN_RATIO * most;
+    let max_gain = found.gains.iter().map(gain).fold(0.0, f64::max);
+    let is_strong = |gains: &[Complex64; 2]| gain(gains) >= MIN_GAIN_RATIO * max_gain;
     found.atoms.iter().zip(&found.gains).filter(|(_, gains)| is_strong(gains)).map(|(atom, _)| *atom).collect()
 }
 
-/// The gains of elements that fit `atoms` best. The atoms' own gains, and with `moves` their places, are fitted to samples without `gains`.
-fn turned(
-    radar: &Radar,
-    bench: &Workbench,
-    ends: &TwoEnds,
-    atoms: &[Atom],
-    gains: &ElementGains,
-    moves: bool,
-) -> Fitted {
+/// One alternating fit: first of the gains of `atoms`, and with `moves` of their places, to samples without `gains`; then of the elements' gains.
+fn turned(radar: &Radar, fitter: &Fitter, ends: &TwoEnds, atoms: &[Atom], gains: &ElementGains, moves: bool) -> Fitted {
     let corrected = gains.taken_from(ends).flat();
-    let samples = Samples::new(&bench.sensor, &corrected);
+    let samples = Samples::new(&fitter.sensor, &corrected);
     let fit = match moves {
-        false => bench.solve(&samples, atoms.to_vec(), Tie::Both, OBJECT_RIDGE),
-        true => bench.refine(&samples, atoms.to_vec(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH),
+        false => fitter.solve(&samples, atoms.to_vec(), Tie::Both, OBJECT_RIDGE),
+        true => fitter.refine(&samples, atoms.to_vec(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH),
     };
-    let residual = fit.residual.flat(&bench.sensor);
+    let residual = fit.residual.flat(&fitter.sensor);
     let drawn: Vec<Complex64> = corrected.iter().zip(&residual).map(|(c, r)| c - r).collect();
-    let price = fit.cost() / gains.0.len() as f64 / independent_bins(radar, &residual) / EXPECTED_SQUARE;
+    let ridge = fit.cost() / gains.0.len() as f64 / independent_bins(radar, &residual) / EXPECTED_SQUARED_ERROR;
     let raw = ends.flat();
     let of_element = |(raw, drawn): (&[Complex64], &[Complex64])| {
-        let weighted = raw.iter().zip(drawn).zip(&bench.squared);
+        let weighted = raw.iter().zip(drawn).zip(&fitter.squared);
         let (product, power) = weighted.fold((Complex64::ZERO, 0.0), |(product, power), ((d, m), w)| {
             (product + m.conj() * d * w, power + m.norm_sqr() * w)
         });
-        let gain = (product + price) / (power + price).max(f64::MIN_POSITIVE);
+        let gain = (product + ridge) / (power + ridge).max(f64::MIN_POSITIVE);
         if gain.norm_sqr() > 0.0 { gain } else { Complex64::ONE }
     };
     let gains = raw.chunks(radar.samples).zip(drawn.chunks(radar.samples)).map(of_element).collect();
-    let all = bench.energy(&samples);
-    Fitted { gains: ElementGains(gains), left: fit.cost() / all.max(f64::MIN_POSITIVE), fit }
+    let all = fitter.energy(&samples);
+    Fitted { gains: ElementGains(gains), residual_part: fit.cost() / all.max(f64::MIN_POSITIVE), fit }
 }
 
-/// Range bins that a residual's energy is spread over: the square of the sum over the sum of the squares.
+/// Effective number of range bins of a residual's energy, the mean of both ends: the square of the sum over the sum of the squares.
 fn independent_bins(radar: &Radar, residual: &[Complex64]) -> f64 {
     let ends = TwoEnds::of_flat(radar, residual);
     let energy: Vec<f64> = [&ends.first, &ends.last].iter().flat_map(|end| range_energy(radar, end.view())).collect();
@@ -237,7 +228,7 @@ mod tests {
         let gains = found.element_gains.as_ref().expect("gains");
         assert!((0.02..0.09).contains(&gains.deviation()), "{}", gains.deviation());
         assert_eq!(found.atoms.len(), 4);
-        assert!(found.drawn_left() < 1e-4, "{}", found.drawn_left());
+        assert!(found.drawn_residual_part() < 1e-4, "{}", found.drawn_residual_part());
     }
 
     #[test]
@@ -247,6 +238,6 @@ mod tests {
         let scene = Scene { objects: vec![Object::Gaussian(cloud)], ..Scene::default() };
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let found = find(&radar, &ends, &Request::default(), &Settings::default()).unwrap();
-        assert!(!found.complete && found.element_gains.is_none());
+        assert!(!found.is_complete && found.element_gains.is_none());
     }
 }

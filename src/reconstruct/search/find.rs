@@ -1,32 +1,31 @@
-//! The search from outside: samples of both ends in, objects out.
+//! The whole search, from samples of both ends to objects.
 
 use super::calibrate::{Calibration, asks_for_gains};
 use super::finish::{Found, finish};
-use super::ladder::{LADDER, climbed};
+use super::ladder::{LADDER, after_rungs};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
 use super::state::{Search, State};
 use super::trace::Trace;
 use crate::radar::{Radar, hann};
-use crate::reconstruct::fit::{Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Fitter, Samples, Tie};
 use crate::reconstruct::hearing::Hearing;
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::TwoEnds;
 
-/// Takes the samples apart into atoms.
+/// The objects in the samples of both ends.
 ///
 /// # Errors
-/// [`ReconstructError::Cancelled`] when the request was cancelled.
+/// [`ReconstructError::Cancelled`].
 pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Settings) -> Result<Found, ReconstructError> {
     find_from(&Found::nothing(), radar, ends, request, settings)
 }
 
-/// Takes samples apart that differ little from those of `previous`: starts from its atoms, and falls back to [`find`] where they
-/// don't do.
+/// The objects in samples that differ little from those of `previous`, from its objects; by [`find`] where these don't explain the samples.
 ///
 /// # Errors
-/// [`ReconstructError::Cancelled`] when the request was cancelled.
+/// [`ReconstructError::Cancelled`].
 pub fn find_from(
     previous: &Found,
     radar: &Radar,
@@ -36,13 +35,13 @@ pub fn find_from(
 ) -> Result<Found, ReconstructError> {
     let previous = Some(previous).filter(|previous| !previous.atoms.is_empty());
     let Some((ends, scale)) = unit_gain(ends) else { return Ok(Found::nothing()) };
-    let search = |previous: Option<&Found>, ends: &TwoEnds, told: &Request, settings: &Settings| {
-        found_in(previous, radar, ends, told, settings, scale)
+    let search = |previous: Option<&Found>, ends: &TwoEnds, request: &Request, settings: &Settings| {
+        found_in(previous, radar, ends, request, settings, scale)
     };
-    // Gains of the elements outlast a moved object.
+    // Gains of the elements stay the same when an object moves.
     if let Some((previous, gains)) = previous.and_then(|previous| Some((previous, previous.element_gains.clone()?))) {
         let found = search(Some(previous), &gains.taken_from(&ends), request, settings)?;
-        if found.complete || found.left_by_search <= previous.left_by_search {
+        if found.is_complete || found.search_residual_part <= previous.search_residual_part {
             return Ok(Found { element_gains: Some(gains), ..found });
         }
     }
@@ -54,7 +53,7 @@ pub fn find_from(
     Ok(calibration.found()?.unwrap_or(plain))
 }
 
-/// The objects of `ends`, samples that were multiplied by `scale` to have a peak between 1 and 2, whose elements are alike.
+/// The objects in samples of equal elements, which were multiplied by `scale` to have a peak between 1 and 2.
 fn found_in(
     previous: Option<&Found>,
     radar: &Radar,
@@ -65,22 +64,22 @@ fn found_in(
 ) -> Result<Found, ReconstructError> {
     let flat = ends.flat();
     let window = hann(radar.samples);
-    let bench = Workbench::new(radar, &window, &request.task, settings.most_work)
-        .hearing(&flat)
-        .over(Hearing::beneath(radar, ends, request.noise));
-    let samples = Samples::new(&bench.sensor, &flat);
+    let fitter = Fitter::new(radar, &window, &request.task, settings.max_work)
+        .with_channels_of(&flat)
+        .with_noise(Hearing::beneath(radar, ends, request.noise));
+    let samples = Samples::new(&fitter.sensor, &flat);
     let detector = Detector::of(radar);
     let trace = Trace::default();
-    let (in_noise, task) = (request.noise.is_white(), &request.task);
-    let (bench, detector, samples) = (&bench, &detector, &samples);
-    let search = Search { radar, bench, detector, samples, in_noise, settings, task, trace: &trace };
+    let (has_white_noise, task) = (request.noise.is_white(), &request.task);
+    let (fitter, detector, samples) = (&fitter, &detector, &samples);
+    let search = Search { radar, fitter, detector, samples, has_white_noise, settings, task, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
-    let measure = followed.as_ref().filter(|f| !f.is_sure).and(previous).map(|p| p.left_by_search);
-    let nothing = || State::of(bench.solve(samples, Vec::new(), Tie::PerEnd, 0.0));
-    let answer = search.ordered(followed.map_or_else(|| climbed(&search, LADDER, nothing()), Ok)?)?;
+    let from_scratch = followed.as_ref().filter(|f| !f.is_complete).and(previous).map(|p| p.search_residual_part);
+    let nothing = || State::of(fitter.solve(samples, Vec::new(), Tie::PerEnd, 0.0));
+    let answer = search.with_model_order(followed.map_or_else(|| after_rungs(&search, LADDER, nothing()), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
-    let found = finish(radar, bench, samples, answer, request, scale)?;
-    let left_by_search = measure.unwrap_or(found.left_by_search);
-    Ok(Found { left_by_search, trace: trace.into_attempts(), ..found })
+    let found = finish(radar, fitter, samples, answer, request, scale)?;
+    let search_residual_part = from_scratch.unwrap_or(found.search_residual_part);
+    Ok(Found { search_residual_part, trace: trace.into_attempts(), ..found })
 }

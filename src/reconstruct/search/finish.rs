@@ -1,136 +1,139 @@
-//! The last step from a fit with a gain for each end to objects: one gain for both ends, the right tooth of the comb, reflectivities.
+//! Objects from a fit with a gain for each end: one gain for both ends, the right peak of the two ends' ambiguity function, reflectivities.
 
 use super::element_gains::ElementGains;
 use super::propose::end_beams::beam_noise_power;
 use super::state::State;
 use crate::radar::Radar;
 use crate::reconstruct::attempt::Attempt;
-use crate::reconstruct::fit::{Atom, Fit, Gains, Limits, Profile, Samples, Tie, Workbench, rows_of};
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, Profile, Samples, Tie, bin_spans};
 use crate::reconstruct::{ReconstructError, Request};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Teeth tried to each side: the phase between the ends repeats every column of the full map.
+/// Neighbouring peaks of the ambiguity function, *teeth*, that are tried to each side. They are about a column of the map apart.
 const MAX_TEETH: i32 = 6;
 
-/// Most atoms whose teeth are tried one by one.
-const MAX_COMBED_ATOMS: usize = 12;
+/// Largest number of atoms whose teeth are tried.
+const MAX_TOOTH_ATOMS: usize = 12;
 
-/// Most reflectors of atoms whose gains are tied: beyond, all against all takes too long.
+/// Largest number of reflectors of atoms whose gains are tied: the time grows with its square.
 const MAX_TIED_REFLECTORS: usize = 64;
 
-/// Most reflectors that are fitted without a window, where all of them know of each other.
+/// Largest number of reflectors that are fitted without a window.
 const MAX_UNWINDOWED_REFLECTORS: usize = 40;
 
-/// Work granted to the refinement without a window.
+/// Budget of the refinement without a window.
 const UNWINDOWED_WORK: usize = 50_000;
 
-const TIED: Limits = Limits { iterations: 20, least_gain: 1e-6, ridge: 0.0 };
+const TIED_LIMITS: Limits = Limits { max_steps: 20, min_decrease: 1e-6, ridge: 0.0 };
 
-/// Largest reflectivity over the largest that any of the objects has when it is fitted alone, as a ratio: beyond, neighbours cancel each other.
+/// Largest reflectivity over the largest of objects fitted alone. Larger ones cancel each other.
 const MAX_OVER_ALONE: f64 = 1.5;
 
-/// Ridges tried one after another where neighbours cancel each other, as parts of the energy of a gain's echo.
+/// Ridges that are tried one after another where reflectivities cancel each other ([`Limits::ridge`]).
 const RIDGES: [f64; 7] = [0.0002, 0.0006, 0.002, 0.006, 0.02, 0.06, 0.2];
 
-/// Range bins and columns below which two points over white noise are one.
+/// Range bins and columns within which two points over white noise count as one.
 const SAME_PLACE: [f64; 2] = [0.25, 1.0];
 
-/// Energy that tied gains may leave over what each end's own leave, as a ratio: at a wrong place they leave more.
+/// Largest residual energy with tied gains over that with a gain for each end. At a wrong place it is larger.
 const TIED_COST_RATIO: f64 = 4.0;
 
-/// The objects found in the samples.
+/// The result of a search. *Scaled samples* are the samples times `scale`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Found {
+    /// The objects.
     pub atoms: Vec<Atom>,
-    /// Their reflectivities for samples times `scale`.
+    /// Their reflectivities, for scaled samples.
     pub reflectivities: Vec<f64>,
     /// Factor by which the samples were multiplied to have a peak between 1 and 2.
     pub scale: f64,
-    /// Part of the samples' energy that was left by the last search from scratch: answers that follow it are measured by it.
-    pub left_by_search: f64,
+    /// Residual of the last search from scratch, as a part of the samples' energy, with which answers that follow it are compared.
+    pub search_residual_part: f64,
     /// Mean power of the scaled samples.
     pub sample_power: f64,
-    /// Mean power of the residual of the scaled samples.
+    /// Mean power of their residual.
     pub residual_variance: f64,
-    /// Variance of the white noise that was measured in that residual.
+    /// Variance of the white noise in that residual.
     pub noise_variance: f64,
-    /// Gains of the objects at the first and at the last end, for samples times `scale`.
+    /// Gains of the objects at the first and at the last end, for scaled samples.
     pub gains: Vec<[Complex64; 2]>,
-    /// For each object the energy that would be left more without it, over what is left around its range, in decades.
+    /// For each object the increase of the residual energy without it, over the residual energy in its range bins, decades.
     pub needed_decades: Vec<f64>,
-    /// Samples times `scale` less the objects as they are drawn, with one gain for both ends, channel by channel, first end first.
-    pub left_when_drawn: Vec<Complex64>,
-    /// Whether nothing stands out of the residual any more.
-    pub complete: bool,
-    /// Gains of the elements, where the samples ask for them: the objects are those of samples without them.
+    /// Residual of the scaled samples with one gain for both ends, as the map is drawn, `[channels * samples]`, first end first.
+    pub drawn_residual: Vec<Complex64>,
+    /// Whether nothing stands out of the residual.
+    pub is_complete: bool,
+    /// Gains of the elements where they were estimated. The objects are those of samples without them.
     pub element_gains: Option<ElementGains>,
-    /// The attempts of the search, in their order; at most [`MOST_ATTEMPTS`](super::MOST_ATTEMPTS).
+    /// The attempts, in their order; at most [`MAX_ATTEMPTS`](super::MAX_ATTEMPTS).
     pub trace: Vec<Attempt>,
 }
 
 impl Found {
-    /// Part of the samples' energy that the objects leave as they are drawn, less noise.
-    pub(super) fn drawn_left(&self) -> f64 {
-        let count = self.left_when_drawn.len().max(1) as f64;
-        let left = self.left_when_drawn.iter().map(Complex64::norm_sqr).sum::<f64>() / count;
-        (left - self.noise_variance).max(0.0) / self.sample_power.max(f64::MIN_POSITIVE)
+    /// Energy of [`Self::drawn_residual`] without noise, as a part of the samples' energy.
+    pub(super) fn drawn_residual_part(&self) -> f64 {
+        let count = self.drawn_residual.len().max(1) as f64;
+        let power = self.drawn_residual.iter().map(Complex64::norm_sqr).sum::<f64>() / count;
+        (power - self.noise_variance).max(0.0) / self.sample_power.max(f64::MIN_POSITIVE)
     }
 
-    /// The answer to silence.
+    /// The result for samples that are all 0.
     pub(super) fn nothing() -> Self {
-        Found { scale: 1.0, complete: true, ..Found::default() }
+        Found { scale: 1.0, is_complete: true, ..Found::default() }
     }
 }
 
-/// Ties the gains of both ends and reads the objects off.
+/// The objects of `answer`. `scale` is as in [`Found::scale`].
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
 pub(super) fn finish(
     radar: &Radar,
-    bench: &Workbench,
+    fitter: &Fitter,
     samples: &Samples,
     answer: State,
     request: &Request,
     scale: f64,
 ) -> Result<Found, ReconstructError> {
-    let State { fit, is_sure: complete, .. } = answer;
+    let State { fit, is_complete, .. } = answer;
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
-    let hearing = bench.hearing;
-    // A window keeps unexplained objects from their neighbours; where nothing is unexplained it only throws samples away.
-    let flat_bench = (complete && reflectors <= MAX_UNWINDOWED_REFLECTORS)
-        .then(|| Workbench::new(radar, &vec![1.0; radar.samples], &request.task, UNWINDOWED_WORK))
-        .map(|flat| flat.hearing(&samples.flat(&bench.sensor)).over(hearing));
-    let bench = flat_bench.as_ref().unwrap_or(bench);
-    let apart = if flat_bench.is_some() { bench.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
-    let best = if complete { tied(bench, samples, apart, request.noise.is_white()) } else { apart };
-    let best = if request.noise.is_white() { merged(radar, bench, samples, best) } else { best };
-    let is_certain = complete && !request.noise.is_white();
-    let best = if is_certain { best } else { bounded(bench, samples, best) };
+    let noise_model = fitter.noise_model;
+    // A window keeps the residual of missing objects from others. Without missing ones it only loses energy.
+    let unwindowed = (is_complete && reflectors <= MAX_UNWINDOWED_REFLECTORS)
+        .then(|| Fitter::new(radar, &vec![1.0; radar.samples], &request.task, UNWINDOWED_WORK))
+        .map(|flat| flat.with_channels_of(&samples.flat(&fitter.sensor)).with_noise(noise_model));
+    let fitter = unwindowed.as_ref().unwrap_or(fitter);
+    let per_end = if unwindowed.is_some() { fitter.solve(samples, fit.atoms, Tie::PerEnd, 0.0) } else { fit };
+    let best = if is_complete { with_tied_gains(fitter, samples, per_end, request.noise.is_white()) } else { per_end };
+    let best = if request.noise.is_white() { merged(radar, fitter, samples, best) } else { best };
+    let is_certain = is_complete && !request.noise.is_white();
+    let best = if is_certain { best } else { bounded(fitter, samples, best) };
     request.task.check()?;
-    let residual = best.residual.flat(&bench.sensor);
-    let noise_variance = hearing.noise_variance(radar, &residual);
-    let all = bench.energy(samples);
-    let weight = bench.squared.iter().sum::<f64>() * bench.sensor.element_x.len() as f64;
+    let residual = best.residual.flat(&fitter.sensor);
+    let noise_variance = noise_model.noise_variance(radar, &residual);
+    let all = fitter.energy(samples);
+    // With the mean of both gains the residual contains an echo whose strength differs between the ends.
+    let drawn_gains: Vec<Gains> = best.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
+    let weight = fitter.squared.iter().sum::<f64>() * fitter.sensor.element_x.len() as f64;
     Ok(Found {
         reflectivities: reflectivities(&best.gains),
-        left_by_search: best.cost() / all,
+        search_residual_part: best.cost() / all,
         sample_power: all / weight,
         residual_variance: best.cost() / weight,
         noise_variance,
-        needed_decades: needed_decades(radar, bench, &best, noise_variance),
-        left_when_drawn: left_when_drawn(bench, samples, &best),
+        needed_decades: needed_decades(radar, fitter, &best, noise_variance),
+        drawn_residual: fitter.subtract(samples, &best.atoms, &drawn_gains).residual.flat(&fitter.sensor),
         atoms: best.atoms,
         gains: best.gains,
         scale,
-        complete,
+        is_complete,
         ..Found::default()
     })
 }
 
-/// `fit` without the weaker of two points that no end tells apart.
-fn merged(radar: &Radar, bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
+/// `fit` without the weaker one of two points within [`SAME_PLACE`].
+fn merged(radar: &Radar, fitter: &Fitter, samples: &Samples, fit: Fit) -> Fit {
     let places: Vec<Option<[f64; 2]>> = fit
         .atoms
         .iter()
@@ -142,81 +145,74 @@ fn merged(radar: &Radar, bench: &Workbench, samples: &Samples, fit: Fit) -> Fit 
             _ => None,
         })
         .collect();
-    let strength = |i: usize| fit.gains[i].iter().map(Complex64::norm_sqr).sum::<f64>();
+    let power = |i: usize| fit.gains[i].iter().map(Complex64::norm_sqr).sum::<f64>();
     let is_same = |i: usize, j: usize| match (places[i], places[j]) {
         (Some(a), Some(b)) => (0..2).all(|k| (a[k] - b[k]).abs() < SAME_PLACE[k]),
         _ => false,
     };
     let n = places.len();
-    let is_weaker = |i: usize, j: usize| (strength(i), j) < (strength(j), i);
+    let is_weaker = |i: usize, j: usize| (power(i), j) < (power(j), i);
     let kept: Vec<usize> = (0..n).filter(|&i| !(0..n).any(|j| j != i && is_same(i, j) && is_weaker(i, j))).collect();
     if kept.len() == n {
         return fit;
     }
-    bench.solve(samples, kept.into_iter().map(|i| fit.atoms[i]).collect(), tie_of(&fit), 0.0)
+    fitter.solve(samples, kept.into_iter().map(|i| fit.atoms[i]).collect(), tie_of(&fit), 0.0)
 }
 
-/// Whether the gains of a fit are tied.
 fn tie_of(fit: &Fit) -> Tie {
     if fit.gains.iter().all(|g| g[0] == g[1]) { Tie::Both } else { Tie::PerEnd }
 }
 
-/// Size of an object's reflectivity.
-fn size(gains: &Gains) -> f64 {
+/// Magnitude of an object's reflectivity.
+fn magnitude(gains: &Gains) -> f64 {
     (gains[0].norm() + gains[1].norm()) / 2.0
 }
 
 /// `fit` with a ridge on its gains that grows until none exceeds [`MAX_OVER_ALONE`].
-fn bounded(bench: &Workbench, samples: &Samples, mut fit: Fit) -> Fit {
-    let alone = fit.atoms.par_iter().map(|atom| size(&bench.solve_alone(samples, *atom).gains[0]));
-    let most = MAX_OVER_ALONE * alone.reduce(|| 0.0, f64::max);
+fn bounded(fitter: &Fitter, samples: &Samples, mut fit: Fit) -> Fit {
+    let alone = fit.atoms.par_iter().map(|atom| magnitude(&fitter.solve_alone(samples, *atom).gains[0]));
+    let limit = MAX_OVER_ALONE * alone.reduce(|| 0.0, f64::max);
     let tie = tie_of(&fit);
     for ridge in RIDGES {
-        if fit.gains.iter().all(|gains| size(gains) <= most) {
+        if fit.gains.iter().all(|gains| magnitude(gains) <= limit) {
             break;
         }
-        fit = bench.solve(samples, fit.atoms, tie, ridge);
+        fit = fitter.solve(samples, fit.atoms, tie, ridge);
     }
     fit
 }
 
-/// `fit` with one gain an object for both ends, on the right tooth of the comb, where it has few reflectors and the ends agree on them.
-pub fn tied(bench: &Workbench, samples: &Samples, fit: Fit, in_noise: bool) -> Fit {
+/// `fit` with one gain for both ends, and over white noise on the best tooth, unless it has many reflectors or the residual grows.
+pub fn with_tied_gains(fitter: &Fitter, samples: &Samples, fit: Fit, has_white_noise: bool) -> Fit {
     let reflectors: usize = fit.atoms.iter().map(Atom::reflector_count).sum();
     if reflectors > MAX_TIED_REFLECTORS {
         return fit;
     }
-    let mut tied = bench.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED);
-    if in_noise && tied.atoms.len() <= MAX_COMBED_ATOMS {
-        tied = combed(bench, samples, tied);
+    let mut tied = fitter.refine(samples, fit.atoms.clone(), fit.gains.clone(), Tie::Both, TIED_LIMITS);
+    if has_white_noise && tied.atoms.len() <= MAX_TOOTH_ATOMS {
+        tied = on_best_teeth(fitter, samples, tied);
     }
-    // Gains that agree cost next to nothing to tie; if not, the objects are not right and the ends' own view is the better one.
     if tied.cost() <= TIED_COST_RATIO * fit.cost() { tied } else { fit }
 }
 
-/// For each atom of `fit` the energy that would be left more without it, over what `fit` leaves or noise holds around its range, in decades.
-fn needed_decades(radar: &Radar, bench: &Workbench, fit: &Fit, noise_variance: f64) -> Vec<f64> {
-    let profile = Profile::new(radar, &fit.residual.flat(&bench.sensor));
-    // Both energies as they are under the radar's window.
+/// [`Found::needed_decades`]; the residual energy is at least that of noise.
+fn needed_decades(radar: &Radar, fitter: &Fitter, fit: &Fit, noise_variance: f64) -> Vec<f64> {
+    let profile = Profile::new(radar, &fit.residual.flat(&fitter.sensor));
+    // Both energies are under the radar's window.
     let noise = 2.0 * beam_noise_power(radar, noise_variance);
     let window = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>();
-    let worths = bench.worths(fit).into_iter().map(|worth| worth * window / bench.squared.iter().sum::<f64>());
-    let of_atom = |(worth, atom): (f64, &Atom)| {
-        let left = profile.at(&rows_of(radar, atom)).max(noise).max(f64::MIN_POSITIVE);
-        (worth / left).max(f64::MIN_POSITIVE).log10()
+    let energies =
+        fitter.marginal_energies(fit).into_iter().map(|energy| energy * window / fitter.squared.iter().sum::<f64>());
+    let of_atom = |(energy, atom): (f64, &Atom)| {
+        let residual = profile.energy(&bin_spans(radar, atom)).max(noise).max(f64::MIN_POSITIVE);
+        (energy / residual).max(f64::MIN_POSITIVE).log10()
     };
-    worths.zip(&fit.atoms).map(of_atom).collect()
+    energies.zip(&fit.atoms).map(of_atom).collect()
 }
 
-/// The residual of the objects with one gain for both ends: it keeps an echo whose strength differs between the ends.
-fn left_when_drawn(bench: &Workbench, samples: &Samples, fit: &Fit) -> Vec<Complex64> {
-    let tied: Vec<Gains> = fit.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
-    bench.without(samples, &fit.atoms, &tied).residual.flat(&bench.sensor)
-}
-
-/// Each point tried on the neighbouring teeth of the comb, the others staying where they are.
-fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
-    let sensor = &bench.sensor;
+/// `fit` with each point on its best tooth, one after another.
+fn on_best_teeth(fitter: &Fitter, samples: &Samples, fit: Fit) -> Fit {
+    let sensor = &fitter.sensor;
     let between_ends = sensor.element_x[sensor.end_elements] - sensor.element_x[0];
     let tooth = sensor.wavelength_metres() / between_ends;
     let mut best = fit;
@@ -224,7 +220,7 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
         let Atom::Point { x_metres: x, y_metres: y } = best.atoms[i] else { continue };
         let range = x.hypot(y);
         let own = best.gains[i];
-        let base = bench.without(&best.residual, &best.atoms[i..=i], &[[-own[0], -own[1]]]).residual;
+        let base = fitter.subtract(&best.residual, &best.atoms[i..=i], &[[-own[0], -own[1]]]).residual;
         let trials: Vec<Fit> = (-MAX_TEETH..=MAX_TEETH)
             .into_par_iter()
             .filter(|k| *k != 0)
@@ -232,7 +228,8 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
                 let cos = x / range + f64::from(k) * tooth;
                 let y_metres = range * (1.0 - cos * cos).max(0.0).sqrt();
                 let atom = Atom::Point { x_metres: range * cos, y_metres };
-                (cos.abs() < 1.0).then(|| bench.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED))
+                (cos.abs() < 1.0)
+                    .then(|| fitter.refine(&base, vec![atom], vec![Gains::default()], Tie::Both, TIED_LIMITS))
             })
             .collect();
         let trial = trials.into_iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
@@ -241,18 +238,18 @@ fn combed(bench: &Workbench, samples: &Samples, fit: Fit) -> Fit {
             (best.residual, best.energy) = (trial.residual, trial.energy);
         }
     }
-    bench.refine(samples, best.atoms, best.gains, Tie::Both, TIED)
+    fitter.refine(samples, best.atoms, best.gains, Tie::Both, TIED_LIMITS)
 }
 
-/// Real reflectivities from complex gains: the phase all share belongs to the receiver, what is left of each gain is its sign.
+/// Real reflectivities from complex gains: without the phase that all gains share, each gain has a sign. The sum is positive.
 fn reflectivities(gains: &[Gains]) -> Vec<f64> {
     let mean: Vec<Complex64> = gains.iter().map(|g| (g[0] + g[1]) / 2.0).collect();
     let doubled: Complex64 = mean.iter().map(|g| g * g).sum();
     let common = Complex64::cis(-doubled.arg() / 2.0);
-    let signed: Vec<f64> =
-        mean.iter().zip(gains).map(|(m, g)| if (m * common).re < 0.0 { -size(g) } else { size(g) }).collect();
-    let sign = if signed.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
-    signed.into_iter().map(|s| s * sign).collect()
+    let signed_node: Vec<f64> =
+        mean.iter().zip(gains).map(|(m, g)| if (m * common).re < 0.0 { -magnitude(g) } else { magnitude(g) }).collect();
+    let sign = if signed_node.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+    signed_node.into_iter().map(|s| s * sign).collect()
 }
 
 #[cfg(test)]
@@ -268,16 +265,16 @@ mod tests {
         let (radar, task) = (Radar::default(), Task::default());
         let scene = Scene::of_points([(3.0, 11.0), (-6.0, 17.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
-        let bench = Workbench::new(&radar, &hann(radar.samples), &task, usize::MAX);
-        let samples = Samples::new(&bench.sensor, &ends.flat());
+        let fitter = Fitter::new(&radar, &hann(radar.samples), &task, usize::MAX);
+        let samples = Samples::new(&fitter.sensor, &ends.flat());
         let point = |x_metres: f64, y_metres: f64| Atom::Point { x_metres, y_metres };
         // The second is a few millimetres beside the first, the third a range bin.
         let atoms = vec![point(3.0, 11.0), point(3.001, 11.004), point(3.02, 11.08), point(-6.0, 17.0)];
-        let fit = bench.solve(&samples, atoms.clone(), Tie::PerEnd, 0.0);
-        let kept = merged(&radar, &bench, &samples, fit).atoms;
+        let fit = fitter.solve(&samples, atoms.clone(), Tie::PerEnd, 0.0);
+        let kept = merged(&radar, &fitter, &samples, fit).atoms;
         assert_eq!(kept, [atoms[0], atoms[2], atoms[3]]);
-        let alone = bench.solve(&samples, kept.clone(), Tie::PerEnd, 0.0);
-        assert_eq!(merged(&radar, &bench, &samples, alone).atoms, kept);
+        let alone = fitter.solve(&samples, kept.clone(), Tie::PerEnd, 0.0);
+        assert_eq!(merged(&radar, &fitter, &samples, alone).atoms, kept);
     }
 
     #[test]

@@ -1,66 +1,68 @@
-//! The answer to samples that differ little from the last ones, starting from the last answer.
+//! The answer to samples that differ little from those before, from the last answer.
 
 use super::finish::Found;
-use super::ladder::{POINTS, climbed};
+use super::ladder::{POINTS, after_rungs};
 use super::state::{Search, State};
 use super::trace::FOLLOWING;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Atom, Fit};
 
-/// Part of the samples' energy that a last answer may leave and still be a start.
-const MOST_CHANGED: f64 = 0.7;
+/// Largest residual of the last answer, as a part of the samples' energy, for which it is used.
+const MAX_START_RESIDUAL_PART: f64 = 0.7;
 
-/// An answer that follows a search which left something leaves this many times as much at most.
-const MOST_LOST: f64 = 1.3;
+/// Largest residual of an answer over that of the search that it follows, where that search was not complete.
+const MAX_RESIDUAL_GROWTH: f64 = 1.3;
 
-/// Most atoms that appear from one answer to the next.
-const MOST_APPEARING: usize = 2;
+/// Largest number of additional atoms from one answer to the next.
+const MAX_NEW_ATOMS: usize = 2;
 
 impl Search<'_> {
-    /// The answer to samples a little different from those of `previous`: what stands elsewhere now found anew, or else its atoms refined
-    /// where the residual asks for it, and more or fewer of them where that is not enough. `None` where they don't explain the samples
-    /// as well as they did.
+    /// The answer from that of `previous`: points with a residual are searched again; or the atoms with a residual are refined, removed or added to.
+    /// `None` where the residual is larger than it was. `scale` is as in [`Found::scale`].
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
     pub fn followed(&self, previous: &Found, scale: f64) -> Result<Option<State>, ReconstructError> {
         self.trace.enter(FOLLOWING);
         let ratio = scale / previous.scale;
         let gains = previous.gains.iter().map(|g| g.map(|g| g * ratio)).collect();
-        let mut fit = Fit { atoms: previous.atoms.clone(), gains, residual: self.samples.clone(), energy: [0.0; 2] };
-        let left = self.bench.without(self.samples, &fit.atoms, &fit.gains);
-        (fit.residual, fit.energy) = (left.residual, left.energy);
-        let all = self.bench.energy(self.samples);
-        if fit.cost() > MOST_CHANGED * all {
+        let mut fit = self.fitter.fit_of(self.samples, previous.atoms.clone(), gains);
+        let all = self.fitter.energy(self.samples);
+        if fit.cost() > MAX_START_RESIDUAL_PART * all {
             return Ok(None);
         }
-        if let Some(fit) = self.found_anew(&fit)? {
-            self.tell_of(&previous.atoms, &fit);
-            return Ok(Some(State { is_sure: true, ..State::of(fit) }));
+        if let Some(fit) = self.found_by_tones(&fit)? {
+            self.record_changes(&previous.atoms, &fit);
+            return Ok(Some(State { is_complete: true, ..State::of(fit) }));
         }
-        // A vanished object leaves an atom that the others don't need.
-        fit = self.pruned(self.refined_where_needed(fit)?)?;
-        let most_left = MOST_LOST * previous.left_by_search * all;
-        let is_as_good = |fit: &Fit| !previous.complete && fit.cost() < most_left;
-        let mut answer = self.judged(fit);
-        if !answer.is_sure && !is_as_good(&answer.fit) {
-            self.tell_of(&previous.atoms, &answer.fit);
-            answer = climbed(self, &[POINTS], answer)?;
+        fit = self.pruned(self.refined_by_residual(fit)?)?;
+        let max_residual = MAX_RESIDUAL_GROWTH * previous.search_residual_part * all;
+        let is_as_good = |fit: &Fit| !previous.is_complete && fit.cost() < max_residual;
+        let mut answer = self.checked(fit);
+        if !answer.is_complete && !is_as_good(&answer.fit) {
+            self.record_changes(&previous.atoms, &answer.fit);
+            answer = after_rungs(self, &[POINTS], answer)?;
         }
-        // Many new atoms make up for old ones that went astray.
-        let is_like_it = answer.fit.atoms.len() <= previous.atoms.len() + MOST_APPEARING;
-        Ok((is_like_it && (answer.is_sure || is_as_good(&answer.fit))).then_some(answer))
+        // Many new atoms would only correct old ones in wrong places.
+        let has_few_more = answer.fit.atoms.len() <= previous.atoms.len() + MAX_NEW_ATOMS;
+        Ok((has_few_more && (answer.is_complete || is_as_good(&answer.fit))).then_some(answer))
     }
 
-    /// The points of `fit` in whose range bins more is left than noise looked for once more, by their tones: few echoes are told apart at
-    /// once, however far they have moved. `None` where that doesn't explain all.
-    fn found_anew(&self, fit: &Fit) -> Result<Option<Fit>, ReconstructError> {
-        let needed = self.in_need(fit);
-        let is_moved = |i: &usize| needed[*i] && matches!(fit.atoms[*i], Atom::Point { .. });
-        let moved: Vec<usize> = (0..needed.len()).filter(is_moved).collect();
-        let stayed = if moved.is_empty() { fit.clone() } else { self.bench.less(fit.clone(), &moved) };
-        let pairs = self.pairs(&stayed);
-        if pairs.points.len() > moved.len() + MOST_APPEARING {
+    /// `fit` with the points in whose range bins there is a residual searched again by their tones, however far they moved. `None` where that leaves a
+    /// residual.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    fn found_by_tones(&self, fit: &Fit) -> Result<Option<Fit>, ReconstructError> {
+        let have_residual = self.have_residual(fit);
+        let is_moved = |i: &usize| have_residual[*i] && matches!(fit.atoms[*i], Atom::Point { .. });
+        let moved: Vec<usize> = (0..have_residual.len()).filter(is_moved).collect();
+        let stayed = if moved.is_empty() { fit.clone() } else { self.fitter.remove(fit.clone(), &moved) };
+        let pairs = self.tone_pairs(&stayed).unwrap_or_default();
+        if pairs.points.len() > moved.len() + MAX_NEW_ATOMS {
             return Ok(None);
         }
-        let anew = self.nearly_there(self.paired(stayed, &pairs, false)?)?;
-        Ok(self.is_explained(&anew).then_some(anew))
+        let found = self.refined_if_nearly_complete(self.paired(stayed, &pairs, false)?)?;
+        Ok(self.is_explained(&found).then_some(found))
     }
 }

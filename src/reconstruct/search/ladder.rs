@@ -1,68 +1,66 @@
-//! The search in reading order.
+//! The steps of the search in their order.
 //!
-//! Each rung changes what was found so far. The search stops after the first rung whose answer leaves nothing that stands out of the
-//! noise, or after the last. What was found is then read off as objects (`finish`): one gain for both
-//! ends, one reflectivity an object.
-//!
-//! Within a rung, work is counted ([`Settings::most_work`](super::Settings)): where it is spent, each loop ends with the best it has.
+//! Each rung changes the list of objects. The search stops after the first rung whose residual has no peak above the noise, or after the last. Then
+//! each object gets one gain for both ends and one reflectivity (`finish`). Where the budget of work
+//! ([`Settings::max_work`](super::Settings)) is used up, each loop ends with its best result.
 
 use super::state::{Search, State};
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried};
 
-/// The change that a rung makes to the state of a search.
-type Climb = fn(&Search, State) -> Result<State, ReconstructError>;
+/// The state of a search after a rung, from that before.
+type RungWork = fn(&Search, State) -> Result<State, ReconstructError>;
 
-/// One step of the search.
+/// A step of the search.
 pub struct Rung {
-    /// Name of the rung in traces.
+    /// Name in traces.
     pub name: &'static str,
-    /// The effect of the rung, in a sentence.
+    /// The effect, in a sentence for the user.
     pub does: &'static str,
-    climb: Climb,
+    work: RungWork,
 }
 
-/// Every rung, in their order.
+/// All rungs, the first one first.
 pub const LADDER: &[Rung] = &[
     Rung {
         name: "tones",
-        does: "Pairs the tones that each end hears into points. Keeps them only if they are all there is.",
-        climb: |search, state| search.climb_tones(state),
+        does: "Pairs the tones of both ends into points, and keeps them if they explain the samples.",
+        work: |search, state| search.tone_points(state),
     },
     Rung {
         name: "lines",
-        does: "Looks for lines of any direction that begin where both ends may hear a point.",
-        climb: |search, state| search.climb_lines(state),
+        does: "Searches for lines of any direction that begin where both ends may have a point.",
+        work: |search, state| search.rows_of_any_direction(state),
     },
     Rung {
         name: "pairs",
-        does: "Pairs the tones that the lines leave into points, and puts lines in place of points at equal steps.",
-        climb: |search, state| search.climb_pairs(state),
+        does: "Pairs the tones that the lines leave into points.",
+        work: |search, state| search.paired_in_rounds(state),
     },
     POINTS,
 ];
 
-/// Adds points to an answer that is there.
+/// The last rung, which a followed answer uses alone too.
 pub(super) const POINTS: Rung = Rung {
     name: "points",
-    does: "Adds points where the residual of both ends stands out, refines them, and takes away those that explain too little.",
-    climb: |search, state| search.climb_points(state),
+    does: "Adds points where the residual of both ends stands out, refines them, and removes those that explain too little.",
+    work: |search, state| search.points_in_residual(state),
 };
 
-/// `state` after `rungs`, one after another until nothing stands out.
+/// `state` after `rungs`, up to the first that completes it.
 ///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
-pub(super) fn climbed(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
+pub(super) fn after_rungs(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
     for rung in rungs {
         search.trace.enter(rung.name);
         let (before, attempts) = (state.fit.atoms.clone(), search.trace.count());
-        state = (rung.climb)(search, state)?;
-        search.tell_of(&before, &state.fit);
+        state = (rung.work)(search, state)?;
+        search.record_changes(&before, &state.fit);
         if search.trace.count() == attempts {
-            search.refuse(Tried::Nothing, 0.0, Refusal::NothingFound);
+            search.record_refusal(Tried::Nothing, 0.0, Refusal::NothingFound);
         }
-        if state.is_sure {
+        if state.is_complete {
             break;
         }
     }

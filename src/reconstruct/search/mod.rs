@@ -1,34 +1,32 @@
 //! Newtonized orthogonal matching pursuit in (x, y), with the exact near-field model of all samples of both ends.
 //!
 //! After Mamandipoor, Ramasamy and Madhow, "Newtonized Orthogonal Matching Pursuit: Frequency Estimation Over the Continuum" (2016):
-//! detect the strongest cell of the residual, move it to its best place by Newton steps, then move everything found so far together,
-//! and repeat. The exact simulator draws the map of what was found.
-//!
-//! `ladder` lists the steps of the search in the order in which they run, and why the search stops.
+//! detect the strongest cell of the residual, refine its place by Newton steps, then refine all objects together, and repeat. The exact simulator
+//! draws the map of the objects. `ladder` lists the steps of the search.
 //!
 //! | file | content |
 //! |---|---|
-//! | `find` | the search from outside: samples in, objects out |
-//! | `ladder` | every rung of the search in reading order |
-//! | `rungs` | the work of each rung |
+//! | `find` | the whole search, from samples to objects |
+//! | `ladder` | the steps of the search in their order |
+//! | `rungs` | the function of each step |
 //! | `state` | the input and the state of a search |
 //! | `propose` | sources of candidates, one a file |
-//! | `begin` | the test of proposed lines against the samples |
-//! | `on_wall` | the test for points on a line |
-//! | `walls` | all lines together |
-//! | `wall_ends` | a line followed to its ends |
-//! | `grow` | the greedy loop over points |
-//! | `trace` | the attempts of the search, and their verdicts |
+//! | `begin` | the test of candidates for rows against the samples |
+//! | `on_row` | the test for points on a row |
+//! | `rows` | rows, one after another |
+//! | `row_ends` | the ends of a row |
+//! | `grow` | points at peaks of the residual |
+//! | `trace` | the record of attempts |
 //! | `prune` | the removal of needless atoms |
 //! | `relax` | the number of echoes in a group of neighbours, over noise |
-//! | `settings` | bounds on time and memory |
+//! | `settings` | the limits of a search |
 //! | `follow` | an answer from the last one, where little changed |
-//! | `calibrate` | gains of the elements, where the samples ask for them |
+//! | `calibrate` | the estimate of the elements' gains |
 //! | `element_gains` | the gain of each element |
 //! | `finish` | one gain for both ends, reflectivities |
-//! | `explained` | the explained part of each cell |
-//! | `draw` | expected map of the objects found |
-//! | `over_noise` | mean of a log map's cells over noise |
+//! | `explained` | the residual in each cell of the map |
+//! | `draw` | the expected map of the objects |
+//! | `over_noise` | the expectation of a log map's cell over noise |
 
 mod begin;
 mod calibrate;
@@ -42,11 +40,13 @@ mod grow;
 mod ladder;
 #[cfg(test)]
 mod noise_tests;
-mod on_wall;
+mod on_row;
 mod over_noise;
 mod propose;
 mod prune;
 mod relax;
+mod row_ends;
+mod rows;
 mod rungs;
 mod settings;
 mod state;
@@ -57,22 +57,20 @@ mod trace;
 mod trace_tests;
 #[cfg(test)]
 mod tracking_tests;
-mod wall_ends;
-mod walls;
 
 pub use super::fit::Atom;
 pub use draw::Expected;
 pub use element_gains::ElementGains;
 pub use find::{find, find_from};
 pub use finish::Found;
-pub(super) use finish::tied;
+pub(super) use finish::with_tied_gains;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
-pub(super) use prune::{APART_BINS, MIN_WORTH_RATIO};
+pub(super) use prune::{MIN_DISTANCE_BINS, MIN_ENERGY_RATIO};
 pub use settings::Settings;
 pub(super) use state::Search;
 pub(super) use trace::Trace;
-pub use trace::{CALIBRATION, FOLLOWING, MOST_ATTEMPTS, ORDERING};
+pub use trace::{CALIBRATION, FOLLOWING, MAX_ATTEMPTS, ORDERING};
 
 use super::answer::{Reconstruction, Request};
 use super::error::ReconstructError;
@@ -86,41 +84,40 @@ use crate::scene::Reflector;
 use crate::signal::TwoEnds;
 use draw::{Noise, expected_lambda, expected_noise};
 
-/// Threshold for the maps of found objects, chosen on validation scenes.
+/// Threshold on Lambda for maps of found objects, chosen on validation scenes.
 pub(super) const ETA: f32 = 0.896;
 
-/// Energy that an atom must explain, over what is left around its range, to be as likely there as not, in decades; and decades of odds for a
-/// decade more. Fitted to validation scenes (`examples/experts.rs --confidence`).
+/// Energy that an atom explains over the residual in its range bins, decades, for a confidence of 0.5; and decades of odds for each further decade.
+/// Fitted to validation scenes (`examples/experts.rs --confidence`).
 const EVEN_ODDS_DECADES: f64 = 0.8;
 const CONFIDENCE_SLOPE: f64 = 0.8;
 
-/// Energy that an object must explain over what is left around it, decades, for a confidence of 0.9; and the largest reflectivity of an object below
-/// that confidence in the list, over the largest of the others, as a ratio. Little is heard of far places, so a ghost there can be large.
+/// The same energy, decades, for a confidence of 0.9; and the largest reflectivity of a listed object below that confidence, over the largest of the
+/// others. Far places have weak echoes, so a ghost there can be large.
 const CERTAIN_DECADES: f64 = 2.0;
 const MAX_OVER_CERTAIN: f64 = 3.0;
 
-/// The search's knowledge beside the samples, [`About::told`](crate::reconstruct::About::told).
+/// [`About::told`](crate::reconstruct::About::told) of the search.
 const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
     along or across the array's axis; the kind of floor beneath the samples, and how the thesis' program rounds; \
     by about how much elements are off, where they are";
 
-/// Detect, refine, draw: objects from the raw samples, and the exact map of them.
+/// The method `nomp`: objects from the raw samples, and the exact map of them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Nomp {
     settings: Settings,
 }
 
 impl Nomp {
-    /// The method with other limits than the default ones.
     pub fn with_settings(settings: Settings) -> Self {
         Nomp { settings }
     }
 }
 
-/// The reason why a search for places can't work on a single sample; `None` for more samples.
+/// The reason why a search can't work on chirps of one sample; `None` for more samples.
 pub(super) fn no_snapshot(radar: &Radar) -> Option<String> {
-    let why = "a snapshot has no ranges to search; it needs two samples or more";
-    (radar.samples < 2).then(|| why.to_owned())
+    let reason = "a snapshot has no ranges to search; it needs two samples or more";
+    (radar.samples < 2).then(|| reason.to_owned())
 }
 
 impl Reconstructor for Nomp {
@@ -152,15 +149,15 @@ impl Reconstructor for Nomp {
 }
 
 impl Found {
-    /// The map of the objects, over the floor of `request`. Its threshold is the answer's own where objects may be missing.
+    /// The expected map of the objects over the floor of `request`. Its threshold is computed from the map where objects may be missing.
     pub fn reconstruction(&self, radar: &Radar, request: &Request) -> Reconstruction {
         let expected = self.expected(radar, request);
-        let is_certain = self.complete && !request.noise.is_white();
+        let is_certain = self.is_complete && !request.noise.is_white();
         let eta = (!is_certain).then(|| own_threshold(&expected.map, None));
         Reconstruction { eta, ..self.as_drawn(expected.map, Some(expected.least_eta)) }
     }
 
-    /// The objects with a map of them, in which noise alone does not exceed `least_eta`, where that is known.
+    /// The objects with the map `lambda`, in which noise alone doesn't exceed `least_eta`.
     pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
         let certain = self.reflectivities.iter().zip(&self.needed_decades).filter(|(_, d)| **d >= CERTAIN_DECADES);
         let largest = certain.map(|(reflectivity, _)| reflectivity.abs()).reduce(f64::max).unwrap_or(f64::INFINITY);
@@ -173,23 +170,23 @@ impl Found {
         Reconstruction { lambda, reflectors, confidences, eta: None, least_eta, doubt: None, trace: self.trace.clone() }
     }
 
-    /// The expected map of the objects, and its scale; that of white noise without objects.
+    /// The expected map of the objects, or of white noise without any.
     pub fn expected(&self, radar: &Radar, request: &Request) -> Expected {
         if self.atoms.is_empty() {
             return expected_noise(radar, request.normalisation);
         }
         let noise = match request.noise {
-            NoisePrior::Rounding if self.complete => Noise::Rounding,
-            // Incomplete objects give a wrong rounding, so that the measured one is used.
-            NoisePrior::Rounding => Noise::RoundingHeard(self.noise_variance),
+            NoisePrior::Rounding if self.is_complete => Noise::Rounding,
+            // The rounding of an incomplete list is too small, so that the measured one is used.
+            NoisePrior::Rounding => Noise::RoundingScaled(self.noise_variance),
             NoisePrior::Nothing => Noise::Variance(self.sample_power * f64::EPSILON.powi(2) / 4.0),
-            NoisePrior::White { .. } if self.complete => Noise::Variance(self.residual_variance),
+            NoisePrior::White { .. } if self.is_complete => Noise::Variance(self.residual_variance),
             NoisePrior::White { .. } => Noise::Variance(self.noise_variance),
         };
         expected_lambda(radar, self.reflectors(1.0), noise, request)
     }
 
-    /// Probability that each reflector is real, by the energy that only its atom explains.
+    /// Probability that each reflector is real ([`confidence_at`]).
     fn confidences(&self) -> Vec<f64> {
         let of_atom =
             |(atom, needed): (&Atom, &f64)| std::iter::repeat_n(confidence_at(*needed), atom.reflector_count());
@@ -203,7 +200,7 @@ impl Found {
     }
 }
 
-/// Probability that an object is real that explains this many decades more than is left around it.
+/// Probability that an object is real, by the decades of [`Found::needed_decades`].
 fn confidence_at(needed_decades: f64) -> f64 {
     let odds = 10f64.powf(CONFIDENCE_SLOPE * (needed_decades - EVEN_ODDS_DECADES));
     odds / (1.0 + odds)

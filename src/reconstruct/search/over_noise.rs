@@ -1,4 +1,4 @@
-//! The mean of a log map's cell over white noise.
+//! Expectation of a log map's cell over white noise.
 
 use std::f64::consts::LN_10;
 use std::sync::LazyLock;
@@ -6,28 +6,28 @@ use std::sync::LazyLock;
 /// Euler's constant.
 pub const EULER: f64 = 0.577_215_664_901_532_9;
 
-/// Power over noise from which the noise no longer shows in the mean of the logarithm.
-const LARGE_RATIO: f64 = 40.0;
+/// Largest power of a cell over noise at which the noise changes the mean of the logarithm.
+const MAX_NOISY_POWER_RATIO: f64 = 40.0;
 
-/// Decades beneath the noise from which a cell no longer shows.
-const DEEPEST_DECADES: f64 = 3.0;
+/// Largest distance of a cell's amplitude below the noise at which it changes the mean, decades.
+const MAX_DEPTH_DECADES: f64 = 3.0;
 
-/// Entries of the table for each decade; a straight line between them is off by at most 1e-6 decades.
+/// Entries of the table for each decade. Linear interpolation is wrong by at most 1e-6 decades.
 const NODES_PER_DECADE: f64 = 1024.0;
 
-/// Mean lift of a cell by the noise, in decades, and density of the power near zero, as a part of noise's own, over the cell's decades above the
-/// noise, from [`DEEPEST_DECADES`] beneath it on.
+/// `[increase of a cell's mean by the noise, decades; density of its power near zero over that of noise alone]`, from [`MAX_DEPTH_DECADES`] below the
+/// noise on.
 static TABLE: LazyLock<Vec<[f32; 2]>> = LazyLock::new(|| {
-    let nodes = (NODES_PER_DECADE * (DEEPEST_DECADES + 0.5 * LARGE_RATIO.log10())) as usize + 2;
+    let nodes = (NODES_PER_DECADE * (MAX_DEPTH_DECADES + 0.5 * MAX_NOISY_POWER_RATIO.log10())) as usize + 2;
     let node = |i: usize| {
-        let decades = i as f64 / NODES_PER_DECADE - DEEPEST_DECADES;
+        let decades = i as f64 / NODES_PER_DECADE - MAX_DEPTH_DECADES;
         let ratio = 10f64.powf(2.0 * decades);
         [(0.5 * ln_plus_e1(ratio) / LN_10 - decades) as f32, (-ratio).exp() as f32]
     };
     (0..nodes).map(node).collect()
 });
 
-/// White noise beneath the cells of a map.
+/// White noise in the cells of a map.
 #[derive(Debug, Clone, Copy)]
 pub struct OverNoise {
     table: &'static [[f32; 2]],
@@ -37,37 +37,37 @@ pub struct OverNoise {
 /// A cell over noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoisyCell {
-    /// Mean decades of its amplitude.
+    /// Mean of the amplitude, decades.
     pub decades: f32,
-    /// Density of its power near zero, as a part of that of noise alone: the rate at which it is the smallest cell.
-    pub emptiness: f32,
+    /// Density of the power near zero over that of noise alone: the rate at which it is the weakest cell.
+    pub zero_density: f32,
 }
 
 impl OverNoise {
-    /// White noise of this mean power in a cell.
+    /// White noise of the mean power `power` in a cell.
     pub fn new(power: f64) -> Self {
         OverNoise { table: &TABLE, noise_decades: (0.5 * power.log10()) as f32 }
     }
 
-    /// The cell of this many decades of amplitude.
+    /// The cell whose amplitude without noise is `decades`.
     #[inline(always)]
     pub fn cell(&self, decades: f32) -> NoisyCell {
         let over = decades - self.noise_decades;
-        let at = (over + DEEPEST_DECADES as f32) * NODES_PER_DECADE as f32;
-        // A float cast saturates: deeper cells take the first node.
+        let at = (over + MAX_DEPTH_DECADES as f32) * NODES_PER_DECADE as f32;
+        // A float cast saturates: weaker cells have the first node.
         let node = at as usize;
-        let Some(&[[lift, emptiness], [next_lift, next_emptiness]]) =
+        let Some(&[[increase, zero_density], [next_increase, next_emptiness]]) =
             self.table.get(node..node + 2).and_then(|n| n.first_chunk())
         else {
-            return NoisyCell { decades, emptiness: 0.0 };
+            return NoisyCell { decades, zero_density: 0.0 };
         };
         let part = at.fract();
         if at <= 0.0 {
-            return NoisyCell { decades: self.noise_decades - DEEPEST_DECADES as f32 + lift, emptiness };
+            return NoisyCell { decades: self.noise_decades - MAX_DEPTH_DECADES as f32 + increase, zero_density };
         }
         NoisyCell {
-            decades: decades + lift + part * (next_lift - lift),
-            emptiness: emptiness + part * (next_emptiness - emptiness),
+            decades: decades + increase + part * (next_increase - increase),
+            zero_density: zero_density + part * (next_emptiness - zero_density),
         }
     }
 }
@@ -114,7 +114,7 @@ mod tests {
             let mean = if ratio < 600.0 { ln_plus_e1(ratio) } else { ratio.ln() };
             let expected = 0.5 * (noise.log10() + mean / LN_10);
             assert!((f64::from(found.decades) - expected).abs() < 1e-5, "{ratio}: {found:?} {expected}");
-            assert!((f64::from(found.emptiness) - (-ratio).exp()).abs() < 1e-5, "{ratio}: {found:?}");
+            assert!((f64::from(found.zero_density) - (-ratio).exp()).abs() < 1e-5, "{ratio}: {found:?}");
         }
     }
 }

@@ -1,66 +1,64 @@
 //! The removal of atoms that the others don't need.
 
-use super::propose::strides::MAX_RANGES;
+use super::propose::strides::MAX_RANGE_RATIO;
 use super::state::{Search, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::Refusal;
-use crate::reconstruct::fit::{Atom, Fit, Limits, Rows, distance_bins, rows_of};
+use crate::reconstruct::fit::{Atom, BinSpans, Fit, Limits, bin_spans, distance_bins};
 
-/// Energy that an atom must explain over what noise gives to one more gain, as a ratio.
-pub const MIN_WORTH_RATIO: f64 = 16.0;
+/// Least energy that an atom explains, over the mean energy that one gain explains of noise.
+pub const MIN_ENERGY_RATIO: f64 = 16.0;
 
-/// Most rounds of taking away.
-const MOST_ROUNDS: usize = 12;
+/// Largest number of rounds of removing atoms.
+const MAX_PRUNING_ROUNDS: usize = 12;
 
-/// Atoms nearer than this in range may do for each other: they are not taken, or taken away, in one round.
-pub const APART_BINS: f64 = 4.0;
+/// Range bins below which one atom may explain the echo of another, so that both are not added or removed in one round.
+pub const MIN_DISTANCE_BINS: f64 = 4.0;
 
 impl Search<'_> {
-    /// `fit` without the atoms whose absence noise could hide or the rounding of the others' places, those whose place ran away, and
-    /// those that only one end believes in.
+    /// `fit` without the atoms that explain no more than noise or the rounding of places, and those far beyond the maximum range.
     ///
     /// # Errors
     /// [`ReconstructError::Cancelled`].
     pub fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_PRUNING_ROUNDS {
             self.task.check()?;
-            if self.bench.work.is_spent() {
+            if self.fitter.work.is_spent() {
                 break;
             }
-            let rounding = self.bench.worth_of(self.rounding_amplitude(), self.radar);
-            let least = rounding.max(MIN_WORTH_RATIO * self.bench.gain_noise(self.radar, &fit));
-            let worth = self.bench.worths(&fit);
-            let rows: Vec<Rows> = fit.atoms.iter().map(|a| rows_of(self.radar, a)).collect();
-            let is_needless = |i: &usize| worth[*i] < least || self.ran_away(&fit.atoms[*i]);
+            let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude(), self.radar);
+            let least = rounding.max(MIN_ENERGY_RATIO * self.fitter.noise_energy(self.radar, &fit));
+            let energies = self.fitter.marginal_energies(&fit);
+            let spans: Vec<BinSpans> = fit.atoms.iter().map(|a| bin_spans(self.radar, a)).collect();
+            let distance = |i: usize, j: usize| distance_bins(self.radar.samples, &spans[i], &spans[j]);
+            let is_needless = |i: &usize| energies[*i] < least || self.is_out_of_range(&fit.atoms[*i]);
             let mut order: Vec<usize> = (0..fit.atoms.len()).filter(is_needless).collect();
-            order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
-            let mut gone: Vec<usize> = Vec::new();
+            order.sort_by(|a, b| energies[*a].total_cmp(&energies[*b]));
+            let mut removed: Vec<usize> = Vec::new();
             for i in order {
-                let is_apart = |j: &usize| distance_bins(self.radar.samples, &rows[i], &rows[*j]) > APART_BINS;
-                if gone.iter().all(is_apart) {
-                    gone.push(i);
+                if removed.iter().all(|&j| distance(i, j) > MIN_DISTANCE_BINS) {
+                    removed.push(i);
                 }
             }
-            if gone.is_empty() {
+            if removed.is_empty() {
                 break;
             }
-            for &i in &gone {
-                self.refuse(tried(&fit.atoms[i]), decades(fit.cost() + worth[i], fit.cost()), Refusal::RestDoesWithout);
+            for &i in &removed {
+                let gain_decades = decades(fit.cost() + energies[i], fit.cost());
+                self.record_refusal(tried(&fit.atoms[i]), gain_decades, Refusal::RestDoesWithout);
             }
-            fit = self.bench.less(fit, &gone);
-            let kept = (0..rows.len()).filter(|i| !gone.contains(i));
-            let beside = |i: usize| {
-                gone.iter().any(|&j| distance_bins(self.radar.samples, &rows[i], &rows[j]) < 2.0 * APART_BINS)
-            };
+            fit = self.fitter.remove(fit, &removed);
+            let kept = (0..spans.len()).filter(|i| !removed.contains(i));
+            let beside = |i: usize| removed.iter().any(|&j| distance(i, j) < 2.0 * MIN_DISTANCE_BINS);
             let marked: Vec<bool> = kept.map(beside).collect();
-            fit = self.refined(fit, &marked, APART_BINS, Limits::ROUGH)?;
+            fit = self.refined(fit, &marked, MIN_DISTANCE_BINS, Limits::ROUGH)?;
         }
         Ok(fit)
     }
 
-    fn ran_away(&self, atom: &Atom) -> bool {
+    fn is_out_of_range(&self, atom: &Atom) -> bool {
         let [x, y] = atom.position_metres(0.0);
-        x.hypot(y) > MAX_RANGES * self.radar.max_range_metres()
+        x.hypot(y) > MAX_RANGE_RATIO * self.radar.max_range_metres()
     }
 }

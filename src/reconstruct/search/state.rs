@@ -1,4 +1,4 @@
-//! The input of a search, its state, and the functions that several rungs share.
+//! The input of a search, its state, and functions of several rungs.
 
 use super::propose::pairs::{Pairs, paired_points};
 use super::propose::peaks::Detector;
@@ -7,157 +7,148 @@ use super::trace::{ORDERING, Trace, decades};
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
-use crate::reconstruct::fit::{Atom, Fit, Gains, Samples, Tie, Workbench};
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Samples, Tie};
 use crate::task::Task;
 
-/// Part of the samples' energy that is left where all is found but for its exact place.
-pub const NEARLY_NOTHING: f64 = 1e-5;
+/// Largest residual of a list in which no object is missing but places are inexact, as a part of the samples' energy.
+pub const NEARLY_COMPLETE_RESIDUAL_PART: f64 = 1e-5;
 
-/// Most rounds of pairing what is left, and of dropping pairs that the ends don't agree on.
-pub const MOST_ROUNDS: usize = 3;
+/// Largest number of rounds of rows, of pairs, and of removing pairs whose gains differ between the ends.
+pub const MAX_ROUNDS: usize = 3;
 
-/// Gains of one pair at both ends agree within this factor.
-const MOST_UNLIKE: f64 = 1.5;
+/// Largest ratio of the gains of a pair's point at the two ends.
+const MAX_PAIR_GAIN_RATIO: f64 = 1.5;
 
-/// The state of a search, which one rung leaves to the next, and its answer.
+/// The state of a search after a rung, and its answer after the last.
 pub struct State {
-    /// The objects found.
     pub fit: Fit,
-    /// Whether nothing stands out of what `fit` leaves: then the search stops.
-    pub is_sure: bool,
-    /// Points whose tones both ends hear in what `fit` leaves; `None` where an end hears too many tones.
+    /// Whether nothing stands out of the residual, so that the search stops.
+    pub is_complete: bool,
+    /// Points from tones of the residual; `None` where they were not searched, or an end has too many tones.
     pub pairs: Option<Pairs>,
 }
 
 impl State {
     pub fn of(fit: Fit) -> Self {
-        State { fit, is_sure: false, pairs: None }
+        State { fit, is_complete: false, pairs: None }
     }
 }
 
+/// The input of a search.
 pub struct Search<'a> {
     pub radar: &'a Radar,
-    /// Fits under the search's window, and the work that is left.
-    pub bench: &'a Workbench<'a>,
-    /// Looks for places.
+    pub fitter: &'a Fitter<'a>,
     pub detector: &'a Detector,
     pub samples: &'a Samples,
-    /// Whether white noise lies beneath the samples.
-    pub in_noise: bool,
+    /// Whether the samples contain white noise beside rounding.
+    pub has_white_noise: bool,
     pub settings: &'a Settings,
-    /// The task, which may be cancelled.
     pub task: &'a Task,
-    /// The record of attempts.
     pub trace: &'a Trace,
 }
 
 impl Search<'_> {
-    /// The state with the objects of `fit`, which is sure where nothing stands out of what they leave.
-    pub fn judged(&self, fit: Fit) -> State {
-        State { is_sure: self.is_explained(&fit), ..State::of(fit) }
+    /// The state of `fit`, complete if nothing stands out of the residual.
+    pub fn checked(&self, fit: Fit) -> State {
+        State { is_complete: self.is_explained(&fit), ..State::of(fit) }
     }
 
-    /// `answer` with as many echoes as noise lets be told apart, where there is noise.
-    pub fn ordered(&self, answer: State) -> Result<State, ReconstructError> {
-        if !self.in_noise || answer.fit.atoms.is_empty() {
+    /// `answer` with the number of echoes that white noise lets be resolved, where there is white noise.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn with_model_order(&self, answer: State) -> Result<State, ReconstructError> {
+        if !self.has_white_noise || answer.fit.atoms.is_empty() {
             return Ok(answer);
         }
         self.trace.enter(ORDERING);
-        self.bench.work.grant(self.settings.most_work / 2);
-        Ok(self.judged(self.pruned(self.relaxed(answer.fit)?)?))
+        self.fitter.work.grant(self.settings.max_work / 2);
+        Ok(self.checked(self.pruned(self.relaxed(answer.fit)?)?))
     }
 
-    /// `fit` brought to its end where all is there and not yet quite in its place: a map shows even what little is left.
-    pub fn nearly_there(&self, fit: Fit) -> Result<Fit, ReconstructError> {
-        if !self.is_nearly_all(&fit) {
+    /// `fit`, refined to the end if no object is missing: a log map shows even a small residual.
+    pub fn refined_if_nearly_complete(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+        if fit.cost() > NEARLY_COMPLETE_RESIDUAL_PART * self.fitter.energy(self.samples) {
             return Ok(fit);
         }
-        self.bench.work.grant(self.settings.most_work / 4);
-        self.pruned(self.refined_where_needed(fit)?)
+        self.fitter.work.grant(self.settings.max_work / 4);
+        self.pruned(self.refined_by_residual(fit)?)
     }
 
-    /// Records which objects of `fit` are new, and which of those `before` were exchanged.
-    pub fn tell_of(&self, before: &[Atom], fit: &Fit) {
+    /// Records the objects of `fit` that are new, and those of `before` that are gone.
+    pub fn record_changes(&self, before: &[Atom], fit: &Fit) {
         let is_in = |atom: &Atom, list: &[Atom]| list.iter().any(|other| self.is_same(atom, other));
         for atom in before.iter().filter(|atom| !is_in(atom, &fit.atoms)) {
-            self.refuse(tried(atom), 0.0, Refusal::Exchanged);
+            self.record_refusal(tried(atom), 0.0, Refusal::Exchanged);
         }
         for (atom, gains) in fit.atoms.iter().zip(&fit.gains).filter(|(atom, _)| !is_in(atom, before)) {
             let gain_decades = self.own_decades(fit, atom, gains);
-            self.trace.add(tried(atom), gain_decades, Verdict::Kept, self.bench.work.done());
+            self.trace.add(tried(atom), gain_decades, Verdict::Kept, self.fitter.work.done());
         }
     }
 
-    /// Whether two objects are one that was moved a little.
+    /// Whether two objects have the same number of reflectors, and ends less than a range bin apart.
     fn is_same(&self, a: &Atom, b: &Atom) -> bool {
-        let apart = |[i, j]: [f64; 2]| {
+        let distance_metres = |[i, j]: [f64; 2]| {
             let ([x, y], [other_x, other_y]) = (a.position_metres(i), b.position_metres(j));
             (x - other_x).hypot(y - other_y)
         };
         let last = [a, b].map(|atom| atom.reflector_count() as f64 - 1.0);
         a.reflector_count() == b.reflector_count()
-            && apart([0.0; 2]).max(apart(last)) < self.radar.range_resolution_metres()
+            && distance_metres([0.0; 2]).max(distance_metres(last)) < self.radar.range_resolution_metres()
     }
 
-    /// Whether `fit` holds all objects, though perhaps not quite where they are.
-    pub fn is_nearly_all(&self, fit: &Fit) -> bool {
-        fit.cost() <= NEARLY_NOTHING * self.bench.energy(self.samples)
-    }
-
-    /// Points whose tones both ends hear in what `fit` leaves; none where there are too many to tell apart.
-    pub fn pairs(&self, fit: &Fit) -> Pairs {
-        self.pairs_of_tones(fit).unwrap_or_default()
-    }
-
-    /// [`Search::pairs`]; `None` where an end has too many tones.
-    pub fn pairs_of_tones(&self, fit: &Fit) -> Option<Pairs> {
-        let flat = fit.residual.flat(&self.bench.sensor);
-        let noise = self.bench.hearing.noise_variance(self.radar, &flat);
+    /// Points from tones of the residual of `fit` that both ends have; `None` where an end has too many tones.
+    pub fn tone_pairs(&self, fit: &Fit) -> Option<Pairs> {
+        let flat = fit.residual.flat(&self.fitter.sensor);
+        let noise = self.fitter.noise_model.noise_variance(self.radar, &flat);
         paired_points(self.radar, &flat, noise)
     }
 
-    /// `known` and the points that `pairs` of what it leaves lead to, less those whose gains the ends don't agree on.
-    /// They are moved to their best places only if that is asked for.
-    pub fn paired(&self, known: Fit, pairs: &Pairs, polished: bool) -> Result<Fit, ReconstructError> {
+    /// `known` with the points of `pairs` whose gains are equal at both ends; `known` alone if they leave more. With `refines` places are refined.
+    ///
+    /// # Errors
+    /// [`ReconstructError::Cancelled`].
+    pub fn paired(&self, known: Fit, pairs: &Pairs, refines: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
         atoms.extend(pairs.points.iter().map(|point| point.atom));
         if atoms.len() == known.atoms.len() {
             return Ok(known);
         }
-        atoms.truncate(self.settings.most_atoms);
-        let mut fit = self.bench.solve(self.samples, atoms, Tie::PerEnd, 0.0);
-        for _ in 0..MOST_ROUNDS {
-            let (kept, unlike): (Vec<_>, Vec<_>) =
-                fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MOST_UNLIKE));
-            if unlike.is_empty() {
+        atoms.truncate(self.settings.max_atoms);
+        let mut fit = self.fitter.solve(self.samples, atoms, Tie::PerEnd, 0.0);
+        for _ in 0..MAX_ROUNDS {
+            let (agreed, unequal): (Vec<_>, Vec<_>) =
+                fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MAX_PAIR_GAIN_RATIO));
+            if unequal.is_empty() {
                 break;
             }
-            for (atom, gains) in unlike {
-                self.refuse(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
+            for (atom, gains) in unequal {
+                self.record_refusal(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
-            let kept = kept.into_iter().map(|(atom, _)| *atom).collect();
-            fit = self.bench.solve(self.samples, kept, Tie::PerEnd, 0.0);
+            let agreed = agreed.into_iter().map(|(atom, _)| *atom).collect();
+            fit = self.fitter.solve(self.samples, agreed, Tie::PerEnd, 0.0);
         }
         if fit.cost() > known.cost() {
             let tried = Tried::Together { count: pairs.points.len() };
-            self.refuse(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
+            self.record_refusal(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
             return Ok(known);
         }
-        if !polished || self.is_explained(&fit) { self.pruned(fit) } else { self.pruned(self.polished(fit, 1)?) }
+        if !refines || self.is_explained(&fit) { self.pruned(fit) } else { self.pruned(self.converged(fit, 1)?) }
     }
 }
 
-/// Whether the amplitudes of both ends' gains differ by less than the factor `within`.
-pub fn ends_agree(gains: &Gains, within: f64) -> bool {
+/// Whether the ratio of the gains' magnitudes at both ends is below `max_ratio`.
+pub fn ends_agree(gains: &Gains, max_ratio: f64) -> bool {
     let [a, b] = gains.map(|g| g.norm());
-    a.max(b) < within * a.min(b)
+    a.max(b) < max_ratio * a.min(b)
 }
 
-/// `atom` as an attempt names it.
+/// `atom` for the record of attempts.
 pub fn tried(atom: &Atom) -> Tried {
     let [from_metres, to_metres] = [0.0, atom.reflector_count() as f64 - 1.0].map(|i| atom.position_metres(i));
     match *atom {
         Atom::Point { .. } => Tried::Point { at_metres: from_metres },
-        Atom::Segment { count, .. } => Tried::Line { from_metres, to_metres, count },
+        Atom::Row { count, .. } => Tried::Line { from_metres, to_metres, count },
     }
 }

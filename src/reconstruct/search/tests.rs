@@ -167,9 +167,9 @@ fn what_takes_too_long_ends_where_its_work_is_spent() {
     let radar = Radar::default();
     let scene = Generator::new(&radar, Reading::Program, Purpose::Validation, 7).scene(Kind::Clusters, 0);
     let ends = ends_of(&radar, &scene);
-    let little = Settings { most_work: 2_000, ..Settings::default() };
+    let little = Settings { max_work: 2_000, ..Settings::default() };
     let first = find(&radar, &ends, &Request::default(), &little).unwrap();
-    assert!(!first.complete);
+    assert!(!first.is_complete);
     // Counted, not timed: the same every time.
     assert_eq!(first, find(&radar, &ends, &Request::default(), &little).unwrap());
 }

@@ -1,33 +1,34 @@
-//! The attempts of a search, recorded as they are made.
+//! The record of a search's attempts.
 
 use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
 use std::sync::{Mutex, PoisonError};
 
-/// Most attempts that are kept, the first ones: a crowded scene makes thousands.
-pub const MOST_ATTEMPTS: usize = 400;
+/// Largest number of attempts in a record; later ones are not recorded.
+pub const MAX_ATTEMPTS: usize = 400;
 
-/// Name in place of a rung's where the search began with the last answer.
+/// Name of the rung where the search begins with the last answer.
 pub const FOLLOWING: &str = "last answer";
 
-/// Name in place of a rung's where echoes that noise hides from each other are counted anew.
+/// Name of the rung where the number of echoes that noise hides from each other is found.
 pub const ORDERING: &str = "count in noise";
 
-/// Name in place of a rung's where gains of the elements are estimated.
+/// Name of the rung where gains of the elements are estimated.
 pub const CALIBRATION: &str = "calibration";
 
-/// Decades from `before` to `after`; 0 where there is nothing to compare.
+/// Decades by which `before` exceeds `after`; 0 where the ratio is 0 or not finite.
 pub fn decades(before: f64, after: f64) -> f64 {
     let decades = (before / after).log10();
     if decades.is_finite() { decades } else { 0.0 }
 }
 
-/// Attempts as they are made, by one thread at a time.
+/// The record, to which any thread may add.
 #[derive(Debug, Default)]
-pub struct Trace(Mutex<Kept>);
+pub struct Trace(Mutex<Record>);
 
 #[derive(Debug, Default)]
-struct Kept {
+struct Record {
     rung: &'static str,
+    /// Work at the last attempt.
     done: usize,
     attempts: Vec<Attempt>,
 }
@@ -35,30 +36,29 @@ struct Kept {
 impl Trace {
     /// Sets the rung of the attempts from here on.
     pub fn enter(&self, rung: &'static str) {
-        self.kept().rung = rung;
+        self.record().rung = rung;
     }
 
-    /// Adds an attempt; `done` is the total work until then.
+    /// Adds an attempt; `done` is the work of the search until then.
     pub fn add(&self, tried: Tried, gain_decades: f64, verdict: Verdict, done: usize) {
-        let mut kept = self.kept();
-        let work = done.saturating_sub(kept.done);
-        kept.done = done;
-        if kept.attempts.len() < MOST_ATTEMPTS {
-            let rung = kept.rung;
-            kept.attempts.push(Attempt { rung, tried, gain_decades, verdict, work });
+        let mut record = self.record();
+        let work = done.saturating_sub(record.done);
+        record.done = done;
+        if record.attempts.len() < MAX_ATTEMPTS {
+            let rung = record.rung;
+            record.attempts.push(Attempt { rung, tried, gain_decades, verdict, work });
         }
     }
 
-    /// Number of attempts in the record.
     pub fn count(&self) -> usize {
-        self.kept().attempts.len()
+        self.record().attempts.len()
     }
 
     pub fn into_attempts(self) -> Vec<Attempt> {
         self.0.into_inner().unwrap_or_else(PoisonError::into_inner).attempts
     }
 
-    fn kept(&self) -> std::sync::MutexGuard<'_, Kept> {
+    fn record(&self) -> std::sync::MutexGuard<'_, Record> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -71,11 +71,11 @@ mod tests {
     fn a_trace_keeps_the_first_attempts_of_many() {
         let trace = Trace::default();
         trace.enter("first rung");
-        for i in 0..MOST_ATTEMPTS + 5 {
+        for i in 0..MAX_ATTEMPTS + 5 {
             trace.add(Tried::Together { count: i }, 0.0, Verdict::Kept, 3 * i);
         }
         let attempts = trace.into_attempts();
-        assert_eq!(attempts.len(), MOST_ATTEMPTS);
+        assert_eq!(attempts.len(), MAX_ATTEMPTS);
         assert_eq!(
             (attempts[1].rung, attempts[1].tried, attempts[1].work),
             ("first rung", Tried::Together { count: 1 }, 3)

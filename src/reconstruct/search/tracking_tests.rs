@@ -27,7 +27,7 @@ fn ends_of(scene: &Scene, seed: u64) -> TwoEnds {
 
 fn assert_found(found: &Found, scene: &Scene) {
     assert_eq!(found.atoms.len(), scene.reflector_count(), "{:?}", found.atoms);
-    assert!(found.complete);
+    assert!(found.is_complete);
     for r in scene.reflectors() {
         let distance = |a: &Atom| {
             let [x, y] = a.position_metres(0.0);

@@ -1,120 +1,121 @@
-//! Rows of reflectors from their first alone: at the edge of a wall one reflector is heard by itself, however close the next.
+//! Rows from their first reflector alone: at the edge of a row one reflector is resolved, however near the next one.
 //!
-//! From such a point the beams tell whether echoes go on in a direction that walls mostly have. There every step that may be meant is tried
-//! over the first few reflectors, and the best are followed as rows over two points are.
+//! The beams show whether echoes continue from such a point in a direction that rows mostly have. In such a direction a grid of steps is tried over the
+//! first few reflectors, and the best rows are lengthened as those of `strides` are.
 
-use super::phased::{PhasedBeams, Presence, Row};
-use super::strides::{MIN_REFLECTORS, MOST_STEP_METRES, Start, best_of_each, pitches_metres, summits};
+use super::phased::{PeakPowers, PhasedBeams, Row};
+use super::strides::{
+    MAX_GRID_PEAKS, MAX_STEP_METRES, MIN_REFLECTORS, RowStart, grid_peaks, longest_of_each, pitches_metres,
+};
 use crate::reconstruct::fit::Atom;
 use crate::task::Task;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Range bins over which echoes must go on, and beyond which it no longer matters.
-const BINS: [u32; 2] = [20, 100];
+/// Least number of successive range bins with echoes in a direction, and the largest that is counted.
+const MIN_RUN_BINS: u32 = 20;
+const MAX_RUN_BINS: u32 = 100;
 
-/// Part of the strongest beam that echoes in the right direction have in the mean, in power and at both ends.
-const LEAST_ALONG: f64 = 0.3;
+/// Least mean of [`PlacePower::part`] in a direction.
+const MIN_BEAM_PART: f64 = 0.3;
 
-/// Power of echoes that go on, evened out over range, as a part of the point's own.
-const LEAST_EVEN: f64 = 0.02;
+/// Least range-compensated power of a continuing echo, over that of the point.
+const MIN_COMPENSATED_POWER_PART: f64 = 0.02;
 
-/// Most directions of all points that are looked into.
-const MOST_LOOKS: usize = 4;
+/// Largest number of directions of all points together.
+const MAX_DIRECTIONS: usize = 4;
 
-/// Radians by which a wall may deviate from its direction.
-const WITHIN_RADIANS: f64 = 0.01;
+/// Largest difference of a row's direction from one of [`DIRECTIONS_RADIANS`], radians.
+const MAX_TURN_RADIANS: f64 = 0.01;
 
-/// Shortest step, metres: rows of closer reflectors are all alike.
-const LEAST_STEP_METRES: f64 = 0.03;
+/// Least step, metres. Rows of smaller steps have nearly the same echoes.
+const MIN_EDGE_STEP_METRES: f64 = 0.03;
 
-/// From one row of a look to the next, wavelengths over the first few reflectors: one direction is looked into, so that steps may be finer
-/// than over pairs.
-const PITCH_WAVELENGTHS: f64 = 0.5;
+/// Difference of neighbouring rows of the grid at the last of the first few reflectors, wavelengths. The grid has one direction, so that it is finer than
+/// that of pairs.
+const EDGE_PITCH_WAVELENGTHS: f64 = 0.5;
 
-/// Rows of one look that are tried over twice as many reflectors, and those that are followed.
-const KEPT_ROWS: [usize; 2] = [40, 4];
+/// Largest number of a direction's rows that are tried over twice as many reflectors.
+const MAX_RETRIED_ROWS: usize = 40;
 
-/// Fewest reflectors of a row from an edge: the step is tried so finely that a few add up by chance.
-const LEAST_FROM_EDGE: usize = 24;
+/// Least number of reflectors of a row from an edge. The grid is so fine that the echoes of a few are coherent by chance.
+const MIN_EDGE_REFLECTORS: usize = 24;
 
-/// Directions that walls mostly have, radians from the array's axis: along it and across it.
+/// Directions that rows mostly have, radians from the array's axis: along it and across it.
 const DIRECTIONS_RADIANS: [f64; 4] = [0.0, FRAC_PI_2, PI, -FRAC_PI_2];
 
-/// Rows that begin at one of `points` (x, y; metres) and lead about along or across the array's axis, best first; one for each point at most.
+/// Rows from `points` (x, y; metres) nearly along or across the array's axis, the best first; at most one from each point.
 pub fn rows_from_edges(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
-    let strongest = beams.strongest();
-    let look = |first: usize, radians: f64| {
-        let presence = |place| beams.presence(&strongest, place);
-        let score = going_on(presence, beams.bin_metres(), points[first], radians)?;
-        Some(Look { first, radians, score })
+    let peak_powers = beams.peak_powers();
+    let candidate = |first: usize, radians: f64| {
+        run_score(beams, &peak_powers, points[first], radians).map(|score| Direction { first, radians, score })
     };
-    let mut looks: Vec<Look> = (0..points.len())
+    let mut directions: Vec<Direction> = (0..points.len())
         .into_par_iter()
-        .flat_map_iter(|first| DIRECTIONS_RADIANS.into_iter().filter_map(move |radians| look(first, radians)))
+        .flat_map_iter(|first| DIRECTIONS_RADIANS.into_iter().filter_map(move |radians| candidate(first, radians)))
         .collect();
-    looks.sort_by(|a, b| b.score.total_cmp(&a.score));
-    looks.truncate(MOST_LOOKS);
-    let rows_of = |look: &Look| {
-        let (rows, lengths) = fan(beams, points[look.first], look.radians);
-        let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
-        let kept: Vec<Row> = summits(&parts, lengths, KEPT_ROWS[0]).into_iter().map(|at| rows[at]).collect();
-        let parts = beams.parts_adding_up(&kept, 2 * MIN_REFLECTORS);
-        let mut longer: Vec<(f64, Row)> = parts.into_iter().zip(kept).collect();
-        longer.sort_by(|a, b| b.0.total_cmp(&a.0));
-        longer.truncate(KEPT_ROWS[1]);
-        longer
+    directions.sort_by(|a, b| b.score.total_cmp(&a.score));
+    directions.truncate(MAX_DIRECTIONS);
+    let starts_of = |direction: &Direction| {
+        let (rows, lengths) = rows_in_direction(beams, points[direction.first], direction.radians);
+        let parts = beams.coherent_parts(&rows, MIN_REFLECTORS);
+        let peaks: Vec<Row> = grid_peaks(&parts, lengths, MAX_RETRIED_ROWS).into_iter().map(|at| rows[at]).collect();
+        let parts = beams.coherent_parts(&peaks, 2 * MIN_REFLECTORS);
+        let mut best: Vec<(f64, Row)> = parts.into_iter().zip(peaks).collect();
+        best.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let starts = best.into_iter().take(MAX_GRID_PEAKS);
+        starts.map(|(_, row)| RowStart { first: direction.first, row }).collect::<Vec<_>>()
     };
-    let starts: Vec<Start> = looks
-        .par_iter()
-        .filter(|_| !task.is_cancelled())
-        .flat_map_iter(|look| rows_of(look).into_iter().map(|(_, row)| Start { first: look.first, row }))
-        .collect();
-    tracing::debug!(looks = looks.len(), starts = starts.len(), "edges");
-    let rows = best_of_each(beams, starts, task).into_iter();
-    rows.filter(|row| row.reflector_count() >= LEAST_FROM_EDGE).collect()
+    let starts: Vec<RowStart> =
+        directions.par_iter().filter(|_| !task.is_cancelled()).flat_map_iter(starts_of).collect();
+    tracing::debug!(directions = directions.len(), starts = starts.len(), "edges");
+    let rows = longest_of_each(beams, starts, task).into_iter();
+    rows.filter(|row| row.reflector_count() >= MIN_EDGE_REFLECTORS).collect()
 }
 
-/// Clarity and length of the echoes from `from` on in a direction; `None` where they soon end.
-fn going_on(presence: impl Fn([f64; 2]) -> Presence, bin_metres: f64, from: [f64; 2], radians: f64) -> Option<f64> {
+/// Mean part of the beams' power in a run of echoes from `from` on, times the square root of its range bins; `None` for a short or weak run.
+fn run_score(beams: &PhasedBeams, peak_powers: &PeakPowers, from: [f64; 2], radians: f64) -> Option<f64> {
+    let place_power = |place| beams.place_power(peak_powers, place);
     let (sin, cos) = radians.sin_cos();
-    let least_power = LEAST_EVEN * presence(from).even_power;
+    let least_power = MIN_COMPENSATED_POWER_PART * place_power(from).compensated_power;
     let (mut bins, mut sum) = (0, 0.0);
-    while bins < BINS[1] {
-        let distance = f64::from(bins + 1) * bin_metres;
+    while bins < MAX_RUN_BINS {
+        let distance = f64::from(bins + 1) * beams.bin_metres();
         let place = [from[0] + distance * cos, from[1] + distance * sin];
-        let there = presence(place);
-        if place[1] <= 0.0 || there.even_power < least_power {
+        let there = place_power(place);
+        if place[1] <= 0.0 || there.compensated_power < least_power {
             break;
         }
         (bins, sum) = (bins + 1, sum + there.part);
     }
     let part = sum / f64::from(bins.max(1));
-    (bins >= BINS[0] && part > LEAST_ALONG).then(|| part * f64::from(bins).sqrt())
+    (bins >= MIN_RUN_BINS && part > MIN_BEAM_PART).then(|| part * f64::from(bins).sqrt())
 }
 
-/// A direction in which echoes go on from a point.
-struct Look {
+/// A direction in which echoes continue from a point.
+struct Direction {
     /// Number of the point.
     first: usize,
+    /// Angle from the array's axis.
     radians: f64,
+    /// [`run_score`].
     score: f64,
 }
 
-/// Rows from one point in about one direction, turned from one side to the other, length after length; and the number of lengths.
-fn fan(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> (Vec<Row>, usize) {
-    let [along, across] = pitches_metres(beams, from_metres, MOST_STEP_METRES, PITCH_WAVELENGTHS);
+/// A grid of rows from one point in nearly one direction, `[step, turn]`, and its number of steps.
+fn rows_in_direction(beams: &PhasedBeams, from_metres: [f64; 2], radians: f64) -> (Vec<Row>, usize) {
+    let [along, across] = pitches_metres(beams, from_metres, MAX_STEP_METRES, EDGE_PITCH_WAVELENGTHS);
     let range = from_metres[0].hypot(from_metres[1]).max(0.1);
     let (sin, cos) = radians.sin_cos();
-    let by_sight = ((cos * from_metres[0] + sin * from_metres[1]) / range).abs();
-    let by_side = (1.0 - by_sight * by_sight).max(0.0).sqrt();
-    let length_pitch_metres = (by_sight / along + by_side / across).recip();
-    // A turn moves the ends of middling steps by the pitch across them.
-    let turn_pitch_radians = (by_sight / across + by_side / along).recip() / (0.5 * MOST_STEP_METRES);
-    let turns = (WITHIN_RADIANS / turn_pitch_radians).ceil() as i32;
-    let lengths = ((MOST_STEP_METRES - LEAST_STEP_METRES) / length_pitch_metres) as usize + 1;
+    let along_sight = ((cos * from_metres[0] + sin * from_metres[1]) / range).abs();
+    let across_sight = (1.0 - along_sight * along_sight).max(0.0).sqrt();
+    let length_pitch_metres = (along_sight / along + across_sight / across).recip();
+    // A turn by the pitch moves the last reflector of a row of the mean step by the pitch across.
+    let turn_pitch_radians = (along_sight / across + across_sight / along).recip() / (0.5 * MAX_STEP_METRES);
+    let turns = (MAX_TURN_RADIANS / turn_pitch_radians).ceil() as i32;
+    let lengths = ((MAX_STEP_METRES - MIN_EDGE_STEP_METRES) / length_pitch_metres) as usize + 1;
     let row = |(length, turn): (usize, i32)| {
-        let metres = LEAST_STEP_METRES + length as f64 * length_pitch_metres;
+        let metres = MIN_EDGE_STEP_METRES + length as f64 * length_pitch_metres;
         let (sin, cos) = (radians + f64::from(turn) * turn_pitch_radians).sin_cos();
         Row { first_metres: from_metres, step_metres: [metres * cos, metres * sin] }
     };

@@ -1,4 +1,4 @@
-//! Plain beams of each end over range, the first step of both detectors.
+//! Beams of each end over range.
 
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
@@ -9,11 +9,11 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Beams formed by each end for each of its elements: so many that an echo between two of them is hardly weaker.
+/// Number of beams of an end for each of its elements. An echo between two beams is hardly weaker.
 pub const BEAMS_PER_ELEMENT: usize = 4;
 
-/// `count` beams of each end, evenly spaced in cos(theta), of `samples` laid out channel by channel: `[beam, range bin]` for each
-/// end, phases referred to the middle of the end.
+/// `count` beams of each end, evenly spaced in cos(theta), `[beam, range bin]`, with phases referred to the middle of the end. `samples` are channel by
+/// channel, `[channels * samples]`.
 pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<Complex64>; 2] {
     let ends = TwoEnds::of_flat(radar, samples);
     let radians_per_element =
@@ -34,7 +34,7 @@ pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<
     })
 }
 
-/// Kernel that sums all elements' profiles, real and imaginary parts of one after the other's, with their steering phases.
+/// Kernel of one beam from the real and imaginary parts of the elements' range profiles, `[elements * range bins]`.
 struct Steer<'a> {
     profiles: [&'a [f64]; 2],
     steering: &'a [Complex64],
@@ -61,7 +61,7 @@ impl Kernel for Steer<'_> {
     }
 }
 
-/// Mean power that white noise of `variance` a sample leaves in a cell of [`end_beams`], and in a range bin of all of an end's elements together.
+/// Mean power of white noise of `variance` a sample in a cell of [`end_beams`], and its energy in a range bin of all elements of an end.
 pub fn beam_noise_power(radar: &Radar, variance: f64) -> f64 {
     let window: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum();
     variance * window / radar.samples as f64 * radar.end_elements as f64
@@ -72,9 +72,9 @@ fn cos_of_beam(beam: usize, count: usize) -> f64 {
     (beam as f64 + 0.5) / count as f64 * 2.0 - 1.0
 }
 
-/// The beam, of `count`, in whose part of cos(theta) this cosine falls.
+/// The beam, of `count`, that contains this cosine.
 #[inline(always)]
 pub fn beam_of_cos(cos: f64, count: usize) -> usize {
-    // A float cast saturates: cosines below -1 fall into the first beam.
+    // A float cast saturates: the first beam contains cosines below -1.
     (((cos + 1.0) * (0.5 * count as f64)) as usize).min(count - 1)
 }

@@ -1,15 +1,15 @@
-//! Sources of candidates for reflectors and lines of them; none of the candidates is tested against the samples here.
+//! Sources of candidates for points and rows, which are tested against the samples elsewhere.
 //!
 //! | file | content |
 //! |---|---|
 //! | `view` | the range and the direction of a place from an end |
-//! | `end_beams` | each end's plain beams |
-//! | `peaks` | points where a residual stands out, both ends registered |
+//! | `end_beams` | beams of each end over range |
+//! | `peaks` | points at peaks of a residual at both ends |
 //! | `tones` | ranges from one element's chirp |
-//! | `pairs` | points that both ends' tones agree on |
-//! | `phased` | each end's beams with their phases, and lines looked up in them |
-//! | `strides` | lines from their first two reflectors |
-//! | `edges` | lines from their first reflector alone |
+//! | `pairs` | points from tones of both ends |
+//! | `phased` | beams with phases, and the echoes of rows in them |
+//! | `strides` | rows from their first two reflectors |
+//! | `edges` | rows from their first reflector alone |
 //! | `runs` | the number of successive range bins with an echo |
 
 pub mod edges;

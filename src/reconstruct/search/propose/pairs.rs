@@ -1,5 +1,5 @@
-//! Pairs of both ends' tones. A reflector is one tone at the first end and one at the last; their two ranges give its place, and each end's
-//! phases its direction, so that true pairs agree and others don't.
+//! Points from pairs of tones. A reflector has one tone at the first end and one at the last. Their two ranges give its place, and the phases of each end
+//! its direction, which agree for true pairs only.
 
 use super::tones::{Tone, gains_of_tones, tones};
 use crate::radar::{self, End, Radar};
@@ -7,42 +7,45 @@ use crate::reconstruct::fit::Atom;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Cosines of a pair's directions, as measured and as they follow from its place, agree this well without noise.
-const COS: f64 = 0.01;
+/// Largest error of a measured cosine of the direction without noise.
+const MAX_COS_ERROR: f64 = 0.01;
 
-/// Echoes of a pair, made equal by the 1/R^2 law, agree this well, as a logarithm.
-const LOG_GAIN: f64 = 0.1;
+/// Largest difference of the amplitudes of a pair, compensated for range by the 1/R^2 law, nepers.
+const MAX_LOG_GAIN_ERROR: f64 = 0.1;
 
-/// A disagreement of this many times all that is allowed makes no pair.
-const MOST_APART: f64 = 3.0;
+/// Largest [`Paired::disagreement`] of a point.
+const MAX_DISAGREEMENT: f64 = 3.0;
 
-/// Range bins within which the last end is searched for the prediction of the first end's direction.
-const SEARCH_BINS: f64 = 2.0;
+/// Range bins around the range predicted by the first end within which the last end's tones are searched: the least, and the largest where noise makes
+/// the direction inexact.
+const MIN_SEARCH_BINS: f64 = 2.0;
+const MAX_SEARCH_BINS: f64 = 6.0;
 
-/// Standard deviations of noise that are allowed.
-const DEVIATIONS: f64 = 4.0;
+/// Largest error by noise, standard deviations.
+const NOISE_DEVIATIONS: f64 = 4.0;
 
-/// Factor of the tolerances of directions and gains where tones are hardly separated; pairs within them are guesses.
-const GUESS: f64 = 6.0;
+/// Largest disagreement of a guess over that of a point: tones that are hardly resolved have large errors.
+const GUESS_TOLERANCE_RATIO: f64 = 6.0;
 
-/// Guesses that one tone takes part in.
-const MOST_GUESSES: usize = 2;
+/// Largest number of guesses with the same tone.
+const MAX_GUESSES_PER_TONE: usize = 2;
 
-/// A place beyond the maximum range is not looked at where all that speaks for or against it differs by less than this, as a part of what is
-/// allowed, from what does for the place within: the array is too small to see curvature there.
-const ALIKE_ERRORS: f64 = 1.0;
+/// Least difference of the disagreements of two pairs, one within the maximum range and one beyond, for the second to be a candidate. With less the array
+/// is too small to measure the curvature.
+const MIN_EVIDENCE_DIFFERENCE: f64 = 1.0;
 
-/// Rounds in which directions and the tones of the neighbouring element are brought together, and in which the ranges of a pair of antennas become
-/// those of one: each leaves a small part of the difference.
-const ROUNDS: usize = 4;
+/// Fixed-point iterations of a direction and of a pair of antennas; each leaves a small part of the error.
+const FIXED_POINT_ROUNDS: usize = 4;
 
-/// A tone of one end.
+/// A tone at one end.
 #[derive(Debug, Clone, Copy)]
-struct Heard {
+struct EndTone {
+    /// Range, range bins, wrapped.
     bins: f64,
+    /// Cosine of the direction.
     cos: f64,
     amplitude: f64,
-    /// Largest error of the direction's cosine by noise.
+    /// Largest error of the cosine.
     cos_tolerance: f64,
 }
 
@@ -50,107 +53,109 @@ struct Heard {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paired {
     pub atom: Atom,
-    /// Disagreement of the ends, as a part of the tolerance: directions and gains together.
-    pub apart: f64,
+    /// Sum of the magnitudes of [`Pair::disagreements`].
+    pub disagreement: f64,
 }
 
 /// A tone at each end that may be one reflector.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
+    /// Number of the tone at the first end.
     first: usize,
+    /// Number of the tone at the last end.
     last: usize,
     point: Paired,
-    /// Disagreements of the directions at both ends and of the gains, as parts of their tolerances.
+    /// Differences of the directions at both ends and of the gains, over their tolerances.
     disagreements: [f64; 3],
 }
 
 impl Pair {
-    /// Whether the same tones support `other` as well as this pair.
-    fn sounds_like(&self, other: &Self) -> bool {
+    /// Whether `other` has the same tone and nearly the same disagreements.
+    fn is_equivalent(&self, other: &Self) -> bool {
         let differences = self.disagreements.iter().zip(other.disagreements).map(|(own, other)| (own - other).abs());
-        self.last == other.last && differences.sum::<f64>() < ALIKE_ERRORS
+        self.last == other.last && differences.sum::<f64>() < MIN_EVIDENCE_DIFFERENCE
     }
 }
 
-/// An end's element nearest to its middle, and the tones heard there.
-struct Listener {
+/// The element nearest to the middle of an end, and its tones.
+struct MiddleElement {
     x_metres: f64,
-    /// Distance from this element to the next, which gives directions.
+    /// Distance to the next element, whose phases give directions.
     step_metres: f64,
-    /// Antennas of both, where transmitters stand apart from receivers.
+    /// Antennas of both elements, where transmitters are apart from receivers.
     antennas: Option<[radar::Pair; 2]>,
-    heard: Vec<Heard>,
+    tones: Vec<EndTone>,
 }
 
 /// A range and the cosine of a direction.
 #[derive(Debug, Clone, Copy, Default)]
-struct Seen {
+struct RangeCos {
     range_metres: f64,
     cos: f64,
 }
 
-impl Listener {
-    /// The place (x, y) at a range and in a direction from here, metres.
+impl MiddleElement {
+    /// The place (x, y) at a range and in a direction from this element, metres.
     fn place_metres(&self, range_metres: f64, cos: f64) -> [f64; 2] {
         [self.x_metres + range_metres * cos, range_metres * (1.0 - cos * cos).max(0.0).sqrt()]
     }
 
-    /// Excess of this element's range and cosine for the place at (x, y) over those of a single antenna at the element's place.
-    fn more_than_one_antenna(&self, [x, y]: [f64; 2]) -> Seen {
-        let Some([own, next]) = &self.antennas else { return Seen::default() };
+    /// Range and cosine that this element measures for the place at (x, y), metres, minus those of a single antenna at the element's place.
+    fn excess(&self, [x, y]: [f64; 2]) -> RangeCos {
+        let Some([own, next]) = &self.antennas else { return RangeCos::default() };
         let dx = x - self.x_metres;
-        let alone = dx.hypot(y).max(f64::MIN_POSITIVE);
+        let range = dx.hypot(y).max(f64::MIN_POSITIVE);
         let measured = own.range_metres(x, y);
         let cos = (measured - next.range_metres(x, y)) / self.step_metres;
-        Seen { range_metres: measured - alone, cos: cos - dx / alone }
+        RangeCos { range_metres: measured - range, cos: cos - dx / range }
     }
 
-    /// Range and cosine of a single antenna here, for the place that this element measures at a range and in a direction.
-    fn as_one_antenna(&self, range_metres: f64, cos: f64) -> Seen {
-        let measured = Seen { range_metres, cos };
-        let nearer = |seen: Seen| {
-            let more = self.more_than_one_antenna(self.place_metres(seen.range_metres, seen.cos.clamp(-1.0, 1.0)));
-            Seen { range_metres: range_metres - more.range_metres, cos: cos - more.cos }
+    /// Range and cosine at a single antenna for the place at which this element measures `range_metres` and `cos`.
+    fn as_one_antenna(&self, range_metres: f64, cos: f64) -> RangeCos {
+        let measured = RangeCos { range_metres, cos };
+        let iterate = |at: RangeCos| {
+            let excess = self.excess(self.place_metres(at.range_metres, at.cos.clamp(-1.0, 1.0)));
+            RangeCos { range_metres: range_metres - excess.range_metres, cos: cos - excess.cos }
         };
-        (0..ROUNDS).fold(measured, |seen, _| nearer(seen))
+        (0..FIXED_POINT_ROUNDS).fold(measured, |at, _| iterate(at))
     }
 }
 
 /// Points and guesses from both ends' tones.
 #[derive(Debug, Clone, Default)]
 pub struct Pairs {
-    /// Points, each of tones of its own, those first on which the ends agree best.
+    /// Points, no two of which have a tone in common, the one with the least disagreement first.
     pub points: Vec<Paired>,
-    /// Places (x, y), metres, where points may be: those and others that take part in the same tones.
+    /// Places (x, y), metres, of points and of further pairs.
     pub guesses_metres: Vec<[f64; 2]>,
 }
 
-/// Points whose tones both ends hear, from samples laid out channel by channel over white noise of `noise_variance`. `None` where an end
-/// hears more tones than it can tell apart, or where neighbouring elements are too far apart to tell directions.
+/// Points with a tone at both ends, from samples channel by channel, `[channels * samples]`, over white noise of `noise_variance`. `None` where an end has
+/// more tones than it can resolve, or where neighbouring elements are too far apart for a unique direction.
 pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> Option<Pairs> {
-    let listen = |end: End| {
+    let of_end = |end: End| {
         let at = if end == End::First { 0 } else { radar.end_elements };
         let channels: Vec<&[Complex64]> = flat.chunks_exact(radar.samples).skip(at).take(radar.end_elements).collect();
-        listener(radar, end, &channels, noise_variance)
+        middle_element(radar, end, &channels, noise_variance)
     };
-    let (first, last) = rayon::join(|| listen(End::First), || listen(End::Last));
+    let (first, last) = rayon::join(|| of_end(End::First), || of_end(End::Last));
     let (first, last) = (first?, last?);
     let mut pairs: Vec<Pair> = Vec::new();
-    for i in 0..first.heard.len() {
+    for i in 0..first.tones.len() {
         let within = candidates(radar, &first, &last, i, 0);
         let mut beyond = candidates(radar, &first, &last, i, 1);
-        beyond.retain(|far| !within.iter().any(|near| near.sounds_like(far)));
+        beyond.retain(|far| !within.iter().any(|near| near.is_equivalent(far)));
         pairs.extend(within);
         pairs.extend(beyond);
     }
-    pairs.sort_by(|a, b| a.point.apart.total_cmp(&b.point.apart));
-    let guesses = matched(&pairs, &first, &last, MOST_GUESSES);
+    pairs.sort_by(|a, b| a.point.disagreement.total_cmp(&b.point.disagreement));
+    let guesses = matched(&pairs, &first, &last, MAX_GUESSES_PER_TONE);
     let guesses_metres = guesses.iter().map(|pair| pair.point.atom.position_metres(0.0)).collect();
-    pairs.retain(|pair| pair.point.apart < MOST_APART);
+    pairs.retain(|pair| pair.point.disagreement < MAX_DISAGREEMENT);
     let points: Vec<Paired> = matched(&pairs, &first, &last, 1).iter().map(|pair| pair.point).collect();
     tracing::debug!(
-        first = first.heard.len(),
-        last = last.heard.len(),
+        first = first.tones.len(),
+        last = last.tones.len(),
         points = points.len(),
         guesses = guesses.len(),
         "tones"
@@ -158,11 +163,11 @@ pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> 
     Some(Pairs { points, guesses_metres })
 }
 
-/// The best of `pairs`, each tone in `most` of them.
-fn matched(pairs: &[Pair], first: &Listener, last: &Listener, most: usize) -> Vec<Pair> {
-    let (mut first_taken, mut last_taken) = (vec![0; first.heard.len()], vec![0; last.heard.len()]);
+/// The best of the sorted `pairs`, each tone in `max_uses` of them at most.
+fn matched(pairs: &[Pair], first: &MiddleElement, last: &MiddleElement, max_uses: usize) -> Vec<Pair> {
+    let (mut first_taken, mut last_taken) = (vec![0; first.tones.len()], vec![0; last.tones.len()]);
     let mut free = |pair: &&Pair| {
-        let is_free = first_taken[pair.first] < most && last_taken[pair.last] < most;
+        let is_free = first_taken[pair.first] < max_uses && last_taken[pair.last] < max_uses;
         if is_free {
             first_taken[pair.first] += 1;
             last_taken[pair.last] += 1;
@@ -172,8 +177,8 @@ fn matched(pairs: &[Pair], first: &Listener, last: &Listener, most: usize) -> Ve
     pairs.iter().filter(|pair| free(pair)).copied().collect()
 }
 
-/// Tones of an end's middle element, with directions from the element beside it.
-fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: f64) -> Option<Listener> {
+/// The middle element of an end with `channels`, `[elements][samples]`. Directions are by the phases of the next element.
+fn middle_element(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: f64) -> Option<MiddleElement> {
     let middle = (radar.end_elements.max(1) - 1) / 2;
     let (own, beside) = (channels.get(middle)?, channels.get(middle + 1)?);
     let number = radar.end_range(end).start + middle;
@@ -183,56 +188,56 @@ fn listener(radar: &Radar, end: End, channels: &[&[Complex64]], noise_variance: 
     let radians_per_metre = TAU
         * (radar.carrier.turns_per_wavelength() / radar.wavelength_metres()
             + chirp_middle / radar.samples as f64 / radar.range_resolution_metres());
-    // Half a turn from one element to the next is what a direction may amount to.
+    // A direction is unique up to half a turn from one element to the next.
     if (radians_per_metre * step_metres).abs() > 1.05 * TAU / 2.0 {
         return None;
     }
     let tones = tones(own, noise_variance)?;
     let gains = gains_of_tones(own, &tones);
     let mut cosines = vec![0.0f64; tones.len()];
-    for _ in 0..ROUNDS {
+    for _ in 0..FIXED_POINT_ROUNDS {
         let nearer = |cos: &f64| step_metres * cos / radar.range_resolution_metres();
         let moved: Vec<Tone> =
             tones.iter().zip(&cosines).map(|(tone, cos)| Tone { bins: tone.bins - nearer(cos), ..*tone }).collect();
-        let mut changed = 0.0f64;
+        let mut change = 0.0f64;
         for ((cos, own), beside) in cosines.iter_mut().zip(&gains).zip(gains_of_tones(beside, &moved)) {
             let nearer_metres = -(beside * own.conj()).arg() / radians_per_metre;
             let before = std::mem::replace(cos, (nearer_metres / step_metres).clamp(-1.0, 1.0));
-            changed = changed.max((*cos - before).abs());
+            change = change.max((*cos - before).abs());
         }
-        if changed < 0.1 * COS {
+        if change < 0.1 * MAX_COS_ERROR {
             break;
         }
     }
     let deviation = (noise_variance / radar.samples as f64).sqrt() / (radians_per_metre * step_metres).abs();
-    let heard = tones.iter().zip(&gains).zip(&cosines).map(|((tone, gain), cos)| Heard {
+    let tones = tones.iter().zip(&gains).zip(&cosines).map(|((tone, gain), cos)| EndTone {
         bins: tone.bins,
         cos: *cos,
         amplitude: gain.norm(),
-        cos_tolerance: COS + DEVIATIONS * deviation / gain.norm().max(f64::MIN_POSITIVE),
+        cos_tolerance: MAX_COS_ERROR + NOISE_DEVIATIONS * deviation / gain.norm().max(f64::MIN_POSITIVE),
     });
     let antennas = (!radar.is_monostatic()).then(|| [radar.pair(number), radar.pair(number + 1)]);
-    Some(Listener { x_metres, step_metres, antennas, heard: heard.collect() })
+    Some(MiddleElement { x_metres, step_metres, antennas, tones: tones.collect() })
 }
 
-/// The pairs of tone `i` of the first end, if its range has wrapped this often.
-fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps: usize) -> Vec<Pair> {
+/// The pairs of tone `i` of the first end, for a range beyond `wraps` maximum ranges.
+fn candidates(radar: &Radar, first: &MiddleElement, last: &MiddleElement, i: usize, wraps: usize) -> Vec<Pair> {
     let (bins, bin_metres) = (radar.samples as f64, radar.range_resolution_metres());
     let between = last.x_metres - first.x_metres;
-    let own = first.heard[i];
-    let Seen { range_metres: range, cos } =
+    let own = first.tones[i];
+    let RangeCos { range_metres: range, cos } =
         first.as_one_antenna((own.bins + wraps as f64 * bins) * bin_metres, own.cos);
     let from_last = (range * range + between * between - 2.0 * range * cos * between).max(0.0).sqrt();
-    let more = last.more_than_one_antenna(first.place_metres(range, cos));
-    let predicted = (from_last + more.range_metres) / bin_metres;
+    let excess = last.excess(first.place_metres(range, cos));
+    let predicted = (from_last + excess.range_metres) / bin_metres;
     let mut pairs = Vec::new();
-    for (j, other) in last.heard.iter().enumerate() {
-        let off = (predicted - other.bins + bins / 2.0).rem_euclid(bins) - bins / 2.0;
-        let search = SEARCH_BINS.max((own.cos_tolerance * between / bin_metres).min(6.0));
-        if off.abs() > search {
+    for (j, other) in last.tones.iter().enumerate() {
+        let error = (predicted - other.bins + bins / 2.0).rem_euclid(bins) - bins / 2.0;
+        let search = MIN_SEARCH_BINS.max((own.cos_tolerance * between / bin_metres).min(MAX_SEARCH_BINS));
+        if error.abs() > search {
             continue;
         }
-        let other_range = (predicted - off) * bin_metres - more.range_metres;
+        let other_range = (predicted - error) * bin_metres - excess.range_metres;
         let along = (range * range - other_range * other_range + between * between) / (2.0 * between);
         let square = range * range - along * along;
         if range <= 0.0 || other_range <= 0.0 || square < 0.0 {
@@ -240,13 +245,13 @@ fn candidates(radar: &Radar, first: &Listener, last: &Listener, i: usize, wraps:
         }
         let disagreements = [
             (along / range - cos) / own.cos_tolerance,
-            ((along - between) / other_range - (other.cos - more.cos)) / other.cos_tolerance,
-            (own.amplitude * range * range / (other.amplitude * other_range * other_range)).ln() / LOG_GAIN,
+            ((along - between) / other_range - (other.cos - excess.cos)) / other.cos_tolerance,
+            (own.amplitude * range * range / (other.amplitude * other_range * other_range)).ln() / MAX_LOG_GAIN_ERROR,
         ];
-        let apart = disagreements.iter().map(|part| part.abs()).sum();
-        if apart < GUESS * MOST_APART {
+        let disagreement = disagreements.iter().map(|part| part.abs()).sum();
+        if disagreement < GUESS_TOLERANCE_RATIO * MAX_DISAGREEMENT {
             let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
-            pairs.push(Pair { first: i, last: j, point: Paired { atom, apart }, disagreements });
+            pairs.push(Pair { first: i, last: j, point: Paired { atom, disagreement }, disagreements });
         }
     }
     pairs

@@ -1,52 +1,50 @@
-//! Peaks of a residual: both ends' beams on the polar grid of the array's centre. A reflector has different ranges and angles at the ends, so each
-//! cell looks up its own range and angle at each end.
+//! Peaks of a residual on a polar grid around the array's centre. The power in a cell is the product of the magnitudes of both ends' beams, each at the
+//! range and direction of the cell from that end.
 //!
-//! Magnitudes are multiplied, not amplitudes added, since the phase between the ends changes with every column of the full map; a peak of one
-//! end alone is a ghost.
+//! Amplitudes are not added, since the phase between the ends changes with each column of the full map. A peak of one end alone is a ghost.
 
 use super::end_beams::{BEAMS_PER_ELEMENT, beam_of_cos, end_beams};
 use super::view::View;
 use crate::radar::{End, Radar};
-use crate::reconstruct::fit::Rows;
+use crate::reconstruct::fit::BinSpans;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Columns of the common polar grid for each element of an end.
+/// Columns of the grid for each element of an end.
 const COLUMNS_PER_ELEMENT: usize = 10;
 
-/// Least distance in range bins of two places from one look at the residual: the residual of the stronger one comes first.
-const ALONE_BINS: usize = 8;
+/// Least distance in range of two peaks of one search: the residual of the stronger one may be the nearer one.
+const MIN_PEAK_DISTANCE_BINS: usize = 8;
 
-/// Range bins beyond rows that count as within.
-const EDGE_BINS: f64 = 1.0;
+/// Range bins beside spans that count as within.
+const SPAN_MARGIN_BINS: f64 = 1.0;
 
-/// Fewest cells of the common grid that are worth a task of their own.
-const LEAST_CELLS: usize = 4096;
+/// Least number of cells of a task.
+const MIN_TASK_CELLS: usize = 4096;
 
-/// A search for peaks on the common grid.
+/// The grid of a radar.
 pub struct Detector {
-    /// Centre (x, y) of every cell, metres, range after range; one wrap beyond the maximum range included.
+    /// Centre (x, y) of each cell, metres, `[range bins * columns]`, up to twice the maximum range.
     places_metres: Vec<[f64; 2]>,
-    /// `[beam * range bins + range bin]` of every cell, for each end.
+    /// Number `beam * range bins + range bin` of each cell at each end.
     cells: [Vec<u32>; 2],
     beams: usize,
     bins: usize,
 }
 
-/// The last detector made: the radar seldom changes.
-static LAST: Mutex<Option<(Radar, Arc<Detector>)>> = Mutex::new(None);
+/// The detector of the last radar: the radar seldom changes.
+static LAST_DETECTOR: Mutex<Option<(Radar, Arc<Detector>)>> = Mutex::new(None);
 
 impl Detector {
-    /// The detector of `radar`, the last one if it was made for the same radar.
+    /// The detector of `radar`.
     pub fn of(radar: &Radar) -> Arc<Detector> {
-        // Nothing is computed while the lock is held.
-        let last = LAST.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let last = LAST_DETECTOR.lock().unwrap_or_else(PoisonError::into_inner).clone();
         if let Some((_, detector)) = last.filter(|(of, _)| of == radar) {
             return detector;
         }
         let detector = Arc::new(Detector::new(radar));
-        *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some((radar.clone(), detector.clone()));
+        *LAST_DETECTOR.lock().unwrap_or_else(PoisonError::into_inner) = Some((radar.clone(), detector.clone()));
         detector
     }
 
@@ -62,7 +60,7 @@ impl Detector {
         let cells = End::BOTH.map(|end| {
             let view = View::of(radar, end);
             let cell = |place: &[f64; 2]| {
-                let (range, cos) = view.of_place(*place, 1e-9);
+                let (range, cos) = view.range_and_cos(*place, 1e-9);
                 let row = (range / bin_metres).round() as usize % bins;
                 (beam_of_cos(cos, beams) * bins + row) as u32
             };
@@ -71,39 +69,40 @@ impl Detector {
         Detector { places_metres, cells, beams, bins }
     }
 
+    /// Range bin of cell `i` at an end.
     fn bin(&self, end: usize, i: u32) -> usize {
         self.cells[end][i as usize] as usize % self.bins
     }
 
-    /// Up to `most` places (x, y; metres) whose power exceeds `least`, strongest first, none of which may be a side lobe of a stronger one.
-    /// `residual` is not windowed.
-    pub fn peaks(&self, radar: &Radar, residual: &[Complex64], least: f64, most: usize) -> Vec<[f64; 2]> {
+    /// At most `max_peaks` places (x, y; metres) whose power exceeds `min_power`, the strongest first, without those that may be side lobes of stronger
+    /// ones. `residual` is channel by channel, `[channels * samples]`, without a window.
+    pub fn peaks(&self, radar: &Radar, residual: &[Complex64], min_power: f64, max_peaks: usize) -> Vec<[f64; 2]> {
         let powers = self.powers(radar, residual);
-        let strong = |i: u32| Some((powers.of(i), i)).filter(|(p, _)| f64::from(*p) > least);
+        let strong = |i: u32| Some((powers.of(i), i)).filter(|(p, _)| f64::from(*p) > min_power);
         let mut strong: Vec<(f32, u32)> = self.cells().filter_map(strong).collect();
         let mut found = Vec::new();
         let mut next = strongest(strong.iter().copied());
         while let Some((power, i)) = next {
             let power = f64::from(power);
             found.push(self.places_metres[i as usize]);
-            if found.len() == most {
+            if found.len() == max_peaks {
                 break;
             }
-            let [near, far] = [0, 1].map(|end| self.side_lobes(self.bin(end, i)));
-            let lobe = |i: u32| near[self.bin(0, i)] * far[self.bin(1, i)];
+            let [first, last] = [0, 1].map(|end| self.side_lobes(self.bin(end, i)));
+            let lobe = |i: u32| first[self.bin(0, i)] * last[self.bin(1, i)];
             strong.retain(|&(other, i)| f64::from(other) > power * lobe(i));
             next = strongest(strong.iter().copied());
         }
         found
     }
 
-    /// The place (x, y; metres) of the greatest power at both ends in these rows, or at their edges.
-    pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], rows: &Rows) -> Option<[f64; 2]> {
+    /// The place (x, y; metres) of the largest power in `spans` and their margins.
+    pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], spans: &BinSpans) -> Option<[f64; 2]> {
         let powers = self.powers(radar, residual);
         let bins = self.bins as f64;
         let is_within = |end: usize, bin: u32| {
-            let (low, high) = rows[end];
-            (f64::from(bin) - low + EDGE_BINS).rem_euclid(bins) <= high - low + 2.0 * EDGE_BINS
+            let (low, high) = spans[end];
+            (f64::from(bin) - low + SPAN_MARGIN_BINS).rem_euclid(bins) <= high - low + 2.0 * SPAN_MARGIN_BINS
         };
         let near = |end: usize| (0..self.bins as u32).map(|bin| is_within(end, bin)).collect::<Vec<bool>>();
         let [first, last] = [0, 1].map(near);
@@ -112,9 +111,8 @@ impl Detector {
         strongest(cells.into_iter()).map(|(_, i)| self.places_metres[i as usize])
     }
 
-    /// All cells of the common grid.
     fn cells(&self) -> impl IndexedParallelIterator<Item = u32> {
-        (0..self.places_metres.len() as u32).into_par_iter().with_min_len(LEAST_CELLS)
+        (0..self.places_metres.len() as u32).into_par_iter().with_min_len(MIN_TASK_CELLS)
     }
 
     fn powers(&self, radar: &Radar, residual: &[Complex64]) -> Powers<'_> {
@@ -123,32 +121,33 @@ impl Detector {
         Powers { cells: &self.cells, magnitudes }
     }
 
-    /// Largest amplitude of a reflector in range bin `own` in every other bin at one end, relative to its own.
+    /// Bound of the amplitude, in each range bin of an end, of a reflector in range bin `own`, over its amplitude there.
     fn side_lobes(&self, own: usize) -> Vec<f64> {
         let lobe = |other: usize| {
-            let apart = own.abs_diff(other);
-            let apart = apart.min(self.bins - apart);
-            // Magnitude of the Hann window's side lobes, and some margin.
-            if apart <= ALONE_BINS { f64::INFINITY } else { 4.0 / (apart as f64 - 1.0).powi(3) }
+            let distance = own.abs_diff(other);
+            let distance = distance.min(self.bins - distance);
+            // The side lobes of the Hann window, with a margin.
+            if distance <= MIN_PEAK_DISTANCE_BINS { f64::INFINITY } else { 4.0 / (distance as f64 - 1.0).powi(3) }
         };
         (0..self.bins).map(lobe).collect()
     }
 }
 
-/// Both ends' beams in the cells of the common grid.
+/// Magnitudes of both ends' beams.
 struct Powers<'a> {
     cells: &'a [Vec<u32>; 2],
     magnitudes: [Vec<f32>; 2],
 }
 
 impl Powers<'_> {
+    /// Power in cell `i`.
     fn of(&self, i: u32) -> f32 {
         let [first, last] = [0, 1].map(|end| self.magnitudes[end][self.cells[end][i as usize] as usize]);
         first * last
     }
 }
 
-/// The strongest of some cells, the first of equal ones.
+/// The strongest cell, the first of equal ones.
 fn strongest(cells: impl Iterator<Item = (f32, u32)>) -> Option<(f32, u32)> {
     cells.reduce(|a, b| if b.0 > a.0 { b } else { a })
 }

@@ -42,7 +42,7 @@ pub struct Row {
 
 /// A reflector's echo at an end. The phase of its range is taken out.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Heard {
+pub struct ReflectorEcho {
     /// The beam's value times the amplitude `1/R^2` of a reflector of gain 1.
     pub weighted: Complex64,
     /// Square of that amplitude.
@@ -50,15 +50,15 @@ pub struct Heard {
 }
 
 /// Power of the strongest beam in each range bin, for each end.
-pub struct Strongest([Vec<f64>; 2]);
+pub struct PeakPowers([Vec<f64>; 2]);
 
 /// Power of the beams at a place. Each figure is the smaller one of the two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Presence {
+pub struct PlacePower {
     /// Power of the beam towards the place over that of the strongest beam in the same range bin, 0 to 1.
     pub part: f64,
     /// Power of that strongest beam times `R^4`, so that it doesn't depend on the range of a reflector.
-    pub even_power: f64,
+    pub compensated_power: f64,
 }
 
 impl Row {
@@ -91,9 +91,8 @@ impl PhasedBeams {
         }
     }
 
-    /// The power of the strongest beam in each range bin.
-    pub fn strongest(&self) -> Strongest {
-        Strongest(self.beams.each_ref().map(|beams| {
+    pub fn peak_powers(&self) -> PeakPowers {
+        PeakPowers(self.beams.each_ref().map(|beams| {
             let mut peak = vec![0.0f64; self.bins];
             for beam in beams.chunks_exact(self.bins) {
                 peak.iter_mut().zip(beam).for_each(|(peak, v)| *peak = peak.max(v.norm_sqr()));
@@ -103,16 +102,16 @@ impl PhasedBeams {
     }
 
     /// The power of the beams at a place (x, y), metres.
-    pub fn presence(&self, strongest: &Strongest, place_metres: [f64; 2]) -> Presence {
+    pub fn place_power(&self, peak_powers: &PeakPowers, place_metres: [f64; 2]) -> PlacePower {
         let of_end = |end: usize| {
-            let (range, cos) = self.views[end].of_place(place_metres, MIN_RANGE_METRES);
+            let (range, cos) = self.views[end].range_and_cos(place_metres, MIN_RANGE_METRES);
             let bin = (range * self.bins_per_metre).round() as usize % self.bins;
             let own = self.beams[end][beam_of_cos(cos, BEAM_COUNT) * self.bins + bin].norm_sqr();
-            let peak = strongest.0[end][bin].max(f64::MIN_POSITIVE);
-            Presence { part: own / peak, even_power: peak * range.powi(4) }
+            let peak = peak_powers.0[end][bin].max(f64::MIN_POSITIVE);
+            PlacePower { part: own / peak, compensated_power: peak * range.powi(4) }
         };
         let (a, b) = (of_end(0), of_end(1));
-        Presence { part: a.part.min(b.part), even_power: a.even_power.min(b.even_power) }
+        PlacePower { part: a.part.min(b.part), compensated_power: a.compensated_power.min(b.compensated_power) }
     }
 
     /// The unambiguous range, metres.
@@ -127,34 +126,34 @@ impl PhasedBeams {
 
     /// Coherent part of the beams' power at the places of each of `rows`, 0 to 1: the power that `count` reflectors of one gain explain, over the sum
     /// of the powers. 0 for a row that ends behind the array.
-    pub fn parts_adding_up(&self, rows: &[Row], count: usize) -> Vec<f64> {
+    pub fn coherent_parts(&self, rows: &[Row], count: usize) -> Vec<f64> {
         Simd::chosen().run(CoherentParts { beams: self, rows, count })
     }
 
-    /// [`Self::parts_adding_up`] of one row, with a reflector for each entry of the buffer `heard`. The gain may differ between the ends.
+    /// [`Self::coherent_parts`] of one row, with a reflector for each entry of the buffer `echoes`. Each end has its own gain.
     #[inline(always)]
-    fn coherent_part<const FMA: bool>(&self, row: &Row, heard: &mut [Heard]) -> f64 {
-        if row.place_metres((heard.len() - 1) as f64)[1] <= 0.0 {
+    fn coherent_part<const FMA: bool>(&self, row: &Row, echoes: &mut [ReflectorEcho]) -> f64 {
+        if row.place_metres((echoes.len() - 1) as f64)[1] <= 0.0 {
             return 0.0;
         }
         let (mut coherent, mut total) = (0.0, 0.0);
         for end in 0..self.beams.len() {
-            self.listen::<FMA>(end, row, heard);
-            let AddedUp { sum, weight, power } = added_up(heard);
+            self.reflector_echoes::<FMA>(end, row, echoes);
+            let RowSums { sum, weight, power } = row_sums(echoes);
             (coherent, total) = (coherent + sum.norm_sqr() / weight, total + power);
         }
         coherent / f64::max(total, f64::MIN_POSITIVE)
     }
 
-    /// Writes the echoes of the first reflectors of `row` at an end (0 or 1) into `heard`, one for each entry.
+    /// Writes the echoes of the first reflectors of `row` at an end (0 or 1) into `echoes`, one for each entry.
     #[inline(always)]
-    pub fn listen<const FMA: bool>(&self, end: usize, row: &Row, heard: &mut [Heard]) {
+    pub fn reflector_echoes<const FMA: bool>(&self, end: usize, row: &Row, echoes: &mut [ReflectorEcho]) {
         let PhasedBeams { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self;
         let [x, y] = row.first_metres;
         let [step_x, step_y] = row.step_metres;
         let view = &self.views[end];
         let from = x - view.centre_metres;
-        for (block, heard) in heard.chunks_mut(W).enumerate() {
+        for (block, echoes) in echoes.chunks_mut(W).enumerate() {
             let i = Lanes::<f64, W>(std::array::from_fn(|lane| (block * W + lane) as f64));
             let dx = i * Lanes::splat(step_x) + Lanes::splat(from);
             let y = i * Lanes::splat(step_y) + Lanes::splat(y);
@@ -163,7 +162,7 @@ impl PhasedBeams {
             let inverse = range.map(f64::recip);
             let (cos, at, amplitude) =
                 (view.cos_theta(dx, y, inverse), range * Lanes::splat(bins_per_metre), inverse * inverse);
-            for (lane, heard) in heard.iter_mut().enumerate() {
+            for (lane, echoes) in echoes.iter_mut().enumerate() {
                 let beam = &self.beams[end][beam_of_cos(cos.0[lane], BEAM_COUNT) * bins..][..bins];
                 let low = at.0[lane] as usize;
                 let part = at.0[lane] - low as f64;
@@ -172,13 +171,13 @@ impl PhasedBeams {
                 let value = at_bin(low) * (1.0 - part) + at_bin(low + 1) * part;
                 let amplitude = amplitude.0[lane];
                 let phase = Complex64::new(phase.re.0[lane], phase.im.0[lane]);
-                *heard = Heard { weighted: value * phase * amplitude, weight: amplitude * amplitude };
+                *echoes = ReflectorEcho { weighted: value * phase * amplitude, weight: amplitude * amplitude };
             }
         }
     }
 }
 
-/// Kernel of [`PhasedBeams::parts_adding_up`].
+/// Kernel of [`PhasedBeams::coherent_parts`].
 struct CoherentParts<'a> {
     beams: &'a PhasedBeams,
     rows: &'a [Row],
@@ -190,17 +189,17 @@ impl Kernel for CoherentParts<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let mut heard = vec![Heard::default(); self.count];
+        let mut echoes = vec![ReflectorEcho::default(); self.count];
         let mut parts = Vec::with_capacity(self.rows.len());
         for row in self.rows {
-            parts.push(self.beams.coherent_part::<FMA>(row, &mut heard));
+            parts.push(self.beams.coherent_part::<FMA>(row, &mut echoes));
         }
         parts
     }
 }
 
 /// Sums over the echoes of a row at an end.
-pub struct AddedUp {
+pub struct RowSums {
     /// Sum of the weighted values.
     pub sum: Complex64,
     /// Sum of the weights. `|sum|^2 / weight` is the power that a row of one gain explains.
@@ -211,9 +210,9 @@ pub struct AddedUp {
 
 /// The sums over the echoes of a row at an end.
 #[inline(always)]
-pub fn added_up(heard: &[Heard]) -> AddedUp {
-    let mut out = AddedUp { sum: Complex64::default(), weight: 0.0, power: 0.0 };
-    for h in heard {
+pub fn row_sums(echoes: &[ReflectorEcho]) -> RowSums {
+    let mut out = RowSums { sum: Complex64::default(), weight: 0.0, power: 0.0 };
+    for h in echoes {
         out.sum += h.weighted;
         out.weight += h.weight;
         out.power += h.weighted.norm_sqr() / h.weight;

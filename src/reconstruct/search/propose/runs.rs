@@ -1,4 +1,4 @@
-//! The number of successive range bins with an echo.
+//! Length of runs of range bins with echoes.
 
 use super::end_beams::beam_noise_power;
 use crate::maps::channels_range_transform;
@@ -6,20 +6,20 @@ use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
-/// Power of an echo in a range bin, over that of the noise.
-pub const ABOVE_NOISE: f64 = 4.0;
+/// Least power of an echo in a range bin over that of the noise.
+pub const MIN_ECHO_OVER_NOISE: f64 = 4.0;
 
-/// Weakest echo, over the strongest, after scaling by the 1/R^4 law of power.
-const WEAKEST: f64 = 1e-6;
+/// Least power of an echo over the strongest, both times `R^4`.
+const MIN_ECHO_POWER_RATIO: f64 = 1e-6;
 
-/// Range bins that are added before this scaling: near the array the law no longer holds.
-const NEAR_BINS: f64 = 10.0;
+/// Range bins that are added to the range `R`: near the array powers grow less than by `1/R^4`.
+const ADDED_RANGE_BINS: f64 = 10.0;
 
-/// Fewest successive range bins that count as longer than a few reflectors.
-pub const LONG_RUN_BINS: usize = 18;
+/// Least length of a run that is more than a few reflectors.
+pub const MIN_LONG_RUN_BINS: usize = 18;
 
-/// Length of the longest row of neighbouring range bins that hold an echo, at either end, in `residual` (all samples of both ends, not windowed). An echo
-/// stands out of noise of `noise_variance`, and lies at most 60 dB below the strongest when ranges are evened out.
+/// Number of successive range bins with an echo, at the end where it is larger. `residual` is channel by channel, `[channels * samples]`, without a window,
+/// over white noise of `noise_variance`.
 pub fn longest_run_bins(radar: &Radar, residual: &[Complex64], noise_variance: f64) -> usize {
     let ends = TwoEnds::of_flat(radar, residual);
     let noise = beam_noise_power(radar, noise_variance);
@@ -27,9 +27,10 @@ pub fn longest_run_bins(radar: &Radar, residual: &[Complex64], noise_variance: f
         let profiles = channels_range_transform(radar, ends.end(end).view()).profiles;
         let power = |bin: usize| profiles.column(bin).iter().map(Complex64::norm_sqr).sum::<f64>();
         let powers: Vec<f64> = (0..radar.samples).map(power).collect();
-        let even = |bin: usize| powers[bin] * (bin as f64 + NEAR_BINS).powi(4);
-        let strongest = (0..radar.samples).map(even).fold(0.0, f64::max);
-        let is_echo = |bin| powers[bin] > ABOVE_NOISE * noise && even(bin) >= WEAKEST * strongest;
+        let compensated = |bin: usize| powers[bin] * (bin as f64 + ADDED_RANGE_BINS).powi(4);
+        let strongest = (0..radar.samples).map(compensated).fold(0.0, f64::max);
+        let is_echo =
+            |bin| powers[bin] > MIN_ECHO_OVER_NOISE * noise && compensated(bin) >= MIN_ECHO_POWER_RATIO * strongest;
         let echoes: Vec<bool> = (0..radar.samples).map(is_echo).collect();
         echoes.split(|echo| !*echo).map(<[bool]>::len).max().unwrap_or(0)
     };

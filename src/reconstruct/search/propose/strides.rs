@@ -1,10 +1,9 @@
-//! Rows of reflectors from their first two: a wall whose points stand too close to be told apart still shows those at its ends.
+//! Rows from their first two reflectors: a row of reflectors too close to be resolved still has points at its ends.
 //!
-//! From one point that both ends hear over about another, every step that may be meant is tried over the first few reflectors. The best
-//! are moved to where all their echoes add up, over more and more reflectors: the longer the row, the finer it is known, and the fewer
-//! wrong ones go along.
+//! From one point over another one nearby, a grid of steps is tried over the first few reflectors. The best rows are lengthened. At each length they
+//! are moved to the largest coherent power of their echoes, and the worst are dropped: the longer the row, the more exact its place.
 
-use super::phased::{AddedUp, Heard, PhasedBeams, Row, added_up};
+use super::phased::{PhasedBeams, ReflectorEcho, Row, RowSums, row_sums};
 use crate::reconstruct::fit::{Atom, damped_step};
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
@@ -13,90 +12,88 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-/// Fewest reflectors of a wall, and those over which rows are tried first.
+/// Least number of reflectors of a row, over which grids are tried.
 pub const MIN_REFLECTORS: usize = 8;
 
-/// Longest step from one reflector of a row to the next, metres.
-pub const MOST_STEP_METRES: f64 = 0.4;
+/// Largest step from one reflector of a row to the next, metres.
+pub const MAX_STEP_METRES: f64 = 0.4;
 
-/// Shortest step, metres: nearer points are one that was found twice.
-pub const LEAST_STEP_METRES: f64 = 0.02;
+/// Least distance of two points, metres. Nearer ones are one point, found twice.
+pub const MIN_STEP_METRES: f64 = 0.02;
 
-/// Neighbours of a point that its row may lead over.
-const NEIGHBOURS: usize = 8;
+/// Largest number of neighbours of a point that are tried as the second reflector.
+const MAX_NEIGHBOURS: usize = 8;
 
-/// Steps of the grid around a pair to each side, along the line of sight and across.
-const REACH: [i32; 2] = [7, 9];
+/// Steps of a grid to each side, along the line of sight and across.
+const GRID_SIDE_STEPS: [i32; 2] = [7, 9];
 
-/// From one step of the grid to the next, wavelengths over all reflectors of the first glance: halfway between, two thirds of the power
-/// still add up.
+/// Difference of neighbouring rows of a grid at the last reflector, wavelengths. Halfway between two rows two thirds of the power are coherent.
 const PITCH_WAVELENGTHS: f64 = 0.7;
 
-/// Steps of a pair that are followed further.
-const KEPT_STEPS: usize = 4;
+/// Largest number of a grid's rows that are lengthened.
+pub const MAX_GRID_PEAKS: usize = 4;
 
-/// Grids whose best rows are followed further.
-const MOST_GRIDS: usize = 48;
+/// Largest number of grids whose rows are lengthened.
+const MAX_GRIDS: usize = 48;
 
-/// Reflectors of all rows together that are followed at each length.
-const MOST_FOLLOWED: usize = 3000;
+/// Largest number of reflectors of all rows together at a length.
+const MAX_FOLLOWED_REFLECTORS: usize = 3000;
 
-/// Most reflectors of a row.
-const MOST_REFLECTORS: usize = 140;
+/// Largest number of reflectors of a lengthened row.
+const MAX_ROW_LENGTH: usize = 140;
 
-/// Growth of the row's length from one step to the next.
-const GROWTH: f64 = 1.4;
+/// Ratio of successive lengths of a row.
+const LENGTH_RATIO: f64 = 1.4;
 
-/// Moves of a row at each length.
-const MOVES: usize = 4;
+/// Largest number of moves of a row at a length.
+const MAX_MOVES: usize = 4;
 
-/// A move that adds less than this part of the power is the last.
-const LEAST_ADDED: f64 = 0.002;
+/// Increase of the coherent power below which a move is the last, as a part of the power.
+const MIN_ADDED_PART: f64 = 0.002;
 
-/// Rows and points that reach farther than this many maximum ranges ran away.
-pub const MAX_RANGES: f64 = 2.5;
+/// Largest range of rows and points over the maximum range.
+pub const MAX_RANGE_RATIO: f64 = 2.5;
 
-/// A row that adds up to less than this part of the most it did has passed its end.
-const PASSED: f64 = 0.4;
+/// Least coherent power of a row over its largest at shorter lengths. With less the row is past its end.
+const MIN_POWER_RATIO: f64 = 0.4;
 
-/// Rows from one of `points` (x, y; metres) over another, best first; one for each first point at most.
+/// Rows from `points` (x, y; metres) over other ones, the best first; at most one from each point.
 pub fn rows_over_pairs(beams: &PhasedBeams, points: &[[f64; 2]], task: &Task) -> Vec<Atom> {
     let neighbours_of = |i: usize| neighbours(points, i).map(move |j| (i, j));
     let pairs: Vec<(usize, usize)> = (0..points.len()).flat_map(neighbours_of).collect();
-    // The best rows of every pair, with the part of the beams' power that adds up in each.
-    let glance = |&(first, over): &(usize, usize)| {
+    // The best rows of a pair, with their coherent parts.
+    let best_of_grid = |&(first, over): &(usize, usize)| {
         let rows = if task.is_cancelled() { Vec::new() } else { grid(beams, points[first], points[over]) };
-        let parts = beams.parts_adding_up(&rows, MIN_REFLECTORS);
-        let best = summits(&parts, (2 * REACH[0] + 1) as usize, KEPT_STEPS).into_iter();
-        best.map(|at| (parts[at], Start { first, row: rows[at] })).collect::<Vec<_>>()
+        let parts = beams.coherent_parts(&rows, MIN_REFLECTORS);
+        let best = grid_peaks(&parts, (2 * GRID_SIDE_STEPS[0] + 1) as usize, MAX_GRID_PEAKS).into_iter();
+        best.map(|at| (parts[at], RowStart { first, row: rows[at] })).collect::<Vec<_>>()
     };
-    let mut grids: Vec<Vec<(f64, Start)>> = pairs.par_iter().map(glance).collect();
-    let best = |grid: &[(f64, Start)]| grid.first().map_or(0.0, |(part, _)| *part);
+    let mut grids: Vec<Vec<(f64, RowStart)>> = pairs.par_iter().map(best_of_grid).collect();
+    let best = |grid: &[(f64, RowStart)]| grid.first().map_or(0.0, |(part, _)| *part);
     grids.sort_by(|a, b| best(b).total_cmp(&best(a)));
-    grids.truncate(MOST_GRIDS);
-    best_of_each(beams, grids.into_iter().flatten().map(|(_, start)| start).collect(), task)
+    grids.truncate(MAX_GRIDS);
+    longest_of_each(beams, grids.into_iter().flatten().map(|(_, start)| start).collect(), task)
 }
 
-/// A row of a few reflectors, to be followed.
+/// The first few reflectors of a row.
 #[derive(Debug, Clone, Copy)]
-pub struct Start {
-    /// Number of the point that it begins at.
+pub struct RowStart {
+    /// Number of the point at which it begins.
     pub first: usize,
     pub row: Row,
 }
 
-/// The rows as far as their echoes add up, best first; one for each first point at most.
-///
-/// All are followed over more and more reflectors, those ever fewer that add up best: every length takes about as long as the last.
-pub fn best_of_each(beams: &PhasedBeams, starts: Vec<Start>, task: &Task) -> Vec<Atom> {
-    let mut rows: Vec<Followed> = starts.into_iter().map(Followed::new).collect();
+/// The rows with as many reflectors as have coherent echoes, the best first; at most one from each point. At each length the number of reflectors of
+/// all rows together is limited.
+pub fn longest_of_each(beams: &PhasedBeams, starts: Vec<RowStart>, task: &Task) -> Vec<Atom> {
+    let mut rows: Vec<GrowingRow> = starts.into_iter().map(GrowingRow::new).collect();
     let mut count = MIN_REFLECTORS;
-    while count <= MOST_REFLECTORS && !task.is_cancelled() {
-        let most = MOST_FOLLOWED / count;
+    while count <= MAX_ROW_LENGTH && !task.is_cancelled() {
+        let max_rows = MAX_FOLLOWED_REFLECTORS / count;
         rows.sort_by(|a, b| b.part.total_cmp(&a.part));
-        rows.par_iter_mut().take(most).for_each(|row| row.lengthen(beams, count));
-        rows.iter_mut().skip(most).for_each(|row| row.part = 0.0);
-        count = (count as f64 * GROWTH) as usize + 1;
+        rows.par_iter_mut().take(max_rows).for_each(|row| row.lengthen(beams, count));
+        rows.iter_mut().skip(max_rows).for_each(|row| row.part = 0.0);
+        count = (count as f64 * LENGTH_RATIO) as usize + 1;
     }
     let mut found: Vec<(usize, (f64, Atom))> =
         rows.iter().filter_map(|row| Some((row.start.first, row.best?))).collect();
@@ -106,18 +103,18 @@ pub fn best_of_each(beams: &PhasedBeams, starts: Vec<Start>, task: &Task) -> Vec
     found.into_iter().map(|(_, (_, atom))| atom).collect()
 }
 
-/// The nearest points that may be next to point `i` in a row.
+/// The nearest points that may be the second reflector of a row from point `i`.
 fn neighbours(points: &[[f64; 2]], i: usize) -> impl Iterator<Item = usize> {
-    let apart = |j: usize| (points[j][0] - points[i][0]).hypot(points[j][1] - points[i][1]);
+    let distance = |j: usize| (points[j][0] - points[i][0]).hypot(points[j][1] - points[i][1]);
     let mut near: Vec<(f64, usize)> = (0..points.len())
-        .map(|j| (apart(j), j))
-        .filter(|(metres, _)| (LEAST_STEP_METRES..=MOST_STEP_METRES).contains(metres))
+        .map(|j| (distance(j), j))
+        .filter(|(metres, _)| (MIN_STEP_METRES..=MAX_STEP_METRES).contains(metres))
         .collect();
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    near.into_iter().take(NEIGHBOURS).map(|(_, j)| j)
+    near.into_iter().take(MAX_NEIGHBOURS).map(|(_, j)| j)
 }
 
-/// Rows from one point over about another: by steps along the line of sight, and for each of these by steps across.
+/// A grid of rows from one point over another one, `[along the line of sight, across]`.
 fn grid(beams: &PhasedBeams, from: [f64; 2], over: [f64; 2]) -> Vec<Row> {
     let step = [over[0] - from[0], over[1] - from[1]];
     let range = from[0].hypot(from[1]).max(0.1);
@@ -128,90 +125,92 @@ fn grid(beams: &PhasedBeams, from: [f64; 2], over: [f64; 2]) -> Vec<Row> {
         let [i, j] = [i, j].map(f64::from);
         Row { first_metres: from, step_metres: [0, 1].map(|axis| step[axis] + i * along[axis] + j * across[axis]) }
     };
-    let [far, wide] = REACH;
+    let [far, wide] = GRID_SIDE_STEPS;
     (-far..=far).flat_map(|i| (-wide..=wide).map(move |j| (i, j))).map(|(i, j)| row(i, j)).collect()
 }
 
-/// Steps of a grid over the first few reflectors, for rows of about this step, so that neighbours differ by so many wavelengths over all of
-/// them: along the line of sight, and across.
+/// Differences of the steps of neighbouring rows of a grid, metres, along the line of sight and across: those that move the last of
+/// [`MIN_REFLECTORS`] reflectors by `wavelengths` in range.
 pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wavelengths: f64) -> [f64; 2] {
     let range = from[0].hypot(from[1]).max(0.1);
     let between = (beams.views[1].centre_metres - beams.views[0].centre_metres).abs().max(1e-3);
     let wavelength = beams.turns_per_metre.abs().recip();
     let last = (MIN_REFLECTORS - 1) as f64;
-    // By the range itself, by its difference between the ends, by the row's curvature.
+    // A step across changes the difference of the ranges at the ends, or the curvature of the range along the row, by as much.
     let along = wavelengths * wavelength / last;
     let curved = wavelengths * wavelength * range / (step_metres * last * last);
     [along, (along * range / between).min(curved)]
 }
 
-/// The `most` highest of those places of a grid of so many `rows` that no neighbour exceeds, best first.
-pub fn summits(parts: &[f64], rows: usize, most: usize) -> Vec<usize> {
+/// Numbers of the local maxima of a grid `[rows, columns]`, at most `max_peaks`, the largest first.
+pub fn grid_peaks(parts: &[f64], rows: usize, max_peaks: usize) -> Vec<usize> {
     let columns = parts.len() / rows.max(1);
-    let is_summit = |at: usize| {
+    let is_peak = |at: usize| {
         let (i, j) = (at / columns, at % columns);
         let beside = (i.saturating_sub(1)..=(i + 1).min(rows - 1))
             .flat_map(|k| (j.saturating_sub(1)..=(j + 1).min(columns - 1)).map(move |l| k * columns + l));
         beside.into_iter().all(|other| parts[other] <= parts[at])
     };
-    let mut summits: Vec<usize> = (0..parts.len()).filter(|&at| parts[at] > 0.0 && is_summit(at)).collect();
-    summits.sort_by(|a, b| parts[*b].total_cmp(&parts[*a]));
-    summits.truncate(most);
-    summits
+    let mut peaks: Vec<usize> = (0..parts.len()).filter(|&at| parts[at] > 0.0 && is_peak(at)).collect();
+    peaks.sort_by(|a, b| parts[*b].total_cmp(&parts[*a]));
+    peaks.truncate(max_peaks);
+    peaks
 }
 
-/// A row that is followed over more and more reflectors.
-struct Followed {
-    start: Start,
-    /// Part of the power at its places that adds up; 0 where it has passed its end.
+/// A row at successive lengths.
+struct GrowingRow {
+    start: RowStart,
+    /// Coherent part of the power at its places; 0 once it is dropped.
     part: f64,
-    most: f64,
-    /// Number of reflectors whose echoes add up, more or less, at the length at which most adds up, and the row of that length.
+    /// Largest coherent power.
+    max_power: f64,
+    /// The row at the length with that power, after its coherent part times its number of reflectors.
     best: Option<(f64, Atom)>,
 }
 
-impl Followed {
-    fn new(start: Start) -> Self {
-        Followed { start, part: 1.0, most: 0.0, best: None }
+impl GrowingRow {
+    fn new(start: RowStart) -> Self {
+        GrowingRow { start, part: 1.0, max_power: 0.0, best: None }
     }
 
-    /// Moves the row over its first `count` reflectors to where their echoes add up.
+    /// Moves the row to the largest coherent power of its first `count` reflectors.
     fn lengthen(&mut self, beams: &PhasedBeams, count: usize) {
         if self.part == 0.0 {
             return;
         }
         self.part = 0.0;
-        let Some((row, slope)) = climbed(beams, self.start.row, count) else { return };
+        let Some((row, equations)) = maximised(beams, self.start.row, count) else { return };
         self.start.row = row;
-        if slope.added < PASSED * self.most {
+        if equations.coherent_power < MIN_POWER_RATIO * self.max_power {
             return;
         }
-        self.part = slope.added / f64::max(slope.all, f64::MIN_POSITIVE);
-        if slope.added > self.most {
-            self.most = slope.added;
+        self.part = equations.coherent_power / f64::max(equations.power, f64::MIN_POSITIVE);
+        if equations.coherent_power > self.max_power {
+            self.max_power = equations.coherent_power;
             let ([x_metres, y_metres], [dx_metres, dy_metres]) = (row.first_metres, row.step_metres);
-            let atom = Atom::Segment { x_metres, y_metres, dx_metres, dy_metres, count };
+            let atom = Atom::Row { x_metres, y_metres, dx_metres, dy_metres, count };
             self.best = Some((self.part * count as f64, atom));
         }
     }
 }
 
-/// Derivatives of the echoes' phases, and their products.
-struct Slope {
-    /// The part of the power at the places that adds up.
-    added: f64,
-    /// All power there.
-    all: f64,
+/// Gauss-Newton equations of a row's first place and step, (x, y, dx, dy), for the phases of its echoes.
+struct PhaseEquations {
+    /// Power that reflectors of one gain explain, the sum of both ends.
+    coherent_power: f64,
+    /// Power of the beams at the places.
+    power: f64,
     gradient: [f64; 4],
     hessian: [[f64; 4]; 4],
 }
 
-/// `row` moved so that the echoes of its first `count` reflectors add up to most; `None` where it leaves what is heard.
-fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<(Row, Slope)> {
-    let mut slope = slope(beams, &row, count)?;
+/// `row` moved to the largest coherent power of its first `count` reflectors; `None` as from [`equations`].
+fn maximised(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<(Row, PhaseEquations)> {
+    let mut equations = equations(beams, &row, count)?;
     let mut damping = 1e-2;
-    for _ in 0..MOVES {
-        let Some(step) = damped_step(&Mat::from_fn(4, 4, |p, q| slope.hessian[p][q]), &slope.gradient, damping) else {
+    for _ in 0..MAX_MOVES {
+        let Some(step) = damped_step(&Mat::from_fn(4, 4, |p, q| equations.hessian[p][q]), &equations.gradient, damping)
+        else {
             damping *= 10.0;
             continue;
         };
@@ -219,68 +218,70 @@ fn climbed(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<(Row, Slop
             first_metres: [row.first_metres[0] + step[0], row.first_metres[1] + step[1]],
             step_metres: [row.step_metres[0] + step[2], row.step_metres[1] + step[3]],
         };
-        match self::slope(beams, &moved, count).filter(|s| s.added > slope.added) {
+        match self::equations(beams, &moved, count).filter(|s| s.coherent_power > equations.coherent_power) {
             Some(better) => {
-                let gained = better.added - slope.added;
-                (slope, row, damping) = (better, moved, damping * 0.3);
-                if gained < LEAST_ADDED * slope.all {
+                let increase = better.coherent_power - equations.coherent_power;
+                (equations, row, damping) = (better, moved, damping * 0.3);
+                if increase < MIN_ADDED_PART * equations.power {
                     break;
                 }
             }
             None => damping *= 10.0,
         }
     }
-    Some((row, slope))
+    Some((row, equations))
 }
 
-/// Gauss-Newton equations of the phases against that of their sum, weighted by how much each adds to it; `None` where the row leaves what is heard.
-fn slope(beams: &PhasedBeams, row: &Row, count: usize) -> Option<Slope> {
-    let is_heard = |i: f64| {
+/// The equations of the echoes' phases against the phase of their sum, weighted by their parts of it. `None` for a row that is not ahead of the array and
+/// within [`MAX_RANGE_RATIO`].
+fn equations(beams: &PhasedBeams, row: &Row, count: usize) -> Option<PhaseEquations> {
+    let is_valid = |i: f64| {
         let [x, y] = row.place_metres(i);
-        y > 0.0 && x.hypot(y) < MAX_RANGES * beams.max_range_metres()
+        y > 0.0 && x.hypot(y) < MAX_RANGE_RATIO * beams.max_range_metres()
     };
-    if !is_heard(0.0) || !is_heard((count - 1) as f64) {
+    if !is_valid(0.0) || !is_valid((count - 1) as f64) {
         return None;
     }
-    let mut heard = vec![Heard::default(); count];
-    Some(Simd::chosen().run(SlopeOf { beams, row, heard: &mut heard }))
+    let mut echoes = vec![ReflectorEcho::default(); count];
+    Some(Simd::chosen().run(PhaseKernel { beams, row, echoes: &mut echoes }))
 }
 
-/// The equations of a row of as many reflectors as `heard` has room for.
-struct SlopeOf<'a> {
+/// Kernel of [`equations`], for a reflector in each entry of the buffer `echoes`.
+struct PhaseKernel<'a> {
     beams: &'a PhasedBeams,
     row: &'a Row,
-    heard: &'a mut [Heard],
+    echoes: &'a mut [ReflectorEcho],
 }
 
-impl Kernel for SlopeOf<'_> {
-    type Output = Slope;
+impl Kernel for PhaseKernel<'_> {
+    type Output = PhaseEquations;
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> Slope {
-        let SlopeOf { beams, row, heard } = self;
-        let mut out = Slope { added: 0.0, all: 0.0, gradient: [0.0; 4], hessian: [[0.0; 4]; 4] };
+    fn run<const FMA: bool>(self) -> PhaseEquations {
+        let PhaseKernel { beams, row, echoes } = self;
+        let mut out = PhaseEquations { coherent_power: 0.0, power: 0.0, gradient: [0.0; 4], hessian: [[0.0; 4]; 4] };
         for (end, view) in beams.views.iter().enumerate() {
-            beams.listen::<FMA>(end, row, heard);
-            let AddedUp { sum, weight, power } = added_up(heard);
-            (out.added, out.all) = (out.added + sum.norm_sqr() / weight, out.all + power);
+            beams.reflector_echoes::<FMA>(end, row, echoes);
+            let RowSums { sum, weight, power } = row_sums(echoes);
+            out.coherent_power += sum.norm_sqr() / weight;
+            out.power += power;
             let (mut total, mut mean) = (0.0, [0.0; 4]);
             let mut products = [[0.0; 4]; 4];
-            let towards = sum.conj() * weight.recip();
-            for (i, h) in heard.iter().enumerate() {
+            let direction = sum.conj() * weight.recip();
+            for (i, h) in echoes.iter().enumerate() {
                 let i = i as f64;
-                let share = h.weighted * towards;
-                // Phases as they were taken off: by minus the turns of the distance.
-                let turn = -TAU * beams.turns_per_metre;
-                let [by_x, by_y] = view.slope(row.place_metres(i), 1e-3).map(|slope| turn * slope);
+                let share = h.weighted * direction;
+                // The echoes' phases have been multiplied by those of minus the range.
+                let radians_per_metre = -TAU * beams.turns_per_metre;
+                let [by_x, by_y] = view.slope(row.place_metres(i), 1e-3).map(|slope| radians_per_metre * slope);
                 let by = [by_x, by_y, i * by_x, i * by_y];
-                let certain = share.re.max(0.0);
-                total += certain;
+                let weight = share.re.max(0.0);
+                total += weight;
                 for p in 0..4 {
                     out.gradient[p] -= 2.0 * share.im * by[p];
-                    mean[p] += certain * by[p];
+                    mean[p] += weight * by[p];
                     for q in 0..4 {
-                        products[p][q] += certain * by[p] * by[q];
+                        products[p][q] += weight * by[p] * by[q];
                     }
                 }
             }
@@ -305,7 +306,7 @@ mod tests {
     fn rows_that_ran_away_are_not_followed() {
         let radar = Radar::default();
         let beams = PhasedBeams::new(&radar, &vec![Complex64::ONE; 2 * radar.end_elements * radar.samples]);
-        let follow = |step_metres| climbed(&beams, Row { first_metres: [1.0, 5.0], step_metres }, MIN_REFLECTORS);
+        let follow = |step_metres| maximised(&beams, Row { first_metres: [1.0, 5.0], step_metres }, MIN_REFLECTORS);
         assert!(follow([0.0, 0.1]).is_some());
         for step_metres in [[0.0, 1e300], [1e30, 0.0], [f64::NAN, 0.1], [f64::INFINITY, 0.0], [0.0, -1.0]] {
             assert!(follow(step_metres).is_none(), "{step_metres:?}");

@@ -1,9 +1,9 @@
 //! Ranges from a single chirp of a single element.
 //!
-//! One element has every reflector at one distance: its chirp is a sum of as many pure tones, for any near field across the array. ESPRIT (R.
-//! Roy and T. Kailath, "ESPRIT: estimation of signal parameters via rotational invariance techniques", 1989) on the Hankel matrix of the chirp
-//! separates them without a grid and without a search, as finely as the noise allows. The signal subspace comes from a random projection (N.
-//! Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which costs little where the tones are few.
+//! At one element each reflector is a pure tone, in the near field too. ESPRIT (R. Roy and T. Kailath, "ESPRIT: estimation of signal parameters via
+//! rotational invariance techniques", 1989) on the Hankel matrix of the chirp resolves them without a grid, as finely as the noise allows. The signal
+//! subspace comes from a random projection (N. Halko, P. G. Martinsson, J. A. Tropp, "Finding structure with randomness", 2011), which costs little
+//! where the tones are few.
 
 use crate::signal::floor::unit_noise;
 use faer::Mat;
@@ -11,50 +11,49 @@ use faer::linalg::solvers::SolveLstsq;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Part of the chirp's samples that are rows of the Hankel matrix.
-const ROWS: f64 = 0.55;
+/// Rows of the Hankel matrix, as a part of the chirp's samples.
+const HANKEL_ROWS_PART: f64 = 0.55;
 
-/// Fewest samples of a chirp for this method.
-const LEAST_SAMPLES: usize = 32;
+/// Least number of samples of a chirp.
+const MIN_SAMPLES: usize = 32;
 
 /// Columns of the first random projection.
 const FIRST_COLUMNS: usize = 24;
 
-/// Growth of the projection where its columns were not enough.
-const GROWTH: f64 = 1.5;
+/// Ratio of the numbers of columns of a projection and of a wider one.
+const COLUMN_RATIO: f64 = 1.5;
 
-/// Singular values that must lie in the noise before the projection counts as wide enough.
-const SPARE: usize = 4;
+/// Least number of singular values in the noise for a projection that is wide enough.
+const NOISE_COLUMNS: usize = 4;
 
-/// Columns that are enough for tones not far above the noise.
-const WEAK: usize = 16;
+/// Columns for tones not far above the noise, beside those far above.
+const WEAK_TONE_COLUMNS: usize = 16;
 
-/// A singular value above this many times the largest that noise has in the mean belongs to a tone.
-const ABOVE_NOISE: f64 = 1.6;
+/// Least singular value of a tone over the mean of the largest one of noise.
+const MIN_TONE_OVER_NOISE: f64 = 1.6;
 
-/// A column of the projection above this many times all noise in it holds tones.
-const FAR_ABOVE_NOISE: f64 = 4.0;
+/// Least norm of a projection's column with strong tones, over that of its noise.
+const MIN_STRONG_OVER_NOISE: f64 = 4.0;
 
-/// Largest growth or decay of a tone a sample: faster ones stand for several tones that are not separated.
-const STEADY: f64 = 2e-2;
+/// Largest growth or decay of a tone, nepers a sample. Faster ones are several tones that are not resolved.
+const MAX_GROWTH_NEPERS: f64 = 2e-2;
 
 /// A tone: `exp(j tau bins n / samples + growth n)` in sample n.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tone {
     /// Frequency, range bins from 0 to the number of samples.
     pub bins: f64,
-    /// Relative growth a sample. That of an echo is 0; several that are not told apart sound like one that grows or decays.
+    /// Growth of the amplitude, nepers a sample; 0 for a single echo.
     pub growth: f64,
 }
 
-/// Seed of the projection: the same samples have the same tones.
+/// Seed of the projection, so that the same samples have the same tones.
 const SEED: u64 = 0x70_6e_65_73;
 
-/// The tones of a chirp over white noise of `noise_variance` a sample; `None` where there are more than the chirp can tell
-/// apart.
+/// The tones of a chirp, `[samples]`, over white noise of `noise_variance` a sample; `None` where there are more than the chirp can resolve.
 pub fn tones(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<Tone>> {
     let samples = chirp.len();
-    if samples < LEAST_SAMPLES {
+    if samples < MIN_SAMPLES {
         return None;
     }
     let basis = signal_subspace(chirp, noise_variance)?;
@@ -63,31 +62,31 @@ pub fn tones(chirp: &[Complex64], noise_variance: f64) -> Option<Vec<Tone>> {
     }
     let phasors = rotation(&basis).eigenvalues().ok()?;
     let tone = |z: &Complex64| Tone { bins: (z.arg() / TAU).rem_euclid(1.0) * samples as f64, growth: z.norm().ln() };
-    Some(phasors.iter().map(tone).filter(|tone| tone.growth.abs() < STEADY).collect())
+    Some(phasors.iter().map(tone).filter(|tone| tone.growth.abs() < MAX_GROWTH_NEPERS).collect())
 }
 
-/// The least-squares solution of a map from all rows of an orthonormal basis but the last to all but the first. The Gram matrix of the former is
-/// the identity less one row's product, so that its inverse is known.
+/// The least-squares matrix that maps all rows of an orthonormal basis but the last to all but the first. The Gram matrix of the former is the identity
+/// minus the product of one row, so that its inverse is known.
 fn rotation(basis: &Mat<Complex64>) -> Mat<Complex64> {
     let (rows, count) = (basis.nrows(), basis.ncols());
-    let turned = basis.subrows(0, rows - 1).adjoint() * basis.subrows(1, rows - 1);
+    let product = basis.subrows(0, rows - 1).adjoint() * basis.subrows(1, rows - 1);
     let last = basis.subrows(rows - 1, 1);
-    // The difference is 0 where one tone is a pulse in the last row.
-    let left = (1.0 - last.squared_norm_l2()).max(f64::EPSILON);
-    let missed = last * &turned;
-    Mat::from_fn(count, count, |i, j| turned[(i, j)] + last[(0, i)].conj() * missed[(0, j)] / left)
+    // 0 where one tone is a pulse in the last row.
+    let remaining = (1.0 - last.squared_norm_l2()).max(f64::EPSILON);
+    let of_last = last * &product;
+    Mat::from_fn(count, count, |i, j| product[(i, j)] + last[(0, i)].conj() * of_last[(0, j)] / remaining)
 }
 
-/// An orthonormal basis of the part of the chirp's Hankel matrix above the noise, a column for each tone.
+/// An orthonormal basis of the signal subspace of the chirp's Hankel matrix, `[rows, tones]`; `None` where the matrix is too small for the tones.
 fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Complex64>> {
-    let rows = (ROWS * chirp.len() as f64) as usize;
+    let rows = (HANKEL_ROWS_PART * chirp.len() as f64) as usize;
     let columns = chirp.len() - rows + 1;
     let hankel = Mat::from_fn(rows, columns, |i, j| chirp[i + j]);
     let largest_of_noise = noise_variance.sqrt() * ((rows as f64).sqrt() + (columns as f64).sqrt());
-    let least = ABOVE_NOISE * largest_of_noise;
+    let least = MIN_TONE_OVER_NOISE * largest_of_noise;
     let all_noise = (noise_variance * (rows * columns) as f64).sqrt();
-    let most_width = columns - SPARE;
-    let mut width = FIRST_COLUMNS.min(most_width);
+    let max_width = columns - NOISE_COLUMNS;
+    let mut width = FIRST_COLUMNS.min(max_width);
     let mut projected: Mat<Complex64> = Mat::zeros(rows, 0);
     loop {
         let known = projected.ncols();
@@ -95,37 +94,36 @@ fn signal_subspace(chirp: &[Complex64], noise_variance: f64) -> Option<Mat<Compl
         let more = &hankel * Mat::from_fn(columns, width - known, |i, j| random[j * columns + i]);
         projected.resize_with(rows, width, |i, j| more[(i, j - known)]);
         let qr = projected.qr();
-        let wider = ((GROWTH * width as f64) as usize).min(most_width);
-        let brought = |column: usize| qr.thin_R()[(column, column)].norm();
-        // The last columns still add far more than noise: there are more tones than columns.
-        if (width - SPARE..width).all(|column| brought(column) > FAR_ABOVE_NOISE * all_noise) {
-            if width == most_width {
+        let wider = ((COLUMN_RATIO * width as f64) as usize).min(max_width);
+        let is_strong = |column: usize| qr.thin_R()[(column, column)].norm() > MIN_STRONG_OVER_NOISE * all_noise;
+        // The last columns add far more than noise, so there are more tones than columns.
+        if (width - NOISE_COLUMNS..width).all(is_strong) {
+            if width == max_width {
                 return None;
             }
             width = wider;
             continue;
         }
         let range = qr.compute_thin_Q();
-        // Columns after the last large one hold weak tones and noise.
-        let strong =
-            (0..width).rev().find(|column| brought(*column) > FAR_ABOVE_NOISE * all_noise).map_or(0, |c| c + 1);
-        let enough = Some(strong + WEAK).filter(|enough| *enough < width);
-        for kept in enough.into_iter().chain([width]) {
-            let range = range.subcols(0, kept);
+        // Columns after the last large one contain weak tones and noise.
+        let strong = (0..width).rev().find(|column| is_strong(*column)).map_or(0, |column| column + 1);
+        let enough = Some(strong + WEAK_TONE_COLUMNS).filter(|enough| *enough < width);
+        for count in enough.into_iter().chain([width]) {
+            let range = range.subcols(0, count);
             let svd = (range.adjoint() * &hankel).thin_svd().ok()?;
-            let count = svd.S().column_vector().iter().take_while(|value| value.re > least).count();
-            if count + SPARE <= kept {
-                return Some(range * svd.U().subcols(0, count));
+            let tones = svd.S().column_vector().iter().take_while(|value| value.re > least).count();
+            if tones + NOISE_COLUMNS <= count {
+                return Some(range * svd.U().subcols(0, tones));
             }
         }
-        if width == most_width {
+        if width == max_width {
             return None;
         }
         width = wider;
     }
 }
 
-/// Gains of these tones in a chirp, taken at its middle.
+/// Least-squares complex gains of `tones` in a chirp, referred to its middle.
 pub fn gains_of_tones(chirp: &[Complex64], tones: &[Tone]) -> Vec<Complex64> {
     if tones.is_empty() {
         return Vec::new();

@@ -1,21 +1,20 @@
-//! The range and the direction of a place from an end.
+//! Range and direction of a place from an end.
 //!
-//! For elements that transmit and receive by themselves these are measured from the end's middle. Where transmitters stand apart from receivers,
-//! the range is that of the pairs beside the end's middle, and the direction follows from the difference between the ranges of the first pair
-//! and the last: the phases of an end's elements contain no more.
+//! For elements that transmit and receive both are from the end's middle. Where transmitters are apart from receivers, the range is that of the pairs in
+//! the end's middle, and the direction follows from the difference between the ranges of the first pair and the last, as the phases do.
 
 use crate::radar::{End, Pair, Radar};
 use crate::signal::path::PairBlocks;
 use crate::signal::simd::Lanes;
 
-/// One end's view.
+/// Geometry of an end.
 pub struct View {
     /// x of the end's middle, metres.
     pub centre_metres: f64,
     pairs: Option<ViewOfPairs>,
 }
 
-/// Pairs that represent an end, with their antennas' x counted from its middle, metres.
+/// Pairs that represent an end, with x from its middle.
 struct ViewOfPairs {
     middle: [Pair; 2],
     first: Pair,
@@ -43,7 +42,7 @@ impl View {
         View { centre_metres, pairs: Some(ViewOfPairs { middle, first: pair(first), last: pair(last), length_metres }) }
     }
 
-    /// Range of places at `dx` from the end's middle along the array and `y` ahead, all in metres.
+    /// Range of places at `dx` along the array from the end's middle and `y` ahead, all in metres.
     #[inline(always)]
     pub fn range_metres<const W: usize>(&self, dx: Lanes<f64, W>, y: Lanes<f64, W>) -> Lanes<f64, W> {
         match &self.pairs {
@@ -52,7 +51,7 @@ impl View {
         }
     }
 
-    /// Cosine of the direction of such places, of which one over the range is `inverse`.
+    /// Cosine of the direction of such places; `inverse` is the reciprocal of the range.
     #[inline(always)]
     pub fn cos_theta<const W: usize>(
         &self,
@@ -69,21 +68,21 @@ impl View {
         }
     }
 
-    /// Range in metres, at least `nearest_metres`, and cosine of the direction of the place at (x, y), metres.
-    pub fn of_place(&self, [x, y]: [f64; 2], nearest_metres: f64) -> (f64, f64) {
+    /// Range in metres, at least `min_metres`, and cosine of the direction of the place at (x, y), metres.
+    pub fn range_and_cos(&self, [x, y]: [f64; 2], min_metres: f64) -> (f64, f64) {
         let (dx, y) = (Lanes([x - self.centre_metres]), Lanes([y]));
-        let range = self.range_metres(dx, y).map(|range| range.max(nearest_metres));
+        let range = self.range_metres(dx, y).map(|range| range.max(min_metres));
         let cos = self.cos_theta(dx, y, range.map(f64::recip));
         (range.0[0], cos.0[0])
     }
 
-    /// Derivatives of the range of the place at (x, y) by x and by y.
+    /// Derivatives of the range of the place at (x, y) by x and by y. Distances from antennas are at least `min_metres`.
     #[inline(always)]
-    pub fn slope(&self, [x, y]: [f64; 2], nearest_metres: f64) -> [f64; 2] {
+    pub fn slope(&self, [x, y]: [f64; 2], min_metres: f64) -> [f64; 2] {
         let dx = x - self.centre_metres;
         let of_leg = |[antenna_x, antenna_y]: [f64; 2]| {
             let (across, ahead) = (dx - antenna_x, y - antenna_y);
-            let range = (across * across + ahead * ahead).sqrt().max(nearest_metres);
+            let range = (across * across + ahead * ahead).sqrt().max(min_metres);
             [across / range, ahead / range]
         };
         let Some(ViewOfPairs { middle, .. }) = &self.pairs else { return of_leg([0.0; 2]) };
@@ -109,7 +108,7 @@ mod tests {
     fn pairs_of_one_element_see_from_the_middle_of_their_end() {
         let radar = Radar::default();
         let view = View::of(&radar, End::Last);
-        let (range, cos) = view.of_place(NEAR_PLACE_METRES, 1e-3);
+        let (range, cos) = view.range_and_cos(NEAR_PLACE_METRES, 1e-3);
         let dx = NEAR_PLACE_METRES[0] - radar.end_centre_metres(End::Last);
         assert!(
             (range - dx.hypot(NEAR_PLACE_METRES[1])).abs() < 1e-12 && (cos - dx / range).abs() < 1e-12,
@@ -122,7 +121,7 @@ mod tests {
         let radar = &RadarPreset::by_id("cascade-12x16").expect("a preset").radar;
         for end in End::BOTH {
             let view = View::of(radar, end);
-            let (range, cos) = view.of_place(NEAR_PLACE_METRES, 1e-3);
+            let (range, cos) = view.range_and_cos(NEAR_PLACE_METRES, 1e-3);
             let of_element = |n: usize| radar.pair(n).range_metres(NEAR_PLACE_METRES[0], NEAR_PLACE_METRES[1]);
             let elements = radar.end_range(end);
             let mean = elements.clone().map(of_element).sum::<f64>() / elements.len() as f64;
@@ -139,7 +138,7 @@ mod tests {
     fn the_slope_is_the_difference_between_ranges() {
         for radar in [&Radar::default(), &RadarPreset::by_id("cascade-12x16").expect("a preset").radar] {
             let view = View::of(radar, End::First);
-            let range = |x: f64, y: f64| view.of_place([x, y], 1e-3).0;
+            let range = |x: f64, y: f64| view.range_and_cos([x, y], 1e-3).0;
             let by = 1e-5;
             let [x, y] = NEAR_PLACE_METRES;
             let slope = view.slope(NEAR_PLACE_METRES, 1e-3);
