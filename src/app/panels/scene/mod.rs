@@ -186,6 +186,9 @@ fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>)
 /// Room for the labels on each side of the half disc, points.
 const LABELS: Vec2 = vec2(30.0, 24.0);
 
+/// Farthest that a scene stands below the middle of its panel, points.
+const MAX_SHIFT_POINTS: f32 = 40.0;
+
 /// Largest range that is drawn, metres: the radar's maximum, or for a snapshot somewhat more than the range of its echoes.
 fn extent_metres(state: &State) -> f64 {
     let of_snapshot = state.editor.document().recording().and_then(|recording| recording.range_metres);
@@ -210,6 +213,9 @@ fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect) {
     // Around the half disc there is room for the labels of its rings and spokes.
     let inner = rect.shrink2(LABELS.min(rect.size() / 4.0));
     view.show(inner, low, high);
+    // What is free is above the scene, for the hint and for notes.
+    let free = inner.height() - ((high.y_metres - low.y_metres) / view.metres_per_point) as f32;
+    view.centre.y_metres += f64::from((free / 2.0).min(MAX_SHIFT_POINTS)) * view.metres_per_point;
     (view.fit, view.fitted) = (false, Some(rect.size()));
 }
 
