@@ -115,9 +115,8 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
         };
         labelled(ui, "Start from", "Radars that are built, and radars that show what a constant does", menu);
     });
-    // One line for every radar, so that the table below stays in place. The tooltip has the whole text.
     let about = chosen.map_or(OF_YOUR_OWN, |preset| preset.about);
-    ui.add(Label::new(RichText::new(about).weak()).truncate());
+    ui.add(Label::new(RichText::new(about).weak()).wrap());
 }
 
 const OF_YOUR_OWN: &str = "Its constants are those of no radar in the list.";
