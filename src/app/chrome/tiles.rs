@@ -111,7 +111,7 @@ impl Behavior<'_> {
         let fits = |form: &&String| ui.painter().layout_job(lines(form, 12.0)).rows.len() == 1;
         let mut text = match forms.iter().find(fits) {
             Some(form) => lines(form, 12.0),
-            None => lines(shortest, SMALL_CAPTION),
+            None => lines(&shortest.replacen(", ", ",\n", 1), SMALL_CAPTION),
         };
         text.wrap.max_rows = 2;
         let layout = egui::Layout::right_to_left(egui::Align::Center);
@@ -267,7 +267,9 @@ mod tests {
             assert!(whole(&window, title), "{title}");
         }
         seen::assert_readable(window.output());
-        let read = |verdict: &str| seen::texts(window.output()).iter().any(|t| t.text == verdict && !t.is_shortened);
+        let read = |verdict: &str| {
+            seen::texts(window.output()).iter().any(|t| t.text.replace('\n', " ") == verdict && !t.is_shortened)
+        };
         assert!(read(VERDICT), "the verdict is whole: {:?}", seen::texts(window.output()));
         window.clicks(&["ROC"]);
         assert!(window.state().shown().contains(&Panel::Roc));
