@@ -102,7 +102,7 @@ mod tests {
                 let size = egui::vec2(1.6 * height, height) / ctx.zoom_factor();
                 let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
                 let input = egui::RawInput { screen_rect, ..Default::default() };
-                _ = ctx.run_ui(input, |ui| zoom.follow_presentation(ui.ctx(), is_presenting));
+                ctx.run_ui(input, |ui| zoom.follow_presentation(ui.ctx(), is_presenting)).textures_delta.clear();
             }
             ctx.zoom_factor()
         };

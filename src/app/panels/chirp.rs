@@ -23,7 +23,7 @@ const MAX_ECHOES: usize = 60;
 const MAX_LINES_OF_BEATS: [usize; 2] = [1, 3];
 
 /// Height below which a panel is low and leaves all its room to the charts, points.
-const LOW_PANEL_HEIGHT_POINTS: f32 = 400.0;
+const LOW_PANEL_HEIGHT_POINTS: f32 = 370.0;
 
 /// Where the beats of the first objects are drawn, as parts of the time in which they are heard while the chirp is sent.
 const BEAT_PLACES: [f64; 2] = [0.2, 0.65];

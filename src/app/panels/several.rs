@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Textu
     padded(ui, |ui, asked| {
         choices(ui, state, asked);
         // Room for the bar of colours, which all maps share.
-        ui.set_max_width(ui.available_width() - axes::RIGHT);
+        ui.set_max_width((ui.available_width() - axes::RIGHT).max(60.0));
         if maps.is_empty() {
             ui.weak("No radar can have these values.");
             return;
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Textu
             asked.extend(tile(ui, (place, picture), small, texture, state));
             if index == columns.min(maps.len()) - 1 {
                 let bar = Bar::new(colour_table(state.settings.colours), 0.0, 1.0, "Λ");
-                bar.draw(ui, &ui.painter().with_clip_rect(ui.clip_rect()), picture);
+                bar.draw(ui, ui.painter(), picture);
             }
         }
     })

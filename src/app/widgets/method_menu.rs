@@ -98,7 +98,7 @@ pub fn method_lines(
     mut name: impl FnMut(&mut Ui, &dyn Reconstructor) -> Response,
 ) -> Option<&'static str> {
     let (mut clicked, refusals) = (None, refusals(state));
-    let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 180.0 - TIME_WIDTH).max(120.0));
+    let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 230.0 - TIME_WIDTH).max(120.0));
     Grid::new("methods").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
         for family in Family::ALL {
             let mut of_family = state.methods.all.iter().filter(|method| method.family() == family).peekable();
@@ -246,11 +246,11 @@ mod tests {
         let is_grey = |label: &str| popup.get_by_label(label).accesskit_node().is_disabled();
         let grey = ["capon", "baseline", "iaa", "matched-filter"].map(is_grey);
         assert_eq!(grey, [true, true, false, false]);
-        popup.get_by_label("capon").hover();
+        popup.get_by_label("baseline").hover();
         popup.run_steps(60);
         let told = "it hears the two ends of an array";
         assert!(seen::texts(popup.output()).iter().any(|text| text.text.contains(told)));
-        popup.clicks(&["capon"]);
+        popup.clicks(&["baseline"]);
         assert_eq!(popup.state()[..], []);
     }
 
