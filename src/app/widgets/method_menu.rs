@@ -98,7 +98,7 @@ pub fn method_lines(
     mut name: impl FnMut(&mut Ui, &dyn Reconstructor) -> Response,
 ) -> Option<&'static str> {
     let (mut clicked, refusals) = (None, refusals(state));
-    let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 230.0 - TIME_WIDTH).max(120.0));
+    let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 205.0 - TIME_WIDTH).max(120.0));
     Grid::new("methods").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
         for family in Family::ALL {
             let mut of_family = state.methods.all.iter().filter(|method| method.family() == family).peekable();
