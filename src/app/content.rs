@@ -16,8 +16,8 @@ pub struct Content<M = (), Q: Query = Nothing> {
     pub tells_answers: bool,
     /// The query of the panel's value, asked while the panel is in sight.
     pub asks: fn(&State, &Jobs) -> Option<Q>,
-    /// Text in the title bar beside the panel's name.
-    pub caption: fn(&State, &Jobs, Panel) -> Option<String>,
+    /// Text in the title bar beside the panel's name, from its longest form to its shortest.
+    pub caption: fn(&State, &Jobs, Panel) -> Vec<String>,
     /// Draws the panel; returns the user's commands.
     pub show: fn(&mut Ui, Cx<'_, M, Q>) -> Vec<Command>,
 }
@@ -35,7 +35,7 @@ impl<M, Q: Query> Content<M, Q> {
         asks: fn(&State, &Jobs) -> Option<Q>,
         show: fn(&mut Ui, Cx<'_, M, Q>) -> Vec<Command>,
     ) -> Self {
-        Content { wants: &[], marks_age: false, tells_answers: false, asks, caption: |_, _, _| None, show }
+        Content { wants: &[], marks_age: false, tells_answers: false, asks, caption: |_, _, _| Vec::new(), show }
     }
 }
 
@@ -100,8 +100,8 @@ pub trait AnyPanel: std::any::Any {
     /// Whether the panel draws results of an earlier scene or settings without marking them.
     fn is_fresh_but_old(&self, state: &State, jobs: &Jobs) -> bool;
 
-    /// Text in the title bar beside the panel's name.
-    fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Option<String>;
+    /// Text in the title bar beside the panel's name, from its longest form to its shortest.
+    fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Vec<String>;
 
     /// Draws the panel; returns the user's commands.
     fn draw(&mut self, ui: &mut Ui, state: &mut State, jobs: &Jobs, panel: Panel) -> Vec<Command>;
@@ -147,7 +147,7 @@ impl<M: 'static, Q: Query> AnyPanel for Held<M, Q> {
         self.derived.is_fresh_but_old((self.content.asks)(state, jobs).as_ref())
     }
 
-    fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
+    fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Vec<String> {
         (self.content.caption)(state, jobs, panel)
     }
 

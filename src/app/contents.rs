@@ -88,8 +88,8 @@ impl Draw for Contents<'_> {
         }
     }
 
-    fn caption(&self, panel: Panel) -> Option<String> {
-        self.panels.0.get(&panel)?.caption(self.state, self.jobs, panel)
+    fn caption(&self, panel: Panel) -> Vec<String> {
+        self.panels.0.get(&panel).map_or_else(Vec::new, |held| held.caption(self.state, self.jobs, panel))
     }
 
     fn is_old(&self, panel: Panel) -> bool {

@@ -57,7 +57,7 @@ impl Hybrid {
         let mut lambda = blended(expected.map, &network.lambda, &weight);
         let least_eta = shown.cut(&mut lambda, least_etas[0].max(least_etas[1]));
         let eta = own_threshold(&lambda, network.doubt.map(|doubt| shown.doubt(doubt)).as_ref());
-        Ok(Reconstruction { eta: Some(eta), ..found.as_drawn(lambda, Some(least_eta)) })
+        Ok(Reconstruction { eta: Some(eta), ..found.as_drawn(radar, lambda, Some(least_eta)) })
     }
 }
 

@@ -108,7 +108,8 @@ fn the_first_drag_is_told_in_one_sentence() {
     s.ask(RadarCommand::Set(Box::default()));
     s.ask(WindowCommand::ToggleCaptions);
     let told = |s: &Session, text: &str| s.painted().iter().any(|t| t == text);
-    assert!(told(&s, "Drag the post along its ring, to the wall"), "{:?}", s.painted());
+    let task = "Drag the post along its ring, to the wall";
+    assert!(told(&s, task), "{:?}", s.painted());
     let (from, metres_per_point) = (s.handle("post: move"), s.state().scene_view.metres_per_point);
     let [x, y] = s.place(3);
     let (range, (sin, cos)) = (x.hypot(y), 27f64.to_radians().sin_cos());
@@ -118,6 +119,9 @@ fn the_first_drag_is_told_in_one_sentence() {
     let both = "Both inputs now show post and wall as one blob; the target shows two";
     assert!(told(&s, both), "{:?}", s.painted());
     s.ask(EditCommand::Undo);
+    assert!(told(&s, task), "nothing is dragged any more");
+    s.ask(RadarCommand::Set(Box::new(Radar { elements: 64, samples: 64, ..Radar::default() })));
+    assert!(!told(&s, task), "another radar shows the street otherwise");
     s.ask(DocumentCommand::New);
     assert!(!told(&s, both), "it belongs to that scene");
 }

@@ -9,6 +9,9 @@ const PRESENTATION_HEIGHT: f32 = 600.0;
 /// How much larger everything is in a presentation at least and at most.
 const PRESENTATION_ZOOMS: [f32; 2] = [1.0, 2.5];
 
+/// Change of the window's height that is rounding, points: the user's own scale during a presentation stays.
+const SAME_HEIGHT_POINTS: f32 = 3.0;
+
 /// Scale of a presentation on a window of `height` points, measured at normal scale.
 fn presentation_zoom(height: f32) -> f32 {
     let [least, most] = PRESENTATION_ZOOMS;
@@ -22,6 +25,8 @@ pub struct Zoom {
     is_full_screen: bool,
     /// Scale before the presentation that is shown.
     before_presenting: Option<f32>,
+    /// Height of the window for which the presentation was scaled, points at normal scale.
+    scaled_for_height: f32,
     /// Scale before the lesson that is shown.
     before_lesson: Option<f32>,
     /// Whether the screen has just been filled or left: what lies under a pointer that rests is no longer what it was moved to.
@@ -45,13 +50,14 @@ impl Zoom {
         self.follow_lesson(ctx, state.lesson.is_some());
     }
 
-    /// Scales the interface up while a presentation or a lesson fills the screen, and back after it.
+    /// Scales the interface up while a presentation or a lesson fills the screen, again whenever the window's height changes, and back after it.
     fn follow_presentation(&mut self, ctx: &egui::Context, is_presenting: bool) {
+        let height = ctx.content_rect().height() * ctx.zoom_factor();
         match (is_presenting, self.before_presenting) {
-            (true, None) => {
-                self.before_presenting = Some(ctx.zoom_factor());
-                let zoom = presentation_zoom(ctx.content_rect().height() * ctx.zoom_factor());
-                ctx.set_zoom_factor((zoom * ctx.zoom_factor()).min(3.0));
+            (true, before) if before.is_none() || (height - self.scaled_for_height).abs() > SAME_HEIGHT_POINTS => {
+                let before = before.unwrap_or_else(|| ctx.zoom_factor());
+                (self.before_presenting, self.scaled_for_height) = (Some(before), height);
+                ctx.set_zoom_factor((presentation_zoom(height) * before).min(3.0));
             }
             (false, Some(before)) => {
                 self.before_presenting = None;
@@ -86,5 +92,22 @@ mod tests {
     fn a_presentation_grows_with_the_screen() {
         let zooms = [400.0, 900.0, 1440.0, 4320.0].map(presentation_zoom);
         assert_eq!(zooms, [1.0, 1.5, 2.4, 2.5]);
+    }
+
+    #[test]
+    fn a_presentation_follows_the_size_of_its_window() {
+        let (ctx, mut zoom) = (egui::Context::default(), Zoom::default());
+        let mut scale_at = |height: f32, is_presenting: bool| {
+            for _ in 0..3 {
+                let size = egui::vec2(1.6 * height, height) / ctx.zoom_factor();
+                let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, size));
+                let input = egui::RawInput { screen_rect, ..Default::default() };
+                ctx.run_ui(input, |ui| zoom.follow_presentation(ui.ctx(), is_presenting)).textures_delta.clear();
+            }
+            ctx.zoom_factor()
+        };
+        let scales = [(1440.0, true), (640.0, true), (900.0, true), (900.0, false)].map(|(h, p)| scale_at(h, p));
+        let wanted = [2.4, 640.0 / 600.0, 1.5, 1.0];
+        assert!(scales.iter().zip(wanted).all(|(scale, wanted)| (scale - wanted).abs() < 0.01), "{scales:?}");
     }
 }

@@ -93,7 +93,7 @@ pub fn opened(state: &mut State) {
 }
 
 /// Selects a method that takes the radar of the document on screen, or the layout in use, where the method in use doesn't. A notice tells the user.
-fn select_usable_method(state: &mut State) {
+pub fn select_usable_method(state: &mut State) {
     fit_layout(state);
     if state.settings.layout.is_some() {
         return;

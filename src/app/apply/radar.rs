@@ -1,5 +1,6 @@
 //! Commands that change the radar, its elements, and other disturbances of the scene.
 
+use super::document::select_usable_method;
 use crate::app::state::{RadarCommand, State};
 use crate::radar::{BuiltArray, Radar, presets};
 use crate::scene::Disturbances;
@@ -18,6 +19,7 @@ pub fn apply(state: &mut State, command: RadarCommand) -> Result<(), String> {
             if let Some(preset) = presets::ALL.get(index) {
                 edit(state, None, |r| *r = preset.radar.clone())?;
                 state.scene_view.fit |= state.scene_view.fitted.is_some();
+                select_usable_method(state);
             }
         }
     }
@@ -43,4 +45,20 @@ fn edit(state: &mut State, merge_key: Option<&str>, change: impl FnOnce(&mut Rad
         return Err(format!("The radar on screen is the one that the recording was made with. {advice}"));
     }
     state.editor.edit_radar(merge_key, |r| *r = changed).map(drop).map_err(|e| e.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_radar_of_the_list_selects_a_method_that_can_do_it() {
+        let mut state = State::new(crate::methods::all());
+        state.settings.method = "live".to_owned();
+        let can_do = |state: &State, radar: &Radar| state.method().is_some_and(|m| m.check_array(radar).is_ok());
+        let refused = presets::ALL.iter().position(|preset| !can_do(&state, &preset.radar)).expect("a small radar");
+        apply(&mut state, RadarCommand::Preset(refused)).expect("a valid radar");
+        assert!(can_do(&state, state.radar()));
+        assert_eq!(state.notices.list.len(), 1, "it is said once");
+    }
 }

@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 #[derive(Default)]
 pub struct FileDialogMemory {
     dialog: Option<Browser>,
+    /// The folder of the file that was chosen last, for questions without a folder.
+    folder: Option<PathBuf>,
     replace: Option<(Purpose, PathBuf)>,
 }
 
@@ -21,7 +23,8 @@ impl FileDialogMemory {
     }
 
     pub fn ask(&mut self, question: Question) {
-        self.dialog = Some(Browser::new(&question));
+        let folder = question.folder.clone().or_else(|| self.folder.clone());
+        self.dialog = Some(Browser::new(&Question { folder, ..question }));
     }
 
     fn choose(&mut self, purpose: Purpose, path: PathBuf) -> Option<Command> {
@@ -42,6 +45,7 @@ pub fn show(ctx: &Context, memory: &mut FileDialogMemory) -> Vec<Command> {
         let purpose = browser.purpose;
         memory.dialog = None;
         if let Answer::Chosen(path) = answer {
+            memory.folder = path.parent().map(Path::to_path_buf);
             asked.extend(memory.choose(purpose, path));
         }
     }
@@ -116,6 +120,19 @@ mod tests {
         dialog.clicks(&["Save"]);
         assert!(dialog.state().1.is_empty() && dialog.state().0.is_open());
         let _asked = dialog.get_by_label("Replace");
+    }
+
+    #[test]
+    fn the_next_question_begins_in_the_last_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let question = Question::beside(Purpose::ExportMaps, Some(&folder.path().join("scene.toml")));
+        let mut dialog = panel(question);
+        dialog.clicks(&["Save"]);
+        dialog.state_mut().0.ask(Question::beside(Purpose::ExportMaps, None));
+        dialog.run_steps(2);
+        dialog.clicks(&["Save"]);
+        let maps = || Command::Export(ExportCommand::MapsTo(folder.path().join("maps.npz")));
+        assert_eq!(dialog.state().1, [maps(), maps()]);
     }
 
     #[test]

@@ -73,8 +73,8 @@ fn words(command: &Command) -> [&'static str; 2] {
     file.unwrap_or_default()
 }
 
-/// The commands that match `text` by name, synonym, menu, tooltip or file. Matches of the name come first, then those with the text as typed, then those with
-/// it as whole words, then the most recent.
+/// The commands that match `text` by name, synonym, menu, tooltip or file. Matches of the name come first, those with the text as the whole name before those
+/// with it as typed and those with it as whole words; then the most recent. Random scenes, which replace the one on screen, come last of equals.
 fn find(methods: &[Arc<dyn Reconstructor>], text: &str, recent: &[String]) -> Vec<Entry> {
     let commands = listed().iter().filter(|e| e.command != Command::Window(WindowCommand::Palette)).cloned();
     let methods = methods.iter().map(|m| Entry {
@@ -98,7 +98,13 @@ fn find(methods: &[Arc<dyn Reconstructor>], text: &str, recent: &[String]) -> Ve
     let since = |name: &str| recent.iter().position(|r| r == name).unwrap_or(recent.len());
     let whole = |name: &str| name.to_lowercase().contains(text.trim().to_lowercase().as_str());
     let word = |name: &str| text.split_whitespace().all(|word| name.split(' ').any(|of| of.eq_ignore_ascii_case(word)));
-    found.sort_by_key(|f| (!matches(&f.name, text), !whole(&f.name), !word(&f.name), since(&f.name)));
+    // "street" is the whole name of "Preset: street".
+    let own = |name: &str| name.rsplit_once(": ").map_or(name, |(_, own)| own).eq_ignore_ascii_case(text.trim());
+    let is_random = |f: &Entry| matches!(f.command, Command::Document(DocumentCommand::RandomScene(_)));
+    found.sort_by_key(|f| {
+        let name = &*f.name;
+        (!matches(name, text), !own(name), !whole(name), !word(name), since(name), is_random(f))
+    });
     found
 }
 
@@ -257,6 +263,8 @@ mod tests {
         assert!(names("the floor", &[])[0].starts_with("Lesson: The floor"));
         // A match of whole words comes before a match of their beginnings: "Cartesian".
         assert!(names("car", &[])[0].split(' ').any(|word| word == "car"), "{:?}", names("car", &[]));
+        // A preset of this name comes before a random scene with this word in its description.
+        assert_eq!(names("street", &[])[0], "Preset: street");
         let mut memory = PaletteMemory::remembering(vec!["Redo".to_owned()]);
         memory.remember("Undo".to_owned());
         memory.remember("Redo".to_owned());

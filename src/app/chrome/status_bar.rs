@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
             let (room, font) = (ui.available_width(), TextStyle::Monospace.resolve(ui.style()));
             let painter = ui.painter().clone();
             let width = |text: &str| painter.layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE).size().x;
-            let left = texts_of(cursor, echo.as_deref()).into_iter().rfind(|text| width(text) <= room);
+            let left = texts_of(state, cursor, echo.as_deref()).into_iter().rfind(|text| width(text) <= room);
             let left = left.unwrap_or_default();
             let mut rest = room - width(&left) - GAP;
             if cursor.is_some() {
@@ -31,7 +31,8 @@ pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
             } else {
                 ui.weak(left);
             }
-            let count = count_of(state.editor.scene(), state.is_predicting());
+            let has_count = !(state.is_recorded() && state.editor.scene().objects.is_empty());
+            let count = has_count.then(|| count_of(state.editor.scene(), state.is_predicting()));
             let took = took.map(|took| format!("maps {:.1} ms", took.as_secs_f64() * 1e3));
             // The monospaced width is the larger one.
             let mut fits = |text: &String| {
@@ -45,7 +46,7 @@ pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
                 where the browser isolates it from other pages.";
             let count_tip = "A body has no reflectors: each element gets a few echoes of it";
             let took_tip = "Time of the last update of maps and pictures; the Timing panel (F7) has the stages";
-            let [alone, count, took] = [(alone, alone_tip), (Some(count), count_tip), (took, took_tip)]
+            let [alone, count, took] = [(alone, alone_tip), (count, count_tip), (took, took_tip)]
                 .map(|(text, tip)| text.filter(&mut fits).map(|text| (text, tip)));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 for (text, tip) in [alone, took, count].into_iter().flatten() {
@@ -56,11 +57,14 @@ pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
     });
 }
 
-/// Candidates for the left text, the shortest first.
-fn texts_of(cursor: Option<Cursor>, echo: Option<&str>) -> Vec<String> {
+/// Candidates for the left text, the shortest first. None while a lesson asks for something else.
+fn texts_of(state: &State, cursor: Option<Cursor>, echo: Option<&str>) -> Vec<String> {
     let Some(c) = cursor else {
-        let hints = ["Drag a reflector", "double-click to add one", "scroll to zoom", "right-click for more"];
-        return (1..=hints.len()).map(|count| hints[..count].join(" · ")).collect();
+        let drag = (!state.editor.scene().objects.is_empty()).then_some("Drag a reflector");
+        let add = if drag.is_some() { "double-click to add one" } else { "Double-click to add a reflector" };
+        let hints: Vec<&str> = drag.into_iter().chain([add, "scroll to zoom", "right-click for more"]).collect();
+        let most = if state.is_predicting() { 0 } else { hints.len() };
+        return (1..=most).map(|count| hints[..count].join(" · ")).collect();
     };
     let range = format!("range {:6.2} m   {:+5.1}°", c.range_metres, angle_degrees(c.cos_theta));
     let polar = format!("{range}   cos θ {:+.3}", c.cos_theta);
@@ -146,9 +150,17 @@ mod tests {
     #[test]
     fn the_cursor_is_told_in_degrees_from_straight_ahead() {
         let cursor = Cursor::at_place(&Radar::default(), crate::interact::Place::new(-10.0, 10.0));
-        let texts = texts_of(Some(cursor), None);
+        let texts = texts_of(&State::of(Radar::default(), Scene::default()), Some(cursor), None);
         assert!(texts.iter().all(|text| text.contains("−45.0°")), "{texts:?}");
         assert!(texts.iter().any(|text| text.contains("−45.0°   cos θ −0.707")), "{texts:?}");
+    }
+
+    #[test]
+    fn hints_are_true_of_a_scene_a_recording_and_a_question() {
+        let longest = |state: &State| texts_of(state, None, None).pop().unwrap_or_default();
+        assert!(longest(&State::of(Radar::default(), scene(1, &[]))).starts_with("Drag a reflector · double-click"));
+        let empty = longest(&State::of(Radar::default(), Scene::default()));
+        assert!(empty.starts_with("Double-click to add a reflector · scroll"), "{empty}");
     }
 
     /// A bar `width` points wide, with the pointer over a map or not.

@@ -4,7 +4,8 @@ use super::column;
 use crate::app::content::OLD;
 use crate::app::state::{Arrangement, Command, Panel, WindowCommand};
 use crate::app::widgets::{Icon, icon};
-use eframe::egui::{self, TextStyle, Ui, WidgetText, vec2};
+use eframe::egui::text::LayoutJob;
+use eframe::egui::{self, FontId, TextStyle, Ui, WidgetText, vec2};
 use egui_tiles::{SimplificationOptions, TileId, Tiles, UiResponse};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +13,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub trait Draw {
     fn draw(&mut self, ui: &mut Ui, panel: Panel);
 
-    fn caption(&self, panel: Panel) -> Option<String>;
+    /// Text in the title bar beside the panel's name, from its longest form to its shortest.
+    fn caption(&self, panel: Panel) -> Vec<String>;
 
     /// Whether a panel shows results of an earlier scene or settings. Its caption is then dimmed as its content is.
     fn is_old(&self, _: Panel) -> bool {
@@ -60,6 +62,9 @@ const TAB_MARGIN: f32 = 8.0;
 
 const LEAST_CAPTION: f32 = 60.0;
 
+/// Size of a caption in two lines, points.
+const SMALL_CAPTION: f32 = 10.0;
+
 /// Width of the two arrows that scroll the tabs, points.
 const ARROWS: f32 = 64.0;
 
@@ -96,15 +101,22 @@ impl Behavior<'_> {
         }
     }
 
-    /// Draws a panel's caption `room` points wide, or none where `room` is too narrow.
+    /// Draws the longest form of a panel's caption that fits `room` points, or the shortest in two small lines; none where `room` is too narrow.
     fn caption(&self, ui: &mut Ui, panel: Panel, room: f32) {
-        let Some(text) = self.panels.caption(panel).filter(|_| room >= LEAST_CAPTION) else { return };
+        let forms = self.panels.caption(panel);
+        let Some(shortest) = forms.last().filter(|_| room >= LEAST_CAPTION) else { return };
         let ink = ui.visuals().weak_text_color();
         let ink = if self.panels.is_old(panel) { ink.gamma_multiply(OLD) } else { ink };
-        let text = egui::RichText::new(text).size(12.0).color(ink);
+        let lines = |text: &str, size| LayoutJob::simple(text.to_owned(), FontId::proportional(size), ink, room);
+        let fits = |form: &&String| ui.painter().layout_job(lines(form, 12.0)).rows.len() == 1;
+        let mut text = match forms.iter().find(fits) {
+            Some(form) => lines(form, 12.0),
+            None => lines(&shortest.replacen(", ", ",\n", 1), SMALL_CAPTION),
+        };
+        text.wrap.max_rows = 2;
         let layout = egui::Layout::right_to_left(egui::Align::Center);
         ui.allocate_ui_with_layout(vec2(room, ui.available_height()), layout, |ui| {
-            ui.add(egui::Label::new(text).selectable(false).truncate());
+            ui.add(egui::Label::new(text).selectable(false).wrap());
         });
     }
 }
@@ -223,14 +235,17 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
+    const VERDICT: &str = "5 of 5 found, 0 false";
+
     /// Panels without content, and with a long caption.
     struct Silent;
 
     impl Draw for Silent {
         fn draw(&mut self, _: &mut Ui, _: Panel) {}
 
-        fn caption(&self, panel: Panel) -> Option<String> {
-            matches!(panel, Panel::Map(_)).then(|| "P_D 99.35 % · P_FA 1.63 % · η = 0.80 (updating)".to_owned())
+        fn caption(&self, panel: Panel) -> Vec<String> {
+            let forms = ["P_D 99.35 % · P_FA 1.63 % · η = 0.80 (updating)", VERDICT];
+            forms.into_iter().filter(|_| matches!(panel, Panel::Map(_))).map(str::to_owned).collect()
         }
     }
 
@@ -252,6 +267,10 @@ mod tests {
             assert!(whole(&window, title), "{title}");
         }
         seen::assert_readable(window.output());
+        let read = |verdict: &str| {
+            seen::texts(window.output()).iter().any(|t| t.text.replace('\n', " ") == verdict && !t.is_shortened)
+        };
+        assert!(read(VERDICT), "the verdict is whole: {:?}", seen::texts(window.output()));
         window.clicks(&["ROC"]);
         assert!(window.state().shown().contains(&Panel::Roc));
     }

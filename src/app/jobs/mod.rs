@@ -43,7 +43,7 @@ pub use chirp::{ChirpQuery, ChirpResult};
 pub use derived::{Derived, Failure, Query};
 pub use dialogs::{Dialogs, Question};
 pub use doppler::{DopplerQuery, DopplerResult};
-pub use export::Exports;
+pub use export::{EXPORTING, Exports};
 #[cfg(test)]
 pub use failures::some_row;
 pub use failures::{
@@ -141,6 +141,7 @@ impl Jobs {
         }
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.0.finished() {
+            state.notices.list.retain(|notice| !notice.text.starts_with(EXPORTING));
             tell(state, export);
         }
         let (frame, failed) = self.listening.poll();

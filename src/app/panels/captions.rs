@@ -57,7 +57,10 @@ pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
         return Some(hint(scene, state.radar(), state.is_recorded()));
     }
     let is_told = state.tells_first_drag && state.lesson.is_none() && state.editor.dragged().is_none();
-    let places_metres = is_told.then(|| post_and_wall(scene)).flatten()?;
+    let places_metres = (is_told && *state.radar() == Radar::default()).then(|| post_and_wall(scene)).flatten()?;
+    if scene.objects == STREET.objects {
+        return Some(hint(scene, state.radar(), false));
+    }
     let is_old = [MapKind::Input0, MapKind::Input1, MapKind::Target].iter().any(|kind| pipeline.is_stale(*kind));
     let frame = &pipeline.maps.result().filter(|_| !is_old)?.frame;
     let maps = [frame.first.as_ref()?, frame.last.as_ref()?, frame.full.as_ref()?];

@@ -19,8 +19,11 @@ const DRAWN_DELAY: f64 = 0.25;
 /// Most echoes that are drawn, unless there are more objects.
 const MAX_ECHOES: usize = 60;
 
-/// Most lines of the objects' beats; the pointer shows all.
-const MAX_LINES_OF_BEATS: usize = 3;
+/// Most lines of the objects' beats, in a low panel and in a high one; the pointer shows all.
+const MAX_LINES_OF_BEATS: [usize; 2] = [1, 3];
+
+/// Height below which a panel is low and leaves all its room to the charts, points.
+const LOW_PANEL_HEIGHT_POINTS: f32 = 370.0;
 
 /// Where the beats of the first objects are drawn, as parts of the time in which they are heard while the chirp is sent.
 const BEAT_PLACES: [f64; 2] = [0.2, 0.65];
@@ -69,9 +72,10 @@ fn contents(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>, heigh
     let stretch = (DRAWN_DELAY * chirp.duration_seconds / longest).max(1.0);
     let mut shown = Shown { state, chirp, echoes, interferer, stretch };
     choices(ui, radar, element, asked);
+    let is_low = height < LOW_PANEL_HEIGHT_POINTS;
     shown.legend(ui);
-    shown.tell_beats(ui);
-    if radar.carrier == Carrier::OneWay {
+    shown.tell_beats(ui, MAX_LINES_OF_BEATS[usize::from(!is_low)]);
+    if radar.carrier == Carrier::OneWay && !is_low {
         let half_gigahertz = radar.carrier_hz / 2e9;
         ui.weak(format!("Drawn rising; the thesis' formula falls from {half_gigahertz} GHz: the same beats."));
     }
@@ -154,7 +158,7 @@ impl Shown<'_> {
         legend::row(ui, &entries);
     }
 
-    fn tell_beats(&self, ui: &mut Ui) {
+    fn tell_beats(&self, ui: &mut Ui, max_lines: usize) {
         let mut beats: Vec<(usize, [f64; 2])> = Vec::new();
         for echo in &self.echoes {
             let beat = self.chirp.beat_hz(echo.range_metres) / 1e6;
@@ -171,7 +175,7 @@ impl Shown<'_> {
             let text = format!("Beats in MHz: {}", told.collect::<Vec<_>>().join(" · "));
             let (font, ink) = (FontId::proportional(12.0), Inks::of(ui.visuals()).ends[0]);
             let mut lines = LayoutJob::simple(text, font, ink, f32::INFINITY);
-            lines.wrap.max_rows = MAX_LINES_OF_BEATS;
+            lines.wrap.max_rows = max_lines;
             ui.label(lines);
         }
     }
@@ -258,7 +262,7 @@ impl Shown<'_> {
         let most = result.samples.iter().map(|s| s.norm()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         let count = result.samples.len() as f64;
         let title = format!("beat of element {}, real part", result.element);
-        let x = Axis::new(-0.05 * count, 1.25 * count, "sample");
+        let x = Axis::new(-0.02 * count, 1.02 * count, "sample");
         let mut chart = Chart::new("Beat", x, Axis::new(-1.1, 1.1, &title));
         let points = || result.samples.iter().enumerate().map(|(k, s)| [k as f64, s.re / most]);
         chart.line(points(), Stroke::new(1.0, inks.grid_text), LineStyle::Solid);

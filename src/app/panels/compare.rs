@@ -51,7 +51,7 @@ fn title(state: &State, jobs: &Jobs, kind: MapKind) -> String {
         }
         MapKind::Difference | MapKind::SecondDifference => format!("{method} − target{updating}"),
         MapKind::OutputAbove | MapKind::SecondAbove => {
-            let figures = caption_of(state, jobs, kind).unwrap_or_default();
+            let figures = caption_of(state, jobs, kind).into_iter().next().unwrap_or_default();
             format!("{method} > η · {figures}")
         }
         _ => format!("{}{updating}", kind.title()),

@@ -13,7 +13,8 @@ use crate::lesson::Step;
 use crate::radar::{Carrier, Convention, Radar, WindowFunction, presets};
 use crate::scene::Object;
 use crate::theory::Consequences;
-use eframe::egui::{ComboBox, Label, RichText, Ui};
+use eframe::egui::text::LayoutJob;
+use eframe::egui::{ComboBox, Label, TextStyle, Ui};
 use table::{Table, number};
 
 /// Kinds of fields that can be edited.
@@ -115,10 +116,19 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
         };
         labelled(ui, "Start from", "Radars that are built, and radars that show what a constant does", menu);
     });
-    // One line for every radar, so that the table below stays in place. The tooltip has the whole text.
+    // As many lines for every radar, so that the table below stays in place. The tooltip has the rest of a longer text.
     let about = chosen.map_or(OF_YOUR_OWN, |preset| preset.about);
-    ui.add(Label::new(RichText::new(about).weak()).truncate());
+    let (font, ink) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
+    let mut lines = LayoutJob::simple(about.to_owned(), font, ink, f32::INFINITY);
+    lines.wrap.max_rows = ABOUT_LINES;
+    ui.scope(|ui| {
+        ui.set_min_height(ABOUT_LINES as f32 * ui.text_style_height(&TextStyle::Body) + 2.0);
+        ui.add(Label::new(lines).wrap());
+    });
 }
+
+/// Lines of the text about a radar.
+const ABOUT_LINES: usize = 2;
 
 const OF_YOUR_OWN: &str = "Its constants are those of no radar in the list.";
 

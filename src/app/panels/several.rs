@@ -1,9 +1,12 @@
 //! The panel that compares settings: one map several times, side by side, for several values of one constant.
 
+use super::map;
 use crate::app::content::Content;
 use crate::app::jobs::Small;
-use crate::app::state::{Command, MapKind, Parameter, RadarCommand, Several, State, Variant, ViewCommand};
-use crate::app::widgets::{NumberField, Texture, choice, labelled, member_box, method_lines, padded};
+use crate::app::state::{Command, MapKind, Parameter, Projection, RadarCommand, Several, State, Variant, ViewCommand};
+use crate::app::widgets::{
+    Bar, NumberField, Texture, axes, choice, colour_table, labelled, member_box, method_lines, padded, ticking_menu,
+};
 use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 
 /// Height of a map's name.
@@ -17,6 +20,8 @@ pub const PANEL: Content<Vec<Texture>> =
 pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Texture>) -> Vec<Command> {
     padded(ui, |ui, asked| {
         choices(ui, state, asked);
+        // Room for the bar of colours, which all maps share.
+        ui.set_max_width((ui.available_width() - axes::RIGHT).max(60.0));
         if maps.is_empty() {
             ui.weak("No radar can have these values.");
             return;
@@ -27,7 +32,12 @@ pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Textu
         for (index, (small, texture)) in maps.iter().zip(textures).enumerate() {
             let corner = vec2((index % columns) as f32 * size.x, (index / columns) as f32 * size.y);
             let place = Rect::from_min_size(area.min + corner, size).shrink(3.0);
-            asked.extend(tile(ui, place, small, texture, state.settings.several.parameter));
+            let picture = picture_of(place, state.settings.projection);
+            asked.extend(tile(ui, (place, picture), small, texture, state));
+            if index == columns.min(maps.len()) - 1 {
+                let bar = Bar::new(colour_table(state.settings.colours), 0.0, 1.0, "Λ");
+                bar.draw(ui, ui.painter(), picture);
+            }
         }
     })
 }
@@ -35,7 +45,7 @@ pub fn show(ui: &mut Ui, state: &State, maps: &[Small], textures: &mut Vec<Textu
 /// Number of columns that makes the largest maps twice as wide as high, and the size of each map.
 fn grid(count: usize, area: Vec2) -> (usize, Vec2) {
     let size = |columns: usize| vec2(area.x / columns as f32, area.y / count.div_ceil(columns) as f32);
-    let width = |columns: usize| size(columns).x.min(2.0 * (size(columns).y - NAME));
+    let width = |columns: usize| (size(columns).x - axes::LEFT).min(2.0 * (size(columns).y - NAME - axes::BOTTOM));
     let columns = (1..=count.max(1)).max_by(|a, b| width(*a).total_cmp(&width(*b))).unwrap_or(1);
     (columns, size(columns))
 }
@@ -74,21 +84,38 @@ fn numbers(ui: &mut Ui, several: &mut Several, unit: &str) {
 }
 
 fn methods(ui: &mut Ui, several: &mut Several, state: &State) {
-    ui.menu_button("Methods", |ui| {
-        method_lines(ui, state, |ui, method| {
+    ticking_menu(ui, "Methods", |ui| {
+        _ = method_lines(ui, state, |ui, method| {
             member_box(ui, method.name(), method.name().to_owned(), &mut several.methods)
         });
     })
-    .response
     .on_hover_text("Which methods, at most eight; the first eight where none is chosen");
 }
 
-fn tile(ui: &mut Ui, place: Rect, small: &Small, texture: &mut Texture, parameter: Parameter) -> Option<Command> {
-    let Variant { label, .. } = &small.variant;
+/// Rectangle of a map within its `place`: below its name and within its axes. A Cartesian map is twice as wide as high.
+fn picture_of(place: Rect, projection: Projection) -> Rect {
+    let within = Rect::from_min_max(place.min + vec2(axes::LEFT, NAME), place.max - vec2(8.0, axes::BOTTOM));
+    let size = match projection {
+        Projection::RangeAngle => within.size(),
+        Projection::Cartesian => {
+            vec2(within.width().min(2.0 * within.height()), within.height().min(within.width() / 2.0))
+        }
+    };
+    Rect::from_min_size(within.min, size.max(Vec2::splat(10.0)))
+}
+
+/// Draws a map into the second rectangle, with its name and its axes in the first. A click gives the scene its value.
+fn tile(
+    ui: &mut Ui,
+    (place, picture): (Rect, Rect),
+    small: &Small,
+    texture: &mut Texture,
+    state: &State,
+) -> Option<Command> {
+    let (Variant { label, radar, .. }, parameter) = (&small.variant, state.settings.several.parameter);
     let response = ui.interact(place, ui.scope_id().with(("small map", label)), Sense::click());
     let name = format!("{}: {label}", parameter.name());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    let picture = Rect::from_min_max(pos2(place.left(), place.top() + NAME), place.max);
     let painter = ui.painter().with_clip_rect(place);
     painter.rect_filled(picture, 0.0, ui.visuals().extreme_bg_color);
     let is_met = response.hovered() || response.has_focus();
@@ -109,6 +136,7 @@ fn tile(ui: &mut Ui, place: Rect, small: &Small, texture: &mut Texture, paramete
             _ = painter.text(picture.center(), Align2::CENTER_CENTER, "computing…", FontId::proportional(11.0), ink)
         }
     }
+    map::draw_axes_around(ui, picture, radar, state.settings.projection, state.settings.directions);
     response.on_hover_text("Use this value for the scene").clicked().then(|| take(&small.variant, parameter)).flatten()
 }
 

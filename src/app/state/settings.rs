@@ -167,7 +167,7 @@ named! {
         Beside = "Side by side",
         /// One of two maps at a time, in the same place.
         #[serde(alias = "Swipe")]
-        Flip = "Flip",
+        Flip = "In one place",
     }
 }
 

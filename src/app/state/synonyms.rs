@@ -77,7 +77,7 @@ fn view_words(command: &ViewCommand) -> &'static str {
 fn window_words(command: &WindowCommand) -> &'static str {
     match command {
         WindowCommand::Present => "projector beamer class fullscreen whole screen large lecture",
-        WindowCommand::ToggleTheme => "dark mode night theme brightness",
+        WindowCommand::ToggleTheme => "light mode day night theme brightness",
         WindowCommand::ZoomIn | WindowCommand::ZoomOut | WindowCommand::ZoomReset => {
             "font text size scale bigger smaller"
         }

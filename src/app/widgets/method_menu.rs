@@ -13,7 +13,10 @@ use std::sync::Arc;
 pub const LIST_HEIGHT: f32 = 420.0;
 
 /// Width of a method's description, points: most take one line.
-const DESCRIPTION_WIDTH: f32 = 440.0;
+const DESCRIPTION_WIDTH: f32 = 560.0;
+
+/// Size of descriptions and times, points.
+const DESCRIPTION_SIZE: f32 = 12.0;
 
 /// Width of a time, points.
 const TIME_WIDTH: f32 = 56.0;
@@ -95,7 +98,7 @@ pub fn method_lines(
     mut name: impl FnMut(&mut Ui, &dyn Reconstructor) -> Response,
 ) -> Option<&'static str> {
     let (mut clicked, refusals) = (None, refusals(state));
-    let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 180.0 - TIME_WIDTH).max(120.0));
+    let room = DESCRIPTION_WIDTH.min((ui.ctx().content_rect().width() - 205.0 - TIME_WIDTH).max(120.0));
     Grid::new("methods").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
         for family in Family::ALL {
             let mut of_family = state.methods.all.iter().filter(|method| method.family() == family).peekable();
@@ -103,7 +106,7 @@ pub fn method_lines(
                 continue;
             }
             ui.strong(family.name());
-            ui.label(RichText::new(family.describe()).weak().italics().small());
+            ui.label(RichText::new(family.describe()).weak().italics().size(DESCRIPTION_SIZE));
             ui.end_row();
             for method in of_family {
                 let refusal = refusals.get(method.name());
@@ -113,7 +116,7 @@ pub fn method_lines(
                 }
                 ui.scope(|ui| {
                     ui.set_width(room);
-                    let text = RichText::new(method.description()).weak().small();
+                    let text = RichText::new(method.description()).weak().size(DESCRIPTION_SIZE);
                     if ui.add(Label::new(text).wrap().selectable(false).sense(Sense::click())).clicked()
                         && refusal.is_none()
                     {
@@ -131,9 +134,9 @@ pub fn method_lines(
 fn time(ui: &mut Ui, typical_ms: Option<f64>) {
     let text = typical_ms.map_or_else(|| "–".to_owned(), time_text);
     let tip = if typical_ms.is_some() { "Typical time on this machine" } else { "It has not run on this machine yet" };
-    ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.set_min_width(TIME_WIDTH);
-        ui.label(RichText::new(text).weak().small()).on_hover_text(tip);
+        ui.label(RichText::new(text).weak().size(DESCRIPTION_SIZE)).on_hover_text(tip);
     });
 }
 
@@ -143,9 +146,9 @@ fn time_text(ms: f64) -> String {
 }
 
 /// Width of a kind's description, points.
-const SENTENCE_WIDTH: f32 = 420.0;
-/// Least width of a button with a ticking menu, points.
-const TITLE_WIDTH: f32 = 160.0;
+const SENTENCE_WIDTH: f32 = 520.0;
+/// Width of a button with a ticking menu, points; a longer title ends in an ellipsis.
+const TITLE_WIDTH: f32 = 200.0;
 
 fn kind_name(kind: &Kind) -> String {
     if kind.test_set().is_some() { format!("set {kind}") } else { kind.to_string() }
@@ -155,8 +158,9 @@ fn kind_name(kind: &Kind) -> String {
 pub fn ticking_menu(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) -> Response {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     // A tall menu opens beside its button. A button of constant width keeps it in place while the title grows.
-    let button = Button::new(title).min_size(vec2(TITLE_WIDTH.min(0.2 * ui.available_width()), 0.0));
-    MenuButton::from_button(button).config(config).ui(ui, contents).0
+    let size = vec2(TITLE_WIDTH.min(ui.max_rect().width()), ui.spacing().interact_size.y);
+    let button = Button::new(title).truncate().min_size(size);
+    ui.allocate_ui(size, |ui| MenuButton::from_button(button).config(config).ui(ui, contents).0).inner
 }
 
 pub fn member_box<T: Ord>(ui: &mut Ui, name: impl Into<String>, value: T, chosen: &mut BTreeSet<T>) -> Response {
@@ -180,7 +184,8 @@ pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &m
             member_box(ui, kind_name(&kind), kind, &mut ticked);
             ui.scope(|ui| {
                 ui.set_width(room);
-                ui.add(Label::new(RichText::new(kind.description()).weak().small()).wrap().selectable(false));
+                let text = RichText::new(kind.description()).weak().size(DESCRIPTION_SIZE);
+                ui.add(Label::new(text).wrap().selectable(false));
             });
             ui.end_row();
         }
@@ -241,11 +246,11 @@ mod tests {
         let is_grey = |label: &str| popup.get_by_label(label).accesskit_node().is_disabled();
         let grey = ["capon", "baseline", "iaa", "matched-filter"].map(is_grey);
         assert_eq!(grey, [true, true, false, false]);
-        popup.get_by_label("capon").hover();
+        popup.get_by_label("baseline").hover();
         popup.run_steps(60);
         let told = "it hears the two ends of an array";
         assert!(seen::texts(popup.output()).iter().any(|text| text.text.contains(told)));
-        popup.clicks(&["capon"]);
+        popup.clicks(&["baseline"]);
         assert_eq!(popup.state()[..], []);
     }
 
@@ -260,6 +265,22 @@ mod tests {
         assert!(popup.reads("–"), "no time is told that was not measured");
         popup.clicks(&[crate::methods::by_name("hybrid").unwrap().description()]);
         assert_eq!(popup.state()[..], [Command::View(ViewCommand::Method("hybrid"))], "the description chooses, too");
+    }
+
+    #[test]
+    fn ticking_moves_neither_the_button_nor_its_menu() {
+        let methods = Methods::new(crate::methods::all());
+        let state = State { methods, ..State::of(Radar::default(), Scene::default()) };
+        let draw = move |ui: &mut Ui, chosen: &mut Vec<&'static str>| {
+            ui.horizontal_wrapped(|ui| method_menu(ui, &state, chosen, ""));
+        };
+        let mut menu = Harness::builder().with_size([1000.0, 700.0]).build_ui_state(draw, vec!["live"]);
+        menu.clicks(&["Methods: live"]);
+        let before = menu.get_by_label("baseline").rect();
+        menu.clicks(&["matched-filter-incoherent"]);
+        assert_eq!(menu.get_by_label("baseline").rect(), before);
+        menu.clicks(&["baseline"]);
+        assert_eq!(menu.state().len(), 3, "the menu stays open");
     }
 
     #[test]

@@ -84,7 +84,8 @@ pub fn render(drawing: &impl Drawing) -> Result<RgbImage, PictureError> {
 pub fn render_svg(drawing: &impl Drawing) -> Result<String, PictureError> {
     let mut svg = String::new();
     on_paper(drawing, SVGBackend::with_string(&mut svg, drawing.size()))?;
-    Ok(svg)
+    // ImageMagick fills a line of a given opacity with black, and bitmaps need their media type.
+    Ok(svg.replace(r#"fill="none" opacity="#, r#"fill="none" stroke-opacity="#).replace("data:png;", "data:image/png;"))
 }
 
 fn on_paper<B: DrawingBackend>(drawing: &impl Drawing, backend: B) -> Painted {

@@ -92,10 +92,10 @@ pub(super) const ETA: f32 = 0.896;
 const EVEN_ODDS_DECADES: f64 = 0.8;
 const CONFIDENCE_SLOPE: f64 = 0.8;
 
-/// The same energy, decades, for a confidence of 0.9; and the largest reflectivity of a listed object below that confidence, over the largest of the
-/// others. Far places have weak echoes, so a ghost there can be large.
+/// The same energy, decades, for a confidence of 0.9; and the largest reflectivity of a listed object below that confidence, or beyond the maximum
+/// range in an incomplete list, over the largest of the others. Far places have weak echoes, so a ghost there can be large.
 const CERTAIN_DECADES: f64 = 2.0;
-const MAX_OVER_CERTAIN: f64 = 3.0;
+const MAX_OVER_CERTAIN: f64 = 2.0;
 
 /// [`About::told`](crate::reconstruct::About::told) of the search.
 const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
@@ -154,18 +154,22 @@ impl Found {
         let expected = self.expected(radar, request);
         let is_certain = self.is_complete && !request.noise.is_white();
         let eta = (!is_certain).then(|| own_threshold(&expected.map, None));
-        Reconstruction { eta, ..self.as_drawn(expected.map, Some(expected.least_eta)) }
+        Reconstruction { eta, ..self.as_drawn(radar, expected.map, Some(expected.least_eta)) }
     }
 
     /// The objects with the map `lambda`, in which noise alone doesn't exceed `least_eta`.
-    pub fn as_drawn(&self, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
-        let certain = self.reflectivities.iter().zip(&self.needed_decades).filter(|(_, d)| **d >= CERTAIN_DECADES);
-        let largest = certain.map(|(reflectivity, _)| reflectivity.abs()).reduce(f64::max).unwrap_or(f64::INFINITY);
-        let is_listed = |(r, confidence): &(Reflector, f64)| {
+    pub fn as_drawn(&self, radar: &Radar, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
+        let max_range_metres = radar.max_range_metres();
+        let is_certain = |(reflector, confidence): &(Reflector, f64)| {
             *confidence >= confidence_at(CERTAIN_DECADES)
-                || (r.reflectivity * self.scale).abs() <= MAX_OVER_CERTAIN * largest
+                && (self.is_complete || reflector.x_metres.hypot(reflector.y_metres) < max_range_metres)
         };
-        let listed = self.reflectors(self.scale).zip(self.confidences()).filter(is_listed);
+        let size = |(reflector, _): &(Reflector, f64)| reflector.reflectivity.abs();
+        let objects: Vec<(Reflector, f64)> = self.reflectors(self.scale).zip(self.confidences()).collect();
+        let certain = objects.iter().filter(|object| is_certain(object));
+        let largest = certain.map(size).reduce(f64::max).unwrap_or(f64::INFINITY);
+        let listed =
+            objects.into_iter().filter(|object| is_certain(object) || size(object) <= MAX_OVER_CERTAIN * largest);
         let (reflectors, confidences) = listed.unzip();
         Reconstruction { lambda, reflectors, confidences, eta: None, least_eta, doubt: None, trace: self.trace.clone() }
     }

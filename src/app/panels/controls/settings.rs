@@ -27,21 +27,31 @@ pub(super) fn maps(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     }
 }
 
+/// Dynamic range with which the choice of any other begins, dB.
+const OTHER_RANGE_DECIBELS: f64 = 80.0;
+
 fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     let tooltip =
         "How magnitudes become Λ in [0, 1]. Min-max is the thesis'; a dynamic range doesn't depend on the floor";
     row_of(ui, "Normalise", tooltip, |ui| {
         let range = |db| Normalisation::DynamicRange(Decibels(db));
-        let of = [
+        let usual = [
             (Normalisation::MinMax, "Min–max", "Λ is 0 at the smallest cell"),
             (range(40.0), "40 dB", "Λ is 0 at 40 dB below the peak"),
             (range(60.0), "60 dB", "Λ is 0 at 60 dB below the peak"),
             (range(100.0), "100 dB", "Λ is 0 at 100 dB below the peak"),
         ];
+        // A drag of the field may pass a usual range, and must go on.
+        let held = ui.scope_id().with("other range is held");
+        let is_held = ui.data(|d| d.get_temp(held)).unwrap_or(false);
+        let is_usual = !is_held && usual.iter().any(|(of, ..)| *of == settings.normalisation);
+        let own = if is_usual { range(OTHER_RANGE_DECIBELS) } else { settings.normalisation };
+        let of = usual.into_iter().chain([(own, "Other", "Any other dynamic range")]);
         choices(ui, settings.normalisation, of, ViewCommand::Normalise, asked);
-        if let Normalisation::DynamicRange(Decibels(mut range)) = settings.normalisation {
+        if let (false, Normalisation::DynamicRange(Decibels(mut range))) = (is_usual, settings.normalisation) {
             let drag = ui.add(NumberField::new(&mut range).range(10.0..=300.0).speed(1.0).suffix(" dB"));
-            if drag.on_hover_text("Any other dynamic range").changed() {
+            ui.data_mut(|d| d.insert_temp(held, drag.dragged() || drag.has_focus()));
+            if drag.changed() {
                 asked.push(ViewCommand::Normalise(Normalisation::DynamicRange(Decibels(range))).into());
             }
         }

@@ -1,5 +1,6 @@
 //! Histogram and scatter plot of the rows; a box selects rows, a click opens one.
 
+use super::cells::heading;
 use super::input::Input;
 use super::order::{Boxed, Order};
 use super::points::{Dot, GROUPINGS, Points, Subject};
@@ -66,10 +67,10 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
         ui.selectable_value(&mut memory.view, view, name).on_hover_text(tip);
     }
     let column = |ui: &mut Ui, name: &str, column: &mut Column| {
-        choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| (column.name().to_owned(), ""));
+        choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| (heading(*column), ""));
     };
     if matches!(memory.view, View::Histogram | View::Columns) {
-        choice(ui, "Colour", "", &mut memory.grouping, GROUPINGS, |column| (column.name().to_owned(), ""));
+        choice(ui, "Colour", "", &mut memory.grouping, GROUPINGS, |column| (heading(*column), ""));
     }
     match memory.view {
         View::None => {}
@@ -161,10 +162,10 @@ fn subject(memory: &ChartsMemory) -> Option<(Subject, [String; 2])> {
     let [a, b] = &memory.methods;
     Some(match memory.view {
         View::None => return None,
-        View::Histogram => (Subject::Histogram(y), [y.name().to_owned(), "rows".to_owned()]),
-        View::Columns => (Subject::Columns(x, y), [x.name().to_owned(), y.name().to_owned()]),
+        View::Histogram => (Subject::Histogram(y), [heading(y), "rows".to_owned()]),
+        View::Columns => (Subject::Columns(x, y), [heading(x), heading(y)]),
         View::Methods => {
-            let title = |method: &str| format!("{method}.{}", y.name());
+            let title = |method: &str| format!("{}, {method}", heading(y));
             (Subject::Methods(y, a.clone(), b.clone()), [title(a), title(b)])
         }
     })

@@ -14,6 +14,8 @@ pub struct Caption<'a> {
     pub updating: &'a str,
     /// Verdict on the objects in the output that is shown, in a few words.
     pub verdict: Option<String>,
+    /// The verdict with the distance of found points.
+    pub with_distance: Option<String>,
     /// Figures of the output that is shown, against the target of the same scene.
     pub metrics: Option<Metrics>,
     pub output_eta: f32,
@@ -23,8 +25,8 @@ pub struct Caption<'a> {
     pub range_db: Option<f64>,
 }
 
-/// Text in the title bar of a map's panel.
-pub fn caption(input: Caption<'_>) -> Option<String> {
+/// Text in the title bar of a map's panel, from its longest form to its shortest, which is the verdict where there is one.
+pub fn caption(input: Caption<'_>) -> Vec<String> {
     let Caption { view, updating, method, verdict, .. } = &input;
     let method = method.unwrap_or_default();
     let threshold = |name: &str, eta: f32| match view.cfar {
@@ -35,7 +37,7 @@ pub fn caption(input: Caption<'_>) -> Option<String> {
         MapKind::TargetAbove => format!("{} {updating}", threshold("η'", view.target_eta)),
         MapKind::OutputAbove | MapKind::SecondAbove => {
             let eta = threshold("η", input.output_eta);
-            let Some(m) = input.metrics else { return Some(format!("{eta} {updating}")) };
+            let Some(m) = input.metrics else { return vec![format!("{eta} {updating}")] };
             let verdict_before = verdict.as_deref().map_or_else(String::new, |verdict| format!("{verdict} · "));
             let detection = m.detection.map_or("–".to_owned(), percent);
             // With a verdict without η, which the settings show: both would be cut off.
@@ -43,8 +45,8 @@ pub fn caption(input: Caption<'_>) -> Option<String> {
             format!("{verdict_before}P_D {detection} · P_FA {}{eta} {updating}", percent(m.false_alarm))
         }
         MapKind::Output | MapKind::Second => {
-            // A narrow panel cuts off the end of the verdict, not the name.
-            let told = verdict.as_deref().map_or_else(String::new, |verdict| format!(": {verdict}"));
+            let told = input.with_distance.as_ref().or(verdict.as_ref());
+            let told = told.map_or_else(String::new, |told| format!(": {told}"));
             format!("{method}{told} {updating}")
         }
         MapKind::Doubt => format!("{method} {updating}"),
@@ -57,7 +59,12 @@ pub fn caption(input: Caption<'_>) -> Option<String> {
         }),
         _ => (*updating).to_owned(),
     };
-    (!text.trim().is_empty()).then_some(text)
+    let named = verdict.as_ref().filter(|_| input.with_distance.is_some()).map(|told| format!("{method}: {told}"));
+    let has_verdict =
+        matches!(input.kind, MapKind::Output | MapKind::Second | MapKind::OutputAbove | MapKind::SecondAbove);
+    let shorter = named.into_iter().chain(input.verdict).filter(|_| has_verdict);
+    let forms = std::iter::once(text.trim_end().to_owned()).chain(shorter);
+    forms.filter(|form| !form.is_empty()).collect()
 }
 
 /// Text of a threshold in Lambda, or in decibels relative to the target's peak where these are chosen and the scale is known.
@@ -80,6 +87,7 @@ mod tests {
             method: None,
             updating: "",
             verdict: None,
+            with_distance: None,
             metrics: None,
             output_eta: 0.8,
             explained: None,
@@ -92,17 +100,24 @@ mod tests {
         let of = |kind| {
             let metrics = Some(Metrics { squared_error: 120.0, detection: Some(0.5), false_alarm: 0.01 });
             let verdict = Some("5 of 5 found, 0 false".to_owned());
-            caption(Caption { kind, method: Some("live"), verdict, metrics, ..bare(&View::default()) }).unwrap()
+            let with_distance =
+                verdict.as_ref().map(|told| format!("{told}, <1 mm off")).filter(|_| kind == MapKind::Output);
+            let view = View::default();
+            caption(Caption { kind, method: Some("live"), verdict, with_distance, metrics, ..bare(&view) })
         };
-        assert_eq!(of(MapKind::Output).trim(), "live: 5 of 5 found, 0 false");
-        assert_eq!(of(MapKind::OutputAbove).trim(), "5 of 5 found, 0 false · P_D 50.00 % · P_FA 1.00 %");
+        let [whole, named, short] = &of(MapKind::Output)[..] else { panic!("three forms") };
+        assert_eq!(whole.trim(), "live: 5 of 5 found, 0 false, <1 mm off");
+        assert_eq!([named, short], ["live: 5 of 5 found, 0 false", "5 of 5 found, 0 false"]);
+        let [whole, short] = &of(MapKind::OutputAbove)[..] else { panic!("two forms") };
+        assert_eq!(whole.trim(), "5 of 5 found, 0 false · P_D 50.00 % · P_FA 1.00 %");
+        assert_eq!(short, "5 of 5 found, 0 false");
     }
 
     #[test]
     fn thresholds_are_told_in_the_chosen_units() {
         let of = |units, range_db| {
             let view = View { units, target_eta: 0.9, ..View::default() };
-            caption(Caption { range_db, ..bare(&view) }).unwrap()
+            caption(Caption { range_db, ..bare(&view) }).remove(0)
         };
         assert_eq!(of(Units::Lambda, Some(320.0)).trim(), "η' = 0.90");
         assert_eq!(of(Units::Decibels, Some(320.0)).trim(), "η' = −32.0 dB");

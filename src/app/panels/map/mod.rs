@@ -31,9 +31,10 @@ pub use told::{
 
 use crate::app::panels::captions;
 use crate::app::state::{
-    Command, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection, State, ViewCommand, WindowCommand,
+    Command, Directions, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection, State, ViewCommand,
+    WindowCommand,
 };
-use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, entry, item, nudge};
+use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, entry, entry_called, item, nudge};
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
 use crate::radar::{End, FEW_COLUMNS, Radar};
 use crate::reconstruct::untrained_noise;
@@ -107,10 +108,11 @@ fn menu(ui: &mut Ui, state: &State, kind: MapKind, asked: &mut Vec<Command>) {
         Command::Window(WindowCommand::Maximise(Panel::Map(kind))),
         Command::View(ViewCommand::ResetMaps),
         Command::Export(ExportCommand::CopyMap(kind)),
-        Command::Window(WindowCommand::ClosePanel(Panel::Map(kind))),
     ] {
         entry(ui, command, true, asked);
     }
+    let panel = Panel::Map(kind);
+    entry_called(ui, &format!("Hide {}", panel.title()), WindowCommand::ClosePanel(panel), true, asked);
 }
 
 /// Gives screen readers one sentence: the kind of the map, and its content.
@@ -236,6 +238,12 @@ fn picture(ui: &mut Ui, inner: &Painter, frame: Frame<'_>, input: &Input<'_>, as
         None => blank::empty(ui, inner, rect, input.error.as_ref(), asked),
     }
     texture.is_some()
+}
+
+/// Draws axes around a whole map in `rect` whose elements' middle is the array's.
+pub fn draw_axes_around(ui: &Ui, rect: Rect, radar: &Radar, projection: Projection, directions: Directions) {
+    let frame = Frame::of(rect, MapView::default(), radar, projection, 0.0);
+    draw_axes(ui, ui.painter(), frame, directions, (0.0, false));
 }
 
 /// Reports the pointer's place. A click answers a question that asks for a place.

@@ -41,6 +41,9 @@ const ELLIPSE: f32 = 9.0;
 /// Least size of a map that has room for the numbers, points.
 const ROOM: Vec2 = vec2(250.0, 130.0);
 
+/// Lines of numbers that are not crowded out by the marks of other reflectors.
+const ENOUGH_LINES: usize = 4;
+
 impl Theory<'_> {
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>) {
         let Overlay { blob, streak, teeth, .. } = self.overlay;
@@ -123,12 +126,13 @@ impl Theory<'_> {
             let spacing = crate::theory::comb::tooth_spacing_cos(radar, *place) / column_cos;
             lines.push((COMB, format!("comb of the two ends: a tooth every {spacing:.2} columns")));
         }
-        lines.push((ALIAS, self.aliases(frame)));
         if let (Some(ellipse), Some((_, times))) = (self.ellipse, self.outline(frame)) {
             let (minor, major) = (length(ellipse.minor_metres), length(ellipse.major_metres));
             let shown = if times > 1.0 { format!(", drawn × {times:.0}") } else { String::new() };
             lines.push((BOUND, format!("σ ≥ {minor} × {major} for {} at {:.0} dB{shown}", self.listening, self.snr.0)));
         }
+        // The longest line: the first that a small map leaves out.
+        lines.push((ALIAS, self.aliases(frame)));
         lines
     }
 
@@ -148,8 +152,8 @@ impl Theory<'_> {
         format!("same cell: {} m{wrapped}; {folds}", ranges.join(", "))
     }
 
-    /// Writes the numbers in a corner, clear of the blob and of the `taken` places. Under the `pointer` only the name stays, so that the map
-    /// is in sight.
+    /// Writes the numbers in a corner, clear of the blob and, where that leaves room for some, of the `taken` places. Under the
+    /// `pointer` only the name stays, so that the map is in sight.
     pub fn tell(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, taken: &[Pos2]) {
         let rect = frame.rect;
         if rect.width() < ROOM.x || rect.height() < ROOM.y {
@@ -159,8 +163,10 @@ impl Theory<'_> {
         let layout = |(colour, text)| painter.layout(text, font.clone(), colour, rect.width() - 28.0);
         let galleys: Vec<_> = self.lines(frame).into_iter().map(layout).collect();
         let sizes: Vec<Vec2> = galleys.iter().map(|g| g.size()).collect();
-        let places = [self.places(frame).as_slice(), taken].concat();
-        let (mut patch, mut count) = clear_patch(rect, &places, &sizes);
+        let own = self.places(frame);
+        let apart = clear_patch(rect, &[own.as_slice(), taken].concat(), &sizes);
+        let over = clear_patch(rect, &own, &sizes);
+        let (mut patch, mut count) = if apart.1 < over.1.min(ENOUGH_LINES) { over } else { apart };
         if pointer.is_some_and(|p| patch.contains(p)) {
             // The pointer refers to the map beneath.
             count = 1;

@@ -33,8 +33,8 @@ impl MapMemory {
 
 pub const PANEL: Content<MapMemory> = Content { marks_age: true, caption: caption_in, ..Content::drawn(draw) };
 
-fn caption_in(state: &State, jobs: &Jobs, panel: Panel) -> Option<String> {
-    let Panel::Map(kind) = panel else { return None };
+fn caption_in(state: &State, jobs: &Jobs, panel: Panel) -> Vec<String> {
+    let Panel::Map(kind) = panel else { return Vec::new() };
     caption_of(state, jobs, kind)
 }
 
@@ -135,15 +135,15 @@ fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Kinds<'a>> 
     Some(Kinds { fates, current })
 }
 
-/// Text in the title bar of a map.
-pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
+/// Text in the title bar of a map, from its longest form to its shortest.
+pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Vec<String> {
     let pipeline = &jobs.pipeline;
     if let (MapKind::Input0, Some(layout)) = (kind, &state.settings.layout) {
-        return Some(format!("{layout} {}", updating(state, jobs, kind)));
+        return vec![format!("{layout} {}", updating(state, jobs, kind))];
     }
     if state.is_predicting() && kind.is_above() {
         // A lesson may ask for the threshold.
-        return None;
+        return Vec::new();
     }
     let slot = kind.slot().unwrap_or(MethodSlot::First);
     caption(Caption {
@@ -151,7 +151,8 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Option<String> {
         view: &state.settings.view,
         method: pipeline.method(slot).output().map(|o| o.method()),
         updating: &updating(state, jobs, kind),
-        verdict: verdict(state, jobs, slot, !kind.is_above()),
+        verdict: verdict(state, jobs, slot, false),
+        with_distance: verdict(state, jobs, slot, true).filter(|_| !kind.is_above()),
         metrics: scores(state, jobs, slot).map(|s| s.metrics),
         output_eta: pipeline.eta(state, slot),
         explained: pipeline.unexplained().map(|u| u.explained),

@@ -1,6 +1,6 @@
 //! Objects that the maps show elsewhere: a warning for those beyond the maximum range, and mirror images of those behind the array.
 
-use super::canvas::Canvas;
+use super::canvas::{Canvas, direction_label};
 use crate::interact::Place;
 use crate::radar::Radar;
 use crate::scene::{Object, Scene, Shape as Body};
@@ -14,12 +14,8 @@ const INSET: f32 = 13.0;
 /// Most signs; the sentence counts all.
 const SIGNS: usize = 100;
 
-/// Widest and narrowest sentence, points.
-const WIDEST: f32 = 330.0;
-const NARROWEST: f32 = 110.0;
-
-/// Distance from the point of the arc at -60 degrees to the sentence, points: half a label and the margin.
-const BESIDE_ARC: f32 = 44.0;
+/// Widths of the sentence, points: the first with which it covers no label of a direction.
+const WIDTHS: [f32; 8] = [330.0, 250.0, 190.0, 150.0, 120.0, 105.0, 95.0, 85.0];
 
 struct Beyond<'a> {
     index: usize,
@@ -148,14 +144,17 @@ pub fn mirror(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> 
     }
 }
 
-/// Writes the sentence in the upper left corner, below the scale and below the hint that ends at `below`, beside the label of -60 degrees.
+/// Writes the sentence in the upper left corner, below the scale and below the hint that ends at `below`, clear of the labels of directions.
 pub fn write(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, below: f32, said: &str) {
     let ink = ui.visuals().warn_fg_color;
     let at = pos2(canvas.rect.left() + 12.0, (canvas.rect.top() + 28.0).max(below + 8.0));
-    let sixty = canvas.extent_metres * 60_f64.to_radians().sin();
-    let width = (canvas.at(Place::new(-sixty, 0.0)).x - BESIDE_ARC - at.x).clamp(NARROWEST, WIDEST);
-    let galley = painter.layout(said.to_owned(), FontId::proportional(12.0), ink, width);
-    let patch = Rect::from_min_size(at, galley.size()).expand(4.0);
+    let labels = [-60, -30, 0].map(|degrees| direction_label(painter, canvas, degrees).1);
+    let laid = WIDTHS.map(|width| {
+        let galley = painter.layout(said.to_owned(), FontId::proportional(12.0), ink, width);
+        (Rect::from_min_size(at, galley.size()).expand(4.0), galley)
+    });
+    let covered = |patch: &Rect| labels.iter().filter(|label| patch.intersects(**label)).count();
+    let Some((patch, galley)) = laid.into_iter().min_by_key(|(patch, _)| covered(patch)) else { return };
     painter.rect_filled(patch, 3.0, ui.visuals().extreme_bg_color);
     painter.galley(at, galley, ink);
     let response = ui.interact(patch, Id::unique("beyond the maximum range"), Sense::hover());

@@ -72,6 +72,16 @@ pub fn ground(painter: &Painter, canvas: Canvas<'_>, fields_of_view: bool, numbe
     array(painter, Canvas { inks, ..canvas });
 }
 
+/// The label of a direction, degrees from straight ahead, and its place beyond the arc, on the side of the label that faces it.
+pub fn direction_label(painter: &Painter, canvas: Canvas<'_>, degrees: i32) -> (String, Rect) {
+    let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+    let end = canvas.at(Place::new(canvas.extent_metres * sin, canvas.extent_metres * cos));
+    let label = format!("{degrees}°").replace('-', "−");
+    let half = vec2(axes::width(painter, &label) / 2.0, 7.0);
+    let out = vec2(sin as f32, -cos as f32);
+    (label, Rect::from_center_size(end + out * (half + Vec2::splat(4.0)), 2.0 * half))
+}
+
 fn rings(painter: &Painter, canvas: Canvas<'_>) {
     let Canvas { rect, view, extent_metres: extent, inks, .. } = canvas;
     let thin = Stroke::new(1.0, inks.grid);
@@ -84,12 +94,8 @@ fn rings(painter: &Painter, canvas: Canvas<'_>) {
         let stroke = if degrees % 30 == 0 { thin } else { Stroke::new(1.0, inks.grid.gamma_multiply(0.5)) };
         painter.line_segment([origin, end], stroke);
         if degrees % 30 == 0 {
-            // Beyond the arc, on the side of the label that faces it.
-            let out = end + 4.0 * vec2(angle.cos() as f32, -angle.sin() as f32);
-            let label = format!("{degrees}°").replace('-', "−");
-            let half = vec2(axes::width(painter, &label) / 2.0, 7.0);
-            let away = vec2(angle.cos() as f32 * half.x, -angle.sin() as f32 * half.y);
-            axes::text(painter, out + away, Align2::CENTER_CENTER, &label, inks.grid_text);
+            let (label, place) = direction_label(painter, canvas, degrees);
+            axes::text(painter, place.center(), Align2::CENTER_CENTER, &label, inks.grid_text);
         }
     }
     let ranges = axes::ticks(0.0, extent, (0.5 * extent * 8.0 / visible.max(1e-3)).clamp(4.0, 60.0) as f32);
@@ -208,8 +214,22 @@ pub fn velocity(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Lo
     let (from, to) = (canvas.at(Place::new(x, y)), canvas.at(Place::new(x + vx, y + vy)));
     let colour = if look.selected { canvas.inks.selected } else { canvas.inks.reflector };
     // A long arrow is cut, so that its head is in sight.
-    let way = (to - from) * (canvas.rect.size().max_elem() / (to - from).length()).min(1.0);
-    painter.arrow(from, way, Stroke::new(1.2, colour));
+    let inner = canvas.rect.shrink(ARROW_INSET_POINTS);
+    let part = |from: f32, way: f32, [low, high]: [f32; 2]| ((if way < 0.0 { low } else { high }) - from) / way;
+    let way = to - from;
+    let parts =
+        [part(from.x, way.x, [inner.left(), inner.right()]), part(from.y, way.y, [inner.top(), inner.bottom()])];
+    let part = parts.into_iter().filter(|part| part.is_finite()).fold(1.0, f32::min).max(0.0);
+    let (stroke, tip) = (Stroke::new(1.2, colour), from + part * way);
+    painter.line_segment([from, tip], stroke);
+    head(painter, tip, way.normalized() * HEAD.min(0.5 * part * way.length()), stroke);
+}
+
+/// Draws an arrow's head as long as `along`, which leads to `tip`.
+fn head(painter: &Painter, tip: Pos2, along: Vec2, stroke: Stroke) {
+    for side in [0.5, -0.5] {
+        painter.line_segment([tip, tip - along + side * along.rot90()], stroke);
+    }
 }
 
 fn dots(painter: &Painter, object: &Object, radius: f32, colour: Color32, at: impl Fn(Place) -> Pos2) {
@@ -316,8 +336,11 @@ fn length_text(metres: f64) -> String {
 /// Gap between the arrow and the places at its ends, points.
 const ARROW_GAP_POINTS: f32 = 12.0;
 
-/// Length of the arrow's head, points.
+/// Length of an arrow's head, points.
 const HEAD: f32 = 11.0;
+
+/// Distance from the edge of the canvas that the head of an object's arrow keeps, points.
+const ARROW_INSET_POINTS: f32 = 6.0;
 
 impl Hint {
     /// Draws the hint at the top of the scene, beneath the scale.
@@ -345,10 +368,7 @@ fn arrow(painter: &Painter, way: &[Pos2], stroke: Stroke) {
     let is_free = |at: &&Pos2| at.distance(*first) > ARROW_GAP_POINTS && at.distance(*last) > ARROW_GAP_POINTS;
     let curve: Vec<Pos2> = way.iter().filter(is_free).copied().collect();
     let [.., before, tip] = curve[..] else { return };
-    let along = HEAD * (tip - before).normalized();
-    for side in [0.5, -0.5] {
-        painter.line_segment([tip, tip - along + side * along.rot90()], stroke);
-    }
+    head(painter, tip, HEAD * (tip - before).normalized(), stroke);
     painter.add(Shape::line(curve, stroke));
 }
 

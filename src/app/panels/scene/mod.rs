@@ -51,13 +51,14 @@ pub struct Input<'a> {
 const OLD_OPACITY: f32 = 0.35;
 
 /// Draws the canvas. Drags and selections go straight to the editor, since commands would take effect a frame later.
-pub fn show(ui: &mut Ui, input: Input<'_>, state: &mut State) -> Vec<Command> {
+pub fn show(ui: &mut Ui, mut input: Input<'_>, state: &mut State) -> Vec<Command> {
     let mut asked = Vec::new();
     let rect = ui.available_rect_before_wrap();
+    input.hint.take_if(|_| rect.height() < MIN_HINT_PANEL_HEIGHT_POINTS);
     let (radar, moved) = (state.editor.radar().clone(), state.timeline.moved());
     let (cursor, has_numbers) = (state.shown_cursor(), state.shows_axes());
     let extent_metres = extent_metres(state);
-    fit(extent_metres, &state.editor, &mut state.scene_view, rect);
+    fit(extent_metres, &state.editor, &mut state.scene_view, rect, input.hint.is_some());
     // `Sense::drag` alone: a drag starts with the first pixel.
     let response = ui.interact(rect, ui.scope_id().with("scene canvas"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Scene"));
@@ -186,6 +187,12 @@ fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>)
 /// Room for the labels on each side of the half disc, points.
 const LABELS: Vec2 = vec2(30.0, 24.0);
 
+/// Least height of a panel with a hint, points: in a lower one the hint would cover the scene.
+const MIN_HINT_PANEL_HEIGHT_POINTS: f32 = 160.0;
+
+/// Farthest that a scene stands below the middle of its panel, so that its hint covers less of it, points.
+const MAX_SHIFT_POINTS: f32 = 40.0;
+
 /// Largest range that is drawn, metres: the radar's maximum, or for a snapshot somewhat more than the range of its echoes.
 fn extent_metres(state: &State) -> f64 {
     let of_snapshot = state.editor.document().recording().and_then(|recording| recording.range_metres);
@@ -193,7 +200,7 @@ fn extent_metres(state: &State) -> f64 {
 }
 
 /// Fits the view to the radar's ranges and to the objects nearby.
-fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect) {
+fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect, has_hint: bool) {
     let resized = view.fitted.is_some_and(|size| size != rect.size()) && editor.dragged().is_none();
     if !(view.fit || resized) || rect.width() < 40.0 || rect.height() < 40.0 {
         return;
@@ -210,6 +217,11 @@ fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect) {
     // Around the half disc there is room for the labels of its rings and spokes.
     let inner = rect.shrink2(LABELS.min(rect.size() / 4.0));
     view.show(inner, low, high);
+    if has_hint {
+        // What is free is above the scene.
+        let free = inner.height() - ((high.y_metres - low.y_metres) / view.metres_per_point) as f32;
+        view.centre.y_metres += f64::from((free / 2.0).min(MAX_SHIFT_POINTS)) * view.metres_per_point;
+    }
     (view.fit, view.fitted) = (false, Some(rect.size()));
 }
 

@@ -64,10 +64,14 @@ fn ghosts_stand_where_the_radar_hears_them() {
 
 #[test]
 fn labels_stand_around_the_half_disc_from_straight_ahead() {
-    // The last case also shows a point far behind the array, so that the half disc is small.
-    for (size, y_metres) in
-        [([280.0, 170.0], 20.0), ([480.0, 300.0], 20.0), ([1400.0, 800.0], 20.0), ([490.0, 170.0], -30.0)]
-    {
+    // The last cases also show a point behind the array and its note.
+    for (size, y_metres) in [
+        ([280.0, 170.0], 20.0),
+        ([480.0, 300.0], 20.0),
+        ([1400.0, 800.0], 20.0),
+        ([490.0, 170.0], -30.0),
+        ([432.0, 265.0], -8.0),
+    ] {
         let mut state = State::of(Radar::default(), Scene::default());
         let draw = |ui: &mut Ui, state: &mut State| _ = show(ui, input(), state);
         state.editor.add(Object::Point(Point::new(-12.0, y_metres)));

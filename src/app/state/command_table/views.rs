@@ -94,7 +94,7 @@ pub(super) const COMMANDS: &[Entry] = {
             "The scene and the maps on the whole screen, in large type; the same key brings everything back", key(Key::F11);
         Window(WindowCommand::ToggleCaptions), "Captions on the maps", "Say on every map what it shows, until the next drag", None;
         Window(WindowCommand::CloseMessages), "Close messages", "Close every message in the corner", None;
-        Window(WindowCommand::ToggleTheme), "Light / dark", "Switch between light and dark", command(Key::T);
+        Window(WindowCommand::ToggleTheme), "Dark", "Switch between dark and light", command(Key::T);
         Window(WindowCommand::ZoomIn), "Zoom in", "Larger interface", command(Key::Plus);
         Window(WindowCommand::ZoomOut), "Zoom out", "Smaller interface", command(Key::Minus);
         Window(WindowCommand::ZoomReset), "Normal size", "Interface at its normal size", command(Key::Num0);
