@@ -77,8 +77,7 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, memory: &mut FailuresMemory) -> Vec<
         update(ui, input, memory);
         head(ui, input, memory);
         if memory.charts.view != View::None {
-            let margin = if memory.charts.view == View::Shared { Margin::same(8) } else { Margin::ZERO };
-            let panel = beside_or_below(ui.available_size()).frame(Frame::NONE.inner_margin(margin));
+            let panel = beside_or_below(ui.available_size()).frame(Frame::NONE);
             panel.show(ui, |ui| chart(ui, input, memory, &mut asked));
         }
         let open = table::show(ui, input, &memory.order.shown, &mut memory.sort, &mut memory.table);
