@@ -1,7 +1,7 @@
 //! Recordings that come with the program: the files of `assets/recordings`, embedded in it.
 
 use super::chain::Open;
-use super::described::Described;
+use super::recording_text::RecordingText;
 use super::{Recording, RecordingError};
 use std::io::{self, Cursor};
 use std::path::Path;
@@ -50,7 +50,7 @@ impl Preset {
                 Err(io::Error::new(io::ErrorKind::NotFound, format!("expected {}", self.data_name)))
             }
         };
-        Described::by(self.toml, Path::new(&path), open, None)?.recording()
+        RecordingText::parse(self.toml, Path::new(&path), open, None)?.recording()
     }
 
     /// The preset called `id`.

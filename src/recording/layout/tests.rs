@@ -117,13 +117,13 @@ fn four_lanes_carry_a_receiver_each() {
 fn the_evidence_says_what_decided() {
     let right = in_order(Parts::TwoLanes);
     let plain = found(written(&right, &chirps()), Some(&profile("")));
-    assert_eq!(plain.decided_by(), Kind::Half, "I and Q alone are near: {:#?}", plain.sentences());
+    assert_eq!(plain.decided_by(), EvidenceKind::Half, "I and Q alone are near: {:#?}", plain.sentences());
     assert!(plain.sentences().iter().any(|s| s.starts_with("Every receiver sees the same echoes")));
     // Echoes may stand in the far half: two of them weigh less than what the .cfg says.
     let swapped = profile("adcbufCfg -1 0 1 1 1\n");
     let one = found(written(&right, &seen(0.0)), Some(&swapped));
-    assert!(one.best().layout.q_first && one.best().of_kind(Kind::Half) < 0.0, "{:#?}", one.sentences());
-    assert_eq!(one.decided_by(), Kind::Config);
+    assert!(one.best().layout.q_first && one.best().of_kind(EvidenceKind::Half) < 0.0, "{:#?}", one.sentences());
+    assert_eq!(one.decided_by(), EvidenceKind::Config);
     let several = found(written(&right, &chirps()), Some(&swapped));
     assert!(several.best().layout.q_first, "{:#?}", several.sentences());
     assert_ne!(several.certainty(), Certainty::Open, "{:#?}", several.sentences());
@@ -202,7 +202,12 @@ fn two_echoes_at_mirrored_places_are_no_image() {
     let all: Vec<Vec<Complex64>> = (0..8).map(|_| (0..3 * SAMPLES).map(&mut sample).collect()).collect();
     let right = in_order(Parts::Pairs);
     let found = found(written(&right, &all), Some(&profile("adcbufCfg -1 0 0 1 1\n")));
-    assert_eq!((found.best().layout, found.best().of_kind(Kind::Images)), (right, 0.0), "{:#?}", found.sentences());
+    assert_eq!(
+        (found.best().layout, found.best().of_kind(EvidenceKind::Images)),
+        (right, 0.0),
+        "{:#?}",
+        found.sentences()
+    );
 }
 
 #[test]
