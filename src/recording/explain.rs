@@ -115,7 +115,7 @@ fn fit(
         .par_iter()
         .map(|r| {
             let place = radar.polar_of(r.x_metres, r.y_metres);
-            ArrayEcho::heard_by(radar, &pairs, place.range_metres, place.cos_theta)
+            ArrayEcho::at_pairs(radar, &pairs, place.range_metres, place.cos_theta)
         })
         .collect();
     let y: Vec<Complex64> = rows.iter().copied().collect();
