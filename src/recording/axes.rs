@@ -60,11 +60,7 @@ pub enum Join {
 ///
 /// # Errors
 /// [`Fault`] where `kinds` are not the array's axes, or there is no such frame.
-pub(super) fn select_frame(
-    numbers: Numbers,
-    kinds: &mut Vec<AxisKind>,
-    frame: Option<usize>,
-) -> Result<Numbers, Fault> {
+pub(super) fn frame_of(numbers: Numbers, kinds: &mut Vec<AxisKind>, frame: Option<usize>) -> Result<Numbers, Fault> {
     let Some(place) = kinds.iter().position(|k| *k == AxisKind::Frame) else {
         return match frame {
             None => Ok(numbers),
@@ -89,7 +85,7 @@ pub(super) fn select_frame(
 ///
 /// # Errors
 /// [`Fault`] without an axis of chirps, with one of transmitters, or where the chirps are no multiple of `transmitters`.
-pub(super) fn split_transmitters(
+pub(super) fn split_turns(
     numbers: Numbers,
     kinds: &mut Vec<AxisKind>,
     transmitters: Option<usize>,
@@ -233,9 +229,7 @@ fn select_chirp(
         |chirp| Fault::Data(format!("recording.chirp is {chirp}; expected 0 to {last}, the array has {chirps} chirps"));
     match chirp {
         // Without a transform over loops, the Doppler cell of static echoes stands for the strongest: the mean.
-        Some(ChirpChoice::Joined(Join::Mean | Join::Strongest)) => {
-            values.mean_axis(Axis(place)).ok_or_else(|| no_such(0))
-        }
+        Some(ChirpChoice::Joined(_)) => values.mean_axis(Axis(place)).ok_or_else(|| no_such(0)),
         Some(ChirpChoice::Number(number)) if number >= chirps => Err(no_such(number)),
         Some(ChirpChoice::Number(number)) => Ok(values.index_axis_move(Axis(place), number)),
         None if chirps == 1 => Ok(values.index_axis_move(Axis(place), 0)),

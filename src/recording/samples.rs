@@ -1,6 +1,6 @@
 //! Samples of a recording's data files, sorted by the array's elements.
 
-use super::axes::{Join, arrange, into_loops, select_frame, split_transmitters};
+use super::axes::{Join, arrange, frame_of, into_loops, split_turns};
 use super::capture::join_strongest;
 use super::chain::{Source, open_joined};
 use super::numbers::Numbers;
@@ -81,11 +81,7 @@ impl RecordingText<'_> {
         }
         let mut numbers = self.read_numbers(table.array.as_deref())?;
         numbers.restore_signs();
-        let numbers = split_transmitters(
-            select_frame(numbers, &mut kinds, table.frame)?,
-            &mut kinds,
-            table.transmitters_in_turn,
-        )?;
+        let numbers = split_turns(frame_of(numbers, &mut kinds, table.frame)?, &mut kinds, table.transmitters_in_turn)?;
         let loops = into_loops(numbers, &kinds)?;
         let (count, transmitters, receivers, samples) = loops.dim();
         let pairs = transmitters * receivers;
@@ -124,10 +120,10 @@ impl RecordingText<'_> {
             return Err(Fault::key("recording.axes", "is missing", kinds));
         };
         match (array, first, last) {
-            (array, None, None) => self.read_array(array.as_deref(), axes.clone()),
+            (array, None, None) => self.array_of(array.as_deref(), axes.clone()),
             (None, Some(first), Some(last)) => {
-                let (first, mut notes) = self.read_array(Some(first), axes.clone())?;
-                let (last, last_notes) = self.read_array(Some(last), axes.clone())?;
+                let (first, mut notes) = self.array_of(Some(first), axes.clone())?;
+                let (last, last_notes) = self.array_of(Some(last), axes.clone())?;
                 if first.dim() != last.dim() {
                     let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
                     return Err(Fault::count("numbers in \"last\"", last.len(), &expected, last.dim()));
@@ -147,17 +143,13 @@ impl RecordingText<'_> {
     }
 
     /// Reads the array called `key`, `[elements, samples]`, and sentences on its samples.
-    fn read_array(
-        &self,
-        key: Option<&str>,
-        mut kinds: Vec<AxisKind>,
-    ) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+    fn array_of(&self, key: Option<&str>, mut kinds: Vec<AxisKind>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
         let table = &self.table;
         let mut numbers = self.read_numbers(key)?;
         let mut notes: Vec<String> = numbers.restore_signs().into_iter().collect();
-        let numbers = select_frame(numbers, &mut kinds, table.frame)?;
+        let numbers = frame_of(numbers, &mut kinds, table.frame)?;
         notes.extend(real_samples_note(&numbers, &kinds));
-        let numbers = split_transmitters(numbers, &mut kinds, table.transmitters_in_turn)?;
+        let numbers = split_turns(numbers, &mut kinds, table.transmitters_in_turn)?;
         let len = |kind| kinds.iter().position(|k| *k == kind).map_or(1, |place| numbers.shape()[place]);
         let sizes = [len(AxisKind::Transmitter), len(AxisKind::Receiver)];
         let rows = if table.chirp == Some(ChirpChoice::Joined(Join::Strongest)) && kinds.contains(&AxisKind::Chirp) {

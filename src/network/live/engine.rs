@@ -11,7 +11,7 @@ use super::grid::{
 };
 use super::lobes::WindowLobes;
 use super::planes::{Plane, PlaneBlock, rectified};
-use super::reading::{LiveLayers, SPREAD_CELLS};
+use super::reading::{CELLS, LiveLayers};
 use super::size::LiveSize;
 use super::winograd::{Conv3x3, ConvResults};
 use crate::maps::RangeAngleMap;
@@ -22,8 +22,7 @@ use crate::signal::simd::powers::{each, logarithm, power_of_ten};
 use rayon::prelude::*;
 use std::ops::Range;
 
-const _: () =
-    assert!(FOLD == SPREAD_CELLS && COLUMNS_PER_FINE == SPREAD_CELLS, "layers that spread a cell do so over four");
+const _: () = assert!(FOLD == CELLS && COLUMNS_PER_FINE == CELLS, "layers that spread a cell do so over four");
 const COLUMNS_PER_FINE: usize = COLUMNS / FINE_COLUMNS;
 
 /// The network's estimate for one scene, in decades relative to the samples' gain.

@@ -20,7 +20,6 @@ use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::fmt;
 
 /// The examples to make.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,15 +138,15 @@ impl Examples {
         let kinds = || request.mixture.shares().iter().map(|(kind, _)| *kind);
         if request.purpose == Purpose::Test && kinds().any(|kind| kind == Kind::World) {
             let expected = "expected a purpose of training or validation";
-            return Err(to_message(format!("{} makes no scenes for tests; {expected}", Kind::World)));
+            return Err(format!("{} makes no scenes for tests; {expected}", Kind::World));
         }
         let found = request.radars.smallest_max_range_metres();
-        kinds().try_for_each(|kind| kind.check_room_within(found)).map_err(to_message)?;
+        kinds().try_for_each(|kind| kind.check_room_within(found)).map_err(|e| e.to_string())?;
         if let Some(layout) = &request.layout {
-            check_layout(layout, request.radars.shape().elements).map_err(to_message)?;
+            check_layout(layout, request.radars.shape().elements).map_err(|e| e.to_string())?;
             match request.features {
                 Features::Needed => {
-                    return Err(to_message("the live network hears two ends; expected no layout, or no features"));
+                    return Err("the live network hears two ends; expected no layout, or no features".to_owned());
                 }
                 _ => request.features = Features::No,
             }
@@ -158,7 +157,7 @@ impl Examples {
                 request.features = Features::No;
             }
             if request.features != Features::No {
-                extractor = Some(FeatureExtractor::new(radar).map_err(to_message)?);
+                extractor = Some(FeatureExtractor::new(radar).map_err(|e| e.to_string())?);
             }
         }
         Ok(Examples { request, extractor })
@@ -261,10 +260,6 @@ impl Examples {
             None => FeatureExtractor::new(radar)?.extract(ends).map(Some),
         }
     }
-}
-
-fn to_message(why: impl fmt::Display) -> String {
-    why.to_string()
 }
 
 impl EndSamples {

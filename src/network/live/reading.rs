@@ -7,7 +7,7 @@ use crate::network::kernels::convolution::{Packed, padded};
 use crate::network::weights::{WeightFile, WeightsError};
 
 /// Number of cells that a spreading layer computes from one cell.
-pub(super) const SPREAD_CELLS: usize = 4;
+pub(super) const CELLS: usize = 4;
 
 /// Layers of a weight file. All methods return [`WeightsError`] where a tensor is missing or has another shape.
 #[derive(Clone, Copy)]
@@ -21,21 +21,21 @@ impl LiveLayers<'_> {
         Ok([tensor("weight", shape)?, tensor("bias", &shape[..1])?])
     }
 
-    /// As [`LiveLayers::tensors`]; the weights of the last `new_inputs` inputs are zeros where an older file lacks them.
+    /// As [`LiveLayers::tensors`]; the weights of the last `added` inputs are zeros where an older file lacks them.
     pub(super) fn tensors_or_older(
         &self,
         name: &str,
         shape: &[usize],
-        new_inputs: usize,
+        added: usize,
     ) -> Result<[Vec<f32>; 2], WeightsError> {
         let mut old_shape = shape.to_vec();
-        old_shape[1] -= new_inputs;
+        old_shape[1] -= added;
         if self.file.shape(&format!("{name}.weight")) != Some(&old_shape) {
             return self.tensors(name, shape);
         }
         let [weights, bias] = self.tensors(name, &old_shape)?;
         let area: usize = shape[2..].iter().product();
-        let widened = |of_output: &[f32]| [of_output, &vec![0.0; new_inputs * area]].concat();
+        let widened = |of_output: &[f32]| [of_output, &vec![0.0; added * area]].concat();
         Ok([weights.chunks_exact(old_shape[1] * area).flat_map(widened).collect(), bias])
     }
 
@@ -51,10 +51,9 @@ impl LiveLayers<'_> {
         Ok(Conv3x3::new(&weights, &bias, input, input))
     }
 
-    /// A 3x3 convolution that spreads one cell over [`SPREAD_CELLS`] cells of `channels` channels.
+    /// A 3x3 convolution that spreads one cell over [`CELLS`] cells of `channels` channels.
     pub(super) fn widened(&self, name: &str, input: usize, channels: usize) -> Result<Conv3x3, WeightsError> {
-        let [weights, bias] =
-            self.tensors(name, &[SPREAD_CELLS * channels, input, 3, 3])?.map(|v| cell_by_cell(&v, channels));
+        let [weights, bias] = self.tensors(name, &[CELLS * channels, input, 3, 3])?.map(|v| cell_by_cell(&v, channels));
         Ok(Conv3x3::new(&weights, &bias, input, padded(input)))
     }
 
@@ -64,21 +63,15 @@ impl LiveLayers<'_> {
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [kernel; 2], kernel))
     }
 
-    /// A 1x1 convolution that spreads one cell over [`SPREAD_CELLS`] cells of `channels` channels.
+    /// A 1x1 convolution that spreads one cell over [`CELLS`] cells of `channels` channels.
     pub(super) fn up(&self, name: &str, input: usize, channels: usize) -> Result<Packed, WeightsError> {
-        let [weights, bias] =
-            self.tensors(name, &[SPREAD_CELLS * channels, input, 1, 1])?.map(|v| cell_by_cell(&v, channels));
+        let [weights, bias] = self.tensors(name, &[CELLS * channels, input, 1, 1])?.map(|v| cell_by_cell(&v, channels));
         Ok(Packed::new(&weights, &bias, [input, padded(input)], [1, 1], 1))
     }
 
-    /// A linear layer of contiguous numbers. Older files lack the last `new_inputs` of them.
-    pub(super) fn linear(
-        &self,
-        name: &str,
-        [input, new_inputs]: [usize; 2],
-        output: usize,
-    ) -> Result<Packed, WeightsError> {
-        let [weights, bias] = self.tensors_or_older(name, &[output, input], new_inputs)?;
+    /// A linear layer of contiguous numbers. Older files lack the last `added` of them.
+    pub(super) fn linear(&self, name: &str, [input, added]: [usize; 2], output: usize) -> Result<Packed, WeightsError> {
+        let [weights, bias] = self.tensors_or_older(name, &[output, input], added)?;
         Ok(Packed::new(&weights, &bias, [input; 2], [1, 1], 1))
     }
 
@@ -120,9 +113,9 @@ impl LiveLayers<'_> {
 /// Reorders the weights of a layer that spreads one cell over several cells of `channels` channels: from channel by channel, as PyTorch's pixel
 /// shuffle has them, to cell by cell.
 fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
-    let each = of_channels.len() / (SPREAD_CELLS * channels);
-    let part = |cell: usize, channel: usize| &of_channels[(channel * SPREAD_CELLS + cell) * each..][..each];
-    (0..SPREAD_CELLS).flat_map(|cell| (0..channels).flat_map(move |channel| part(cell, channel))).copied().collect()
+    let each = of_channels.len() / (CELLS * channels);
+    let part = |cell: usize, channel: usize| &of_channels[(channel * CELLS + cell) * each..][..each];
+    (0..CELLS).flat_map(|cell| (0..channels).flat_map(move |channel| part(cell, channel))).copied().collect()
 }
 
 /// The circulant matrix `[n, n]` of amplitudes by `kernel`, decades for each circular distance between row and column.
@@ -143,9 +136,8 @@ mod tests {
         let numbers = [1.0f32, 2.0, 3.0, 4.0, 5.0, 6.0].map(f32::to_le_bytes).concat();
         let bytes = [&(header.len() as u64).to_le_bytes(), header.as_bytes(), &numbers].concat();
         let file = WeightFile::parse("older", &bytes).unwrap();
-        let read = |input: usize, new_inputs: usize| {
-            LiveLayers { file: &file }.tensors_or_older("a", &[2, input, 1, 2], new_inputs)
-        };
+        let read =
+            |input: usize, added: usize| LiveLayers { file: &file }.tensors_or_older("a", &[2, input, 1, 2], added);
         assert_eq!(read(1, 0).unwrap(), [vec![1.0, 2.0, 3.0, 4.0], vec![5.0, 6.0]]);
         let widened = vec![1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(read(3, 2).unwrap(), [widened, vec![5.0, 6.0]]);

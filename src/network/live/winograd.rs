@@ -89,7 +89,7 @@ impl Conv3x3 {
         out.par_chunks_mut(lines * out_line).enumerate().for_each(|(band, out)| {
             BAND.with_borrow_mut(|band_buffers| {
                 let strips = (out.len() / out_line).div_ceil(OUTPUTS);
-                band_buffers.transform_input(simd, self.input, groups, strips, |y, line| read(band * lines + y, line));
+                band_buffers.transform(simd, self.input, groups, strips, |y, line| read(band * lines + y, line));
                 band_buffers.multiply(simd, &self.kernels, groups * strips);
                 for (strip, out) in out.chunks_mut(OUTPUTS * out_line).enumerate() {
                     band_buffers.transform_outputs(simd, groups * self.output, strip);
@@ -103,7 +103,7 @@ impl Conv3x3 {
 }
 
 impl Band {
-    fn transform_input(
+    fn transform(
         &mut self,
         simd: Simd,
         channels: usize,

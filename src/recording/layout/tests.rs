@@ -202,12 +202,8 @@ fn two_echoes_at_mirrored_places_are_no_image() {
     let all: Vec<Vec<Complex64>> = (0..8).map(|_| (0..3 * SAMPLES).map(&mut sample).collect()).collect();
     let right = in_order(Parts::Pairs);
     let found = found(written(&right, &all), Some(&profile("adcbufCfg -1 0 0 1 1\n")));
-    assert_eq!(
-        (found.best().layout, found.best().of_kind(EvidenceKind::Images)),
-        (right, 0.0),
-        "{:#?}",
-        found.sentences()
-    );
+    let best = found.best();
+    assert_eq!((best.layout, best.of_kind(EvidenceKind::Images)), (right, 0.0), "{:#?}", found.sentences());
 }
 
 #[test]
