@@ -1,4 +1,4 @@
-//! Maps of elements that stand off the array's line, focused towards the direction of each column.
+//! Maps of elements off the array's line, focused towards the direction of each column.
 //!
 //! A far reflector in the direction `theta` is nearer to an element at (x, y) than to the array's centre, by `x cos(theta) + y sin(theta)`. The
 //! angle transform compensates for the term of x. That of y depends on the sine of the column's direction. Its phase, and with it the shift in range,

@@ -181,7 +181,7 @@ pub(crate) mod tests {
             }
         });
         let mut taken = Vec::new();
-        // Two frames are looked at; the others are dropped.
+        // Two frames are processed; the others are dropped.
         let take = |frame: CardFrame| {
             taken.push((frame.number, frame.lost_bytes));
             if taken.len() > 2 { FrameResponse::Dropped } else { FrameResponse::Taken }

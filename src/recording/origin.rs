@@ -20,7 +20,7 @@ pub struct Offer {
     pub toml: String,
 }
 
-/// The source of a recording whose file can be read in another way, or of which another frame can be taken.
+/// The file of a recording that can be read in other ways, or that has other frames.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Origin {
     /// The file with the samples, or the TOML that describes them.

@@ -17,7 +17,7 @@ pub struct Preset {
     pub data_name: &'static str,
     /// The samples, as that file has them.
     pub data: &'static [u8],
-    /// The notice that its licence asks for.
+    /// The notice required by its licence.
     pub licence: &'static str,
 }
 

@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 pub struct PairBlocks<const W: usize> {
     /// x of transmitters and of receivers.
     x_metres: [Lanes<f64, W>; 2],
-    /// y of transmitters and of receivers; `None` where all stand on the array's line.
+    /// y of transmitters and of receivers; `None` where all are on the array's line.
     y_metres: [Option<Lanes<f64, W>>; 2],
     is_monostatic: bool,
 }

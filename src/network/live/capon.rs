@@ -110,7 +110,7 @@ fn inverse_lags<const FMA: bool, const N: usize>(z: &[Complexes]) -> (Numbers, [
     }
     // The covariance of a row of zeros is the loading alone.
     let scale = trace.map(|v| if v > 0.0 { N as f64 / v } else { 0.0 });
-    // Cholesky factor L of the loaded covariance, whose diagonal is real, then M = L^-1; R^-1 = M^H M.
+    // The Cholesky factor L of R, and M = L^-1, both with real diagonals (`inverse` is that of M): R^-1 = M^H M.
     let mut factor = [[ZERO; N]; N];
     let mut inverse = [Numbers::splat(0.0); N];
     for i in 0..N {

@@ -40,7 +40,7 @@ pub struct ExamplesRequest {
     pub targets: Vec<Target>,
     /// Whether examples have the live network's input.
     pub features: Features,
-    /// Numbers of the elements whose samples replace those of the two ends.
+    /// Numbers of the elements with samples, in place of the two ends.
     pub layout: Option<Vec<usize>>,
 }
 

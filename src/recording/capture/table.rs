@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Capture {
-    /// Name of the `.cfg`, beside the TOML; without one the counts stand in this table.
+    /// Name of the `.cfg`, beside the TOML; without it this table must have the counts.
     pub config: Option<String>,
     pub sub_frame: Option<usize>,
     /// Names of the files that continue the first, in order.

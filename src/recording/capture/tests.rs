@@ -68,7 +68,7 @@ fn every_layout_gives_every_sample_its_place() {
 }
 
 #[test]
-fn contradictions_are_told() {
+fn contradictions_are_refused() {
     let order = ReceiverOrder::OneAfterAnother;
     let whole = file(2, 2, order);
     let message = |capture: Capture, profile: &RadarProfile, bytes: &[u8]| {
@@ -113,7 +113,7 @@ fn a_cut_file_gives_its_whole_frames() {
 }
 
 #[test]
-fn zeros_saturation_constants_and_real_samples_are_told() {
+fn zeros_saturation_constants_and_real_samples_are_noted() {
     let order = ReceiverOrder::OneAfterAnother;
     let long = RadarProfile { samples: 64, loops: 1, ..profile() };
     let notes = |change: &dyn Fn(usize) -> [i16; 2]| {

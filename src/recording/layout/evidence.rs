@@ -58,7 +58,7 @@ const MAX_IMAGES: usize = 6;
 const CONFIG_IQ_LOG_ODDS: f64 = 5.0;
 const CONFIG_RECEIVERS_LOG_ODDS: f64 = 8.0;
 const CONFIG_REAL_LOG_ODDS: f64 = 40.0;
-/// Log-odds against receivers one after another on four lanes, where each lane carries a receiver. Spectra can't tell it: those of both orders are equal
+/// Log-odds against receivers one after another on four lanes, where each lane carries a receiver. Spectra are no evidence: those of both orders are equal
 /// for an echo at broadside.
 const FOUR_LANES_LOG_ODDS: f64 = 20.0;
 

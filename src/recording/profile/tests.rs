@@ -53,7 +53,7 @@ fn faults_name_line_with_command() {
 }
 
 #[test]
-fn other_dialects_are_told_by_name() {
+fn other_dialects_are_refused_by_name() {
     let xwrl =
         "channelCfg 7 3 0\nchirpComnCfg 13 0 0 128 4 28 0\nchirpTimingCfg 6 32 0 75 60\nframeCfg 2 0 600 64 100 0\n";
     for (text, name) in [
