@@ -10,7 +10,7 @@ use apertura::maps::channels_map;
 use apertura::maps::network_input::mag_phase;
 use apertura::network::floors::Floors;
 use apertura::network::live::arrays::Arrays;
-use apertura::network::live::constants::turn_rows;
+use apertura::network::live::constants::reverse_rows;
 use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, ExamplePart};
 use apertura::network::live::examples::{self, EndSamples, Example, ExamplesRequest, Features};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
@@ -323,7 +323,7 @@ fn shaped(values: Vec<f32>, shape: &[usize]) -> PyResult<ArrayD<f32>> {
 fn mag_phase_of(radar: &apertura::radar::Radar, ends: &TwoEnds) -> Array3<f32> {
     let [first, last] = [&ends.first, &ends.last].map(|end| channels_map(radar, end.view()));
     let mut maps = mag_phase(&first, &last).mapv(|v| v as f32);
-    maps.outer_iter_mut().for_each(|mut map| turn_rows(radar, &mut map));
+    maps.outer_iter_mut().for_each(|mut map| reverse_rows(radar, &mut map));
     maps
 }
 

@@ -21,7 +21,7 @@ pub struct Ambiguity {
 /// Of a layout without elements it is 0 everywhere.
 pub fn ambiguity(radar: &Radar, layout: &Layout, centre: Polar, ranges_metres: &[f64], cosines: &[f64]) -> Ambiguity {
     let pairs = layout.pairs();
-    let atom = |range, cos| ArrayEcho::heard_by(radar, &pairs, range, cos);
+    let atom = |range, cos| ArrayEcho::at_pairs(radar, &pairs, range, cos);
     let reflector = atom(centre.range_metres, centre.cos_theta);
     let likeness: Vec<f64> = ranges_metres
         .par_iter()

@@ -93,7 +93,7 @@ fn described(imported: &Imported, doubts: &[String]) -> Value {
     let Origin { data, config, offers, sentences, .. } = &imported.origin;
     let layouts: Vec<Value> = match &imported.found {
         Some(found) => found.candidates.iter().take(MAX_LISTED_LAYOUTS).map(layout).collect(),
-        None => offers.iter().map(|o| json!({ "axes": o.described, "log_odds": o.log_odds })).collect(),
+        None => offers.iter().map(|o| json!({ "axes": o.description, "log_odds": o.log_odds })).collect(),
     };
     json!({
         "data": data.display().to_string(),

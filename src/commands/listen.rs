@@ -4,7 +4,7 @@ use super::input::{load_board, print_doubts};
 use super::{CommandError, print};
 use crate::reconstruct::found::reconstruct_and_find;
 use crate::reconstruct::{IAA, NoisePrior, Request};
-use crate::recording::card::{Card, Handed};
+use crate::recording::card::{Card, FrameResponse};
 use crate::recording::packets::CardFrame;
 use crate::recording::{Origin, raw};
 use std::fs::File;
@@ -57,14 +57,14 @@ impl Args {
         let mut card = Card::listen(self.port, frame_bytes).map_err(failed)?;
         let created = |path: &PathBuf| File::create(path).map_err(CommandError::on(path));
         card.log = self.log.as_ref().map(created).transpose()?;
-        card.most_frames = self.frames;
+        card.max_frames = self.frames;
         card.silence = self.silence.map(|s| Duration::from_secs(s.into()));
         print(&format!("listening on port {}, {frame_bytes} bytes a frame", self.port))?;
         let (sender, frames) = sync_channel(WAITING);
         let hand = move |frame| match sender.try_send(frame) {
-            Ok(()) => Handed::Taken,
-            Err(TrySendError::Full(_)) => Handed::Dropped,
-            Err(TrySendError::Disconnected(_)) => Handed::Ended,
+            Ok(()) => FrameResponse::Taken,
+            Err(TrySendError::Full(_)) => FrameResponse::Dropped,
+            Err(TrySendError::Disconnected(_)) => FrameResponse::Ended,
         };
         let thread = std::thread::Builder::new().name("card".to_owned()).spawn(move || card.run(hand, |_| true));
         let thread = thread.map_err(|e| CommandError(format!("no thread: {e}")))?;

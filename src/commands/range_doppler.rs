@@ -115,7 +115,7 @@ impl Args {
             eprintln!("note: {}: {UNKNOWN_INTERVAL}", self.input.display());
         }
         if self.static_clutter_out {
-            samples.take_out_static();
+            samples.remove_static();
         }
         let map = RangeDopplerMap::of(&radar, samples);
         let (bin, column) = map.peak();

@@ -126,7 +126,7 @@ impl Robustness {
             let mut signal = simulate_built(radar, &scene, &array, self.floor, scene.noise_seed)?;
             let on = loudest.filter(|_| self.calibrated).and_then(|r| calibrate(radar, &signal, &r));
             if let Some(calibration) = on {
-                calibration.take_off(&mut signal);
+                calibration.divide_out(&mut signal);
             }
             Ok(signal)
         };

@@ -9,10 +9,10 @@ use crate::signal::{BeatSignal, LayoutSamples, TwoEnds};
 use ndarray::{Array1, Axis, Ix0, Ix1, arr0};
 use std::path::Path;
 
-/// Version of the archive's keys. Version 1 (before there was a key for it) had neither axes nor constants. Version 2 has no transmitters apart from
-/// receivers, and is written where there are none.
+/// Version of the archive's keys. Version 1, without this key, had neither axes nor constants. Version 2 has no keys of antennas, and is written for
+/// radars without transmitters apart from receivers.
 pub const FORMAT_VERSION: i64 = 3;
-/// Version of archives of radars whose elements send and hear by themselves.
+/// Version of archives of radars whose elements are single antennas.
 const MONOSTATIC_VERSION: i64 = 2;
 
 /// Keys of the antennas, in the order of [`Antennas::new`].
@@ -35,8 +35,8 @@ const VERSION_KEY: &str = "format_version";
 /// `polar_partial_mag_phase` (f64 `[4, range bins, columns]`, the network's input). Where there is one, `output` (f32 `[1, range bins,
 /// columns]`) is Lambda as a method estimates it. Arrays are in NumPy's usual (C) order.
 ///
-/// Beside them stand the axes: `range_metres` (f64 `[range bins]`), `cos_theta` (f64 `[columns]`; the map shows a blob there that squint may have
-/// moved from its true direction), `columns_left_to_right` (i64: 1 where `cos_theta` rises from column to column, 0 where it falls and
+/// The axes are `range_metres` (f64 `[range bins]`), `cos_theta` (f64 `[columns]`; squint may shift an echo in the map from its true direction),
+/// `columns_left_to_right` (i64: 1 where `cos_theta` rises from column to column, 0 where it falls and
 /// `polar_full[..., ::-1]` is the map as it is drawn), `element_x_metres` (f64 `[elements]`; `sub0` has the first of them, `sub1` the last). Each
 /// constant of the radar is a number of its own: `carrier_hz`, `bandwidth_hz`, `element_spacing_metres`, `transmit_power_watts` (f64),
 /// `chirp_seconds` (f64, where it is another than [`CHIRP_SECONDS`]), `elements`, `end_elements`, `samples` (i64), `carrier_turns_per_wavelength`
@@ -45,12 +45,12 @@ const VERSION_KEY: &str = "format_version";
 /// places; an element stands halfway between its two antennas. Where some stand off the line, `transmitter_y_metres` and `receiver_y_metres` say
 /// how far; `focus_off_line` (i64) is 1 where `polar_full` is focused ([`super::focus`]). A link budget is `transmit_power_dbm`,
 /// `antenna_gain_dbi`, `noise_figure_db` and, where elements have a pattern, `half_power_width_degrees` (f64). `format_version` is
-/// [`FORMAT_VERSION`], or 2 without such antennas. What a layout heard is `heard` (complex128 `[elements of the layout, samples]`), and `layout` (i64)
-/// their numbers.
+/// [`FORMAT_VERSION`], or 2 without such antennas. The samples of a layout are `heard` (complex128 `[elements of the layout, samples]`), and `layout`
+/// (i64) has the elements' numbers.
 ///
 /// Returns `polar_full`.
 /// # Errors
-/// [`NpzError`] where the file can't be written; nothing is left half-written.
+/// [`NpzError`] where the file can't be written. No incomplete file remains.
 pub fn write_maps(
     path: &Path,
     radar: &Radar,
@@ -81,8 +81,8 @@ pub fn write_recorded_maps(
     write_npz(path, |out| add_recorded(out, radar, ends, full, heard, output))
 }
 
-/// Writes the maps of a recording's frames: `polar_full` (f64 `[frames, samples, elements]`), with the axes of [`write_maps`]. `next` makes
-/// the map of each frame in order, and one is held at a time.
+/// Writes the maps of a recording's frames: `polar_full` (f64 `[frames, samples, elements]`), with the axes of [`write_maps`]. `next` computes the map
+/// of each frame in order; one is in memory at a time.
 /// # Errors
 /// The error of `next`, or [`NpzError::Io`].
 pub fn write_frames(
@@ -141,7 +141,7 @@ pub fn read_radar(archive: &mut Npz) -> Result<Option<Radar>, NpzError> {
     Ok(Some(Radar { window, ..radar }))
 }
 
-/// Refuses maps whose columns were turned: their samples and `polar_partial_mag_phase` would be of another order than the radar's.
+/// Refuses maps with reversed columns: their samples and `polar_partial_mag_phase` would have another order than the radar's.
 fn check_columns(archive: &mut Npz, radar: &Radar) -> Result<(), NpzError> {
     let own = f64::from(u8::from(!radar.columns_fall()));
     match optional(archive, COLUMNS_KEY)? {

@@ -14,7 +14,7 @@ pub struct CartesianMap {
     pub extent_metres: f64,
 }
 
-/// Source of a pixel: four cells and the weights of the upper row and the right column.
+/// The bilinear interpolation of a pixel: the first of four cells, and the weights of the next bin and the next column.
 #[derive(Debug, Clone, Copy)]
 struct Tap {
     bin: u32,
@@ -23,7 +23,7 @@ struct Tap {
     column_part: f32,
 }
 
-/// A projection prepared once and used for many maps of one radar.
+/// A projection prepared for many maps of one radar.
 #[derive(Debug, Clone)]
 pub struct Projector {
     radar: Radar,
@@ -33,7 +33,7 @@ pub struct Projector {
 }
 
 impl Projector {
-    /// Prepares the projection onto `rows` by `2 * rows` pixels.
+    /// A projection onto `rows` by `2 * rows` pixels.
     pub fn new(radar: &Radar, rows: usize) -> Self {
         let extent = radar.max_range_metres();
         let pixel = extent / rows.max(1) as f64;
@@ -50,7 +50,6 @@ impl Projector {
         Projector { radar: radar.clone(), rows, taps }
     }
 
-    /// Whether this is the projection for `radar` onto `rows` rows.
     pub fn fits(&self, radar: &Radar, rows: usize) -> bool {
         self.rows == rows && self.radar == *radar
     }
@@ -78,8 +77,7 @@ pub fn project(radar: &Radar, map: &RangeAngleMap, rows: usize) -> CartesianMap 
     Projector::new(radar, rows).project(map)
 }
 
-/// Draws a Cartesian picture back onto range and cos(theta), `[rows, 2 * rows]` to `[samples, elements]` of `radar`: every cell takes the
-/// pixel it lies in.
+/// The range-angle map `[samples, elements]` of `radar` from a Cartesian picture `[rows, 2 * rows]`: every cell has the value of the pixel at its place.
 pub fn to_polar(radar: &Radar, cartesian: &Array2<f32>) -> Array2<f32> {
     let (rows, columns) = cartesian.dim();
     let pixel_metres = radar.max_range_metres() / rows.max(1) as f64;

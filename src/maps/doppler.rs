@@ -1,8 +1,8 @@
 //! The range-Doppler map: echo power over range and radial velocity.
 //!
-//! A windowed transform over the samples of every chirp gives range, as in every map; a windowed transform over the chirps gives the phase
-//! from chirp to chirp, which is the radial velocity ([`Radar::unambiguous_velocity_metres_per_second`]). Powers are averaged over the
-//! elements: their phases hold the direction, which this map leaves out.
+//! A windowed transform over the samples of every chirp gives range, as in every map. A windowed transform over the chirps gives the phase from
+//! chirp to chirp, which is proportional to radial velocity ([`Radar::unambiguous_velocity_metres_per_second`]). Powers are averaged over the
+//! elements.
 //!
 //! Rows are range bins; columns are velocities, 0 in column `chirps / 2`, away from the radar to the right.
 
@@ -18,7 +18,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::path::Path;
 
-const BLOCK: usize = 8;
+const BLOCK_BINS: usize = 8;
 
 /// Power over range and radial velocity.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,16 +27,16 @@ pub struct RangeDopplerMap {
     pub power: Array2<f64>,
 }
 
-/// The range-Doppler map of a scene over the named floor; `seed` picks its noise.
+/// The range-Doppler map of a scene over `floor`, with noise by `seed`.
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn range_doppler(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<RangeDopplerMap, SceneError> {
     range_doppler_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
 }
 
-/// [`range_doppler`], unless `task` is cancelled before it is done.
+/// As [`range_doppler`].
 /// # Errors
-/// [`Unfinished`] when the scene can't be simulated, and soon after `task` was cancelled.
+/// [`Unfinished`] when the scene can't be simulated, and after a cancellation of `task`.
 pub fn range_doppler_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<RangeDopplerMap> {
     let samples = simulate_chirps_for(task, radar, scene, floor, seed)?;
     let map = RangeDopplerMap::of(radar, samples);
@@ -58,10 +58,11 @@ impl RangeDopplerMap {
         let mut map = empty();
         let turns_back = radar.middle_turns_per_metre() < 0.0;
         let transform = ChirpTransform::new(radar, chirps, elements);
-        map.power.axis_chunks_iter_mut(Axis(0), BLOCK).into_par_iter().enumerate().for_each(|(block, mut power)| {
-            let profiles = profiles.slice(s![.., .., block * BLOCK..block * BLOCK + power.nrows()]);
-            for (bin, of_bin) in transform.powers(profiles).into_iter().enumerate() {
-                for (frequency, value) in of_bin.into_iter().enumerate() {
+        let blocks = map.power.axis_chunks_iter_mut(Axis(0), BLOCK_BINS).into_par_iter().enumerate();
+        blocks.for_each(|(block, mut power)| {
+            let profiles = profiles.slice(s![.., .., block * BLOCK_BINS..block * BLOCK_BINS + power.nrows()]);
+            for (bin, bin_powers) in transform.powers(profiles).into_iter().enumerate() {
+                for (frequency, value) in bin_powers.into_iter().enumerate() {
                     let turns = if turns_back { chirps - frequency } else { frequency };
                     power[[bin, (chirps / 2 + turns) % chirps]] = value;
                 }
@@ -76,7 +77,7 @@ impl RangeDopplerMap {
         LogMap::new(self.power.mapv(|power| (power.sqrt() + guard).log10()))
     }
 
-    /// The strongest cell: range bin and column.
+    /// Range bin and column of the strongest cell.
     pub fn peak(&self) -> (usize, usize) {
         let strongest = self.power.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1));
         strongest.map_or((0, 0), |(cell, _)| cell)
@@ -131,8 +132,8 @@ pub fn write_range_doppler(path: &Path, radar: &Radar, scene: &Scene, map: &Rang
         out.add("range_metres", &axis(bins, &|bin| radar.range_of_bin_metres(bin)))?;
         let velocity = |column| radar.velocity_of_column_metres_per_second(column);
         out.add("velocity_metres_per_second", &axis(chirps, &velocity))?;
-        let most = radar.unambiguous_velocity_metres_per_second();
-        out.add("unambiguous_velocity_metres_per_second", &ndarray::arr0(most))?;
+        let max = radar.unambiguous_velocity_metres_per_second();
+        out.add("unambiguous_velocity_metres_per_second", &ndarray::arr0(max))?;
         out.add("chirps", &ndarray::arr0(radar.chirps as i64))?;
         out.add("chirp_interval_seconds", &ndarray::arr0(radar.chirp_interval_seconds))
     })

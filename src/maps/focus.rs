@@ -1,11 +1,11 @@
-//! Maps of elements that stand off the array's line, focused towards the direction of each column.
+//! Maps of elements off the array's line, focused towards the direction of each column.
 //!
 //! A far reflector in the direction `theta` is nearer to an element at (x, y) than to the array's centre, by `x cos(theta) + y sin(theta)`. The
-//! angle transform takes off the part of x. The part of y depends on the column, by its sine alone: samples are turned back for a few
-//! sines between 0 and 1 (Chebyshev nodes), transformed, and each column is interpolated between these maps at its own sine (J.-P. Berrut and
-//! L. N. Trefethen, "Barycentric Lagrange interpolation", SIAM Rev. 46, 2004). Turning samples takes off the shift in range, too.
+//! angle transform compensates for the term of x. That of y depends on the sine of the column's direction. Its phase, and with it the shift in range,
+//! is removed for a few sines between 0 and 1 (Chebyshev nodes); each column is interpolated between the transforms at its own sine (J.-P. Berrut and
+//! L. N. Trefethen, "Barycentric Lagrange interpolation", SIAM Rev. 46, 2004).
 //!
-//! That is exact for reflectors in the far field of the elements' y. Columns of several directions are focused towards that of
+//! That is exact for reflectors in the far field of the elements' y. Columns of ambiguous directions are focused towards that of
 //! [`Radar::cos_of_column`], corrected for squint.
 
 use super::transform::{Aperture, ComplexMap, angle_transform_of, channels_range_transform};
@@ -16,8 +16,8 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Largest error of a focused cell, relative to the sum of the magnitudes of its elements' parts.
-const TOLERANCE: f64 = 1e-9;
+/// Largest error of a focused cell, relative to the sum of its elements' magnitudes.
+const MAX_RELATIVE_ERROR: f64 = 1e-9;
 
 /// y of each element, metres, from the antennas of `radar` and the errors in `elements`. `None` where maps aren't focused or all y are 0.
 fn off_line_metres(radar: &Radar, elements: &BuiltArray) -> Option<Vec<f64>> {
@@ -26,8 +26,8 @@ fn off_line_metres(radar: &Radar, elements: &BuiltArray) -> Option<Vec<f64>> {
     y_metres.iter().any(|y| *y != 0.0).then_some(y_metres)
 }
 
-/// Range-angle map of a beat signal that `elements` of `radar` heard, focused where [`Radar::focus_off_line`] asks for it and elements stand
-/// off the line. Else it is that of the plain transforms, to the bit.
+/// Range-angle map of a beat signal of `elements`, focused where [`Radar::focus_off_line`] says so and elements are off the line. Elsewhere it has the
+/// bits of the plain transforms.
 pub fn map_of(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal, aperture: Aperture) -> ComplexMap {
     let channels = aperture.channels(radar);
     let samples = signal.samples.slice(s![channels.clone(), ..]);
@@ -36,15 +36,15 @@ pub fn map_of(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal, apertur
     };
     let Some(y_metres) = off_line_metres(radar, elements) else { return plain(samples) };
     let y_metres = &y_metres[channels];
-    let nodes = nodes(most_turns(radar, y_metres));
+    let nodes = nodes(max_turns(radar, y_metres));
     let sines: Vec<f64> = (0..radar.elements).map(|column| sine_of(radar, column)).collect();
-    let totals: Vec<f64> = sines.iter().map(|at| (0..nodes.len()).map(|i| part(&nodes, i, *at)).sum()).collect();
+    let totals: Vec<f64> = sines.iter().map(|at| (0..nodes.len()).map(|i| node_weight(&nodes, i, *at)).sum()).collect();
     let mut cells = Array2::zeros((radar.samples, radar.elements));
     for (i, sine) in nodes.iter().enumerate() {
-        let map = plain(turned_back(radar, samples, y_metres, *sine).view());
-        // On a node the sum isn't finite: the map is that node's.
+        let map = plain(on_line(radar, samples, y_metres, *sine).view());
+        // At a node the sum is not finite, and the map is that of the node.
         let weight = |(at, total): (&f64, &f64)| match total.is_finite() {
-            true => part(&nodes, i, *at) / total,
+            true => node_weight(&nodes, i, *at) / total,
             false => f64::from(u8::from(*at == nodes[i])),
         };
         let weights: Vec<f64> = sines.iter().zip(&totals).map(weight).collect();
@@ -55,7 +55,7 @@ pub fn map_of(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal, apertur
     ComplexMap { cells }
 }
 
-/// The map of the array where the elements outside a layout hear nothing; focused like [`map_of`].
+/// The map of the array with zeros at elements outside a layout, focused as in [`map_of`].
 pub fn layout_map(radar: &Radar, elements: &BuiltArray, heard: &LayoutSamples) -> ComplexMap {
     let mut alone = BeatSignal::silence(radar);
     for (element, samples) in heard.layout.iter().zip(heard.samples.outer_iter()) {
@@ -64,23 +64,23 @@ pub fn layout_map(radar: &Radar, elements: &BuiltArray, heard: &LayoutSamples) -
     map_of(radar, elements, &alone, Aperture::Full)
 }
 
-/// Sine of the direction whose blobs stand in `column`: the squint is taken off.
+/// Sine of the direction of echoes in `column`, corrected for squint.
 fn sine_of(radar: &Radar, column: usize) -> f64 {
     let cos = radar.cos_of_column(column as f64) / radar.squint();
     (1.0 - cos * cos).max(0.0).sqrt()
 }
 
-fn most_turns(radar: &Radar, y_metres: &[f64]) -> f64 {
+fn max_turns(radar: &Radar, y_metres: &[f64]) -> f64 {
     let [first, last] = [0.0, radar.samples as f64].map(|n1| radar.turns_per_metre(n1).abs());
-    first.max(last) * y_metres.iter().fold(0.0, |most: f64, y| most.max(y.abs()))
+    first.max(last) * y_metres.iter().fold(0.0, |max: f64, y| max.max(y.abs()))
 }
 
-/// Chebyshev nodes in [0, 1], enough to interpolate `exp(j 2 pi turns s)` within [`TOLERANCE`].
+/// Chebyshev nodes in [0, 1], enough to interpolate `exp(j 2 pi turns s)` within [`MAX_RELATIVE_ERROR`].
 fn nodes(turns: f64) -> Vec<f64> {
     // The error of m nodes is at most 2 (a / 4)^m / m! for a phase of a radians over the interval.
     let quarter = TAU * turns / 4.0;
     let (mut count, mut log_error) = (0, 2f64.ln());
-    while count < 2 || log_error > TOLERANCE.ln() || (count as f64) < quarter {
+    while count < 2 || log_error > MAX_RELATIVE_ERROR.ln() || (count as f64) < quarter {
         count += 1;
         log_error += (quarter / count as f64).ln();
     }
@@ -88,13 +88,13 @@ fn nodes(turns: f64) -> Vec<f64> {
 }
 
 /// The weight of node `i` for an interpolation `at` a sine between nodes, before all weights are divided by their sum.
-fn part(nodes: &[f64], i: usize, at: f64) -> f64 {
+fn node_weight(nodes: &[f64], i: usize, at: f64) -> f64 {
     let sign = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
     sign * ((2 * i + 1) as f64 * PI / (2 * nodes.len()) as f64).sin() / (at - nodes[i])
 }
 
-/// The samples turned to those that elements on the line would measure of far reflectors whose direction has this sine.
-fn turned_back(radar: &Radar, samples: ArrayView2<'_, Complex64>, y_metres: &[f64], sine: f64) -> Array2<Complex64> {
+/// The samples as measured by elements on the line, for far reflectors in the direction with this sine.
+fn on_line(radar: &Radar, samples: ArrayView2<'_, Complex64>, y_metres: &[f64], sine: f64) -> Array2<Complex64> {
     let mut turned = samples.as_standard_layout().into_owned();
     turned.outer_iter_mut().into_par_iter().zip(y_metres).for_each(|(mut row, y)| {
         let turns = |n1: f64| radar.turns_per_metre(n1) * y * sine;

@@ -10,10 +10,10 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Normalisation {
-    /// 0 at the map's smallest cell, 1 at its largest (the thesis). The smallest cell is rounding or noise: it makes the floor part of the picture.
+    /// 0 at the map's smallest cell, 1 at its largest (the thesis). The smallest cell is rounding or noise, so Lambda depends on the floor.
     #[default]
     MinMax,
-    /// 1 at the largest cell, 0 this far below it and under. Stable: does not depend on the floor.
+    /// 1 at the largest cell, 0 at this distance below it and lower. It does not depend on the floor.
     DynamicRange(Decibels),
 }
 
@@ -40,7 +40,7 @@ impl fmt::Display for Normalisation {
     }
 }
 
-/// The straight line from decades to Lambda.
+/// The linear scale from decades to Lambda.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LambdaScale {
     /// Log10 magnitude (decades of amplitude) that maps to Lambda = 0.
@@ -82,7 +82,6 @@ pub struct RangeAngleMap {
 /// Cells above a threshold, `[range bins, columns]`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mask {
-    /// True where the map exceeds the threshold.
     pub cells: Array2<bool>,
 }
 
@@ -97,19 +96,18 @@ impl RangeAngleMap {
         RangeAngleMap { lambda }
     }
 
-    /// Cells where Lambda > `eta`.
+    /// The cells with Lambda > `eta`.
     pub fn above(&self, eta: f32) -> Mask {
         Mask { cells: self.lambda.mapv(|v| v > eta) }
     }
 }
 
 impl Mask {
-    /// Number of cells above the threshold.
     pub fn count(&self) -> usize {
         self.cells.iter().filter(|&&c| c).count()
     }
 
-    /// Lambda 1 where the mask is set and 0 elsewhere: any threshold between them gives the mask again.
+    /// Lambda 1 where the mask is set, and 0 elsewhere.
     pub fn as_map(&self) -> RangeAngleMap {
         RangeAngleMap { lambda: self.cells.mapv(|set| if set { 1.0 } else { 0.0 }) }
     }

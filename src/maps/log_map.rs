@@ -3,8 +3,8 @@
 use super::lambda::{LambdaScale, Normalisation, RangeAngleMap};
 use ndarray::Array2;
 
-/// Added to every magnitude before its logarithm, as in the thesis' program: an exact zero becomes -20. It is less where the peak is below 1
-/// ([`guard`]), which no table's scene is: at a peak of 1e-10 it would cover the rounding floor.
+/// Added to every magnitude before its logarithm, as in the thesis' program: an exact zero becomes -20. It is smaller for peaks below 1 ([`guard`]):
+/// at a peak of 1e-10 it would cover the rounding floor.
 pub const LOG_GUARD: f64 = 1e-20;
 
 /// The guard of a map whose largest magnitude is `peak`: 20 decades below the peak, at most [`LOG_GUARD`]. So the map does not depend on a
@@ -22,7 +22,7 @@ pub struct LogMap {
 }
 
 impl LogMap {
-    /// Takes decades of amplitude; cells that are not finite count as an exact zero (-20).
+    /// A map of decades of amplitude; non-finite cells become -20, as an exact zero.
     pub fn new(mut decades: Array2<f64>) -> Self {
         let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         for v in &mut decades {
@@ -40,22 +40,18 @@ impl LogMap {
         &self.decades
     }
 
-    /// Smallest cell.
     pub fn min(&self) -> f64 {
         self.min
     }
 
-    /// Largest cell.
     pub fn max(&self) -> f64 {
         self.max
     }
 
-    /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
         LambdaScale::new(self.min, self.max, normalisation)
     }
 
-    /// Lambda of every cell.
     pub fn normalise(&self, normalisation: Normalisation) -> RangeAngleMap {
         let scale = self.scale(normalisation);
         RangeAngleMap { lambda: self.decades.mapv(|v| scale.lambda(v) as f32) }

@@ -41,8 +41,8 @@ pub struct LogMaps {
 }
 
 impl LogMaps {
-    /// All three maps of a beat signal that `elements` of `radar` heard, focused where the radar asks for it ([`focus`]).
-    pub fn heard_by(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal) -> LogMaps {
+    /// All three maps of a beat signal of `elements`, focused where [`Radar::focus_off_line`] says so.
+    pub fn of_elements(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal) -> LogMaps {
         // Plain maps share their range profiles; each focused map has its own.
         let profiles = (!radar.focus_off_line).then(|| range_transform(radar, signal));
         let map = |aperture| match &profiles {
@@ -53,8 +53,8 @@ impl LogMaps {
         LogMaps { first, last, full }
     }
 
-    /// All three maps of a beat signal, for elements off the array's line by the antennas of `radar` alone.
+    /// As [`LogMaps::of_elements`], for elements without errors.
     pub fn of_signal(radar: &Radar, signal: &BeatSignal) -> LogMaps {
-        LogMaps::heard_by(radar, &BuiltArray::default(), signal)
+        LogMaps::of_elements(radar, &BuiltArray::default(), signal)
     }
 }

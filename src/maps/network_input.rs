@@ -1,4 +1,4 @@
-//! The thesis' network input: four maps made of both ends (section 3.3).
+//! The thesis' network input: four maps of both ends (section 3.3).
 
 use super::{ComplexMap, LOG_GUARD, Normalisation};
 use ndarray::{Array3, Axis, Zip, s};

@@ -1,36 +1,36 @@
-//! Peaks of a map: the echoes found by a method that draws a map without naming reflectors.
+//! Peaks of a map: the echoes of methods whose result is a map alone.
 
 use ndarray::ArrayView2;
 
-/// A local maximum of a map, its place refined by a parabola through its neighbours.
+/// A local maximum of a map, refined by a parabola through its neighbours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
     /// Range bin, fractional.
     pub range_bin: f64,
     /// Column, fractional.
     pub column: f64,
-    /// Value at the top of the parabola, in the map's own unit.
+    /// Value at the vertex of the parabola, in the map's unit.
     pub value: f64,
 }
 
-/// Local maxima of `map`, `[range bins, columns]`, that come within `span` of the strongest: the strongest first, at most `most`.
+/// Local maxima of `map`, `[range bins, columns]`, within `span` of the strongest, in the map's unit: the strongest first, at most `max_count`.
 ///
-/// Bins and columns wrap around, as those of a transform do. A plateau counts once, and a map that is flat has no peak. The place
-/// is exact where the logarithm of the main lobe is a parabola, so the map is best one of decades.
-pub fn peaks(map: ArrayView2<'_, f64>, span: f64, most: usize) -> Vec<Peak> {
+/// Bins and columns wrap around, as those of a transform. A plateau has one peak, and a flat map none. The place is most accurate in a map of decades,
+/// since the logarithm of a main lobe is close to a parabola.
+pub fn peaks(map: ArrayView2<'_, f64>, span: f64, max_count: usize) -> Vec<Peak> {
     let (bins, columns) = map.dim();
     let extremes = |(low, high): (f64, f64), v: &f64| (low.min(*v), high.max(*v));
     let (lowest, highest) = map.iter().fold((f64::INFINITY, f64::NEG_INFINITY), extremes);
-    let enough = (highest - span).max(lowest);
+    let threshold = (highest - span).max(lowest);
     let around = |i: usize, step: usize, len: usize| (i + len + step - 1) % len;
     let mut found: Vec<Peak> = Vec::new();
-    for ((bin, column), value) in map.indexed_iter().filter(|(_, v)| **v >= enough && **v > lowest) {
-        // Of equals the first one counts: it must not be below any neighbour, and above those that come before it.
-        let is_top = (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).all(|(i, j)| {
+    for ((bin, column), value) in map.indexed_iter().filter(|(_, v)| **v >= threshold && **v > lowest) {
+        // Of equal neighbours the first is the peak: it exceeds those before it, and is not below those after it.
+        let is_peak = (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).all(|(i, j)| {
             let at = (around(bin, i, bins), around(column, j, columns));
             at == (bin, column) || map[at] < *value || (map[at] == *value && at > (bin, column))
         });
-        if is_top {
+        if is_peak {
             let (over_range, raised) = parabola([0, 1, 2].map(|i| map[(around(bin, i, bins), column)]));
             let (over_angle, more) = parabola([0, 1, 2].map(|j| map[(bin, around(column, j, columns))]));
             found.push(Peak {
@@ -41,11 +41,11 @@ pub fn peaks(map: ArrayView2<'_, f64>, span: f64, most: usize) -> Vec<Peak> {
         }
     }
     found.sort_by(|a, b| b.value.total_cmp(&a.value));
-    found.truncate(most);
+    found.truncate(max_count);
     found
 }
 
-/// Place of the top of the parabola through three neighbours, from the middle one, and how far it rises above that.
+/// Vertex of the parabola through three neighbours: its distance from the middle one, and its height above that.
 fn parabola([before, middle, after]: [f64; 3]) -> (f64, f64) {
     let bend = before - 2.0 * middle + after;
     if bend >= 0.0 || !bend.is_finite() {

@@ -1,4 +1,4 @@
-//! Plain transforms for reconstructions that form their own beams: any length, no scaling, no window.
+//! Transforms of any length without scaling or window, for methods that form their own beams.
 
 use crate::signal::simd::Simd;
 use ndarray::{Array2, ArrayView2, Axis};
@@ -14,22 +14,19 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// The transform of `len` points.
     pub fn new(len: usize) -> Self {
         Spectrum { fft: Simd::chosen().forward_fft(len) }
     }
 
-    /// Number of points.
     pub fn len(&self) -> usize {
         self.fft.len()
     }
 
-    /// Whether the transform has no points.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The transform of up to [`Spectrum::len`] values, zeros following them.
+    /// The transform of at most [`Spectrum::len`] values, padded with zeros.
     pub fn of(&self, values: impl IntoIterator<Item = Complex64>) -> Vec<Complex64> {
         let mut buffer: Vec<Complex64> = values.into_iter().take(self.len()).collect();
         buffer.resize(self.len(), Complex64::default());
@@ -37,8 +34,8 @@ impl Spectrum {
         buffer
     }
 
-    /// The transform of `values` taken around index `middle`: that value is at n = 0, those before it at negative n. The phase
-    /// of a spectrum taken so changes slowly from one k to the next, so that it can be interpolated.
+    /// The transform of `values` with index `middle` at n = 0, and those before it at negative n. The phase of such a spectrum changes little from one
+    /// k to the next, so that it can be interpolated.
     fn around(&self, middle: usize, values: impl Iterator<Item = Complex64>) -> Vec<Complex64> {
         let mut buffer = vec![Complex64::default(); self.len()];
         for (n, v) in values.enumerate() {

@@ -1,14 +1,13 @@
-//! The precision that a signal needs so that numerical errors stay invisible in its map.
+//! The precision of a signal whose numerical errors are invisible in its map.
 
 use super::lambda::Normalisation;
 use crate::signal::plan::{self, BEST_TOLERANCE, FLOOR_TOLERANCE, Sum};
 use crate::signal::{Floor, Precision};
 
-/// The error a signal may have, relative to its amplitudes, so that a map over `floor`, normalised so, does not show it.
+/// The largest error of a signal, relative to its amplitudes, that is invisible in a map over `floor` with this normalisation.
 ///
-/// Normalising by the minimum makes the floor part of the picture. Over the thesis' floor (1e-11 a sample) that leaves no
-/// room for f32, whose cells cancel to exact zeros; without any floor not even for gridding. Over thermal noise, or with a fixed
-/// dynamic range, f32 is ample until the noise or the range comes near its own rounding.
+/// A map normalised by its minimum shows the floor. The errors of f32 exceed the thesis' floor (1e-11 a sample), and those of gridding exceed rounding
+/// alone. Over thermal noise, or with a fixed dynamic range, f32 is sufficient until the noise or the range is near its rounding.
 pub fn tolerance_for(floor: Floor, normalisation: Normalisation) -> f64 {
     match (normalisation, floor) {
         (Normalisation::DynamicRange(db), _) if db.0 <= 100.0 => 1e-6,
@@ -18,10 +17,7 @@ pub fn tolerance_for(floor: Floor, normalisation: Normalisation) -> f64 {
     }
 }
 
-/// The reason for which maps of this floor and normalisation must not be made in `precision`, if there is one.
-///
-/// Without a floor the smallest cells are rounding errors, and normalising by them shows these in place of the scene. Amplitudes beyond the
-/// range of f32: [`plan::refusal`].
+/// The reason for which maps of this floor and normalisation must not be computed in `precision`, as in [`plan::refusal`]. `None` where they may be.
 pub fn refusal(precision: Precision, sum: &Sum, floor: Floor, normalisation: Normalisation) -> Option<&'static str> {
     match (precision, floor, normalisation) {
         (Precision::F64, ..) => None,

@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The elements that a map is made of.
+/// The elements of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Aperture {
     Full,
@@ -40,21 +40,21 @@ pub struct ComplexMap {
     pub cells: Array2<Complex64>,
 }
 
-/// Columns over which a plane wave stays above half power in the map of `aperture`.
+/// Half-power width of a plane wave in the map of `aperture`, columns.
 pub fn beam_columns(radar: &Radar, aperture: Aperture) -> f64 {
     let weights = radar.window.weights(aperture.channels(radar).len());
     let magnitude = |columns: f64| {
         let turns = std::f64::consts::TAU * columns / radar.elements as f64;
-        let heard = weights.iter().enumerate().map(|(n, w)| Complex64::from_polar(*w, turns * n as f64));
-        heard.sum::<Complex64>().norm()
+        let phasors = weights.iter().enumerate().map(|(n, w)| Complex64::from_polar(*w, turns * n as f64));
+        phasors.sum::<Complex64>().norm()
     };
     let level = magnitude(0.0) * std::f64::consts::FRAC_1_SQRT_2;
-    // Half of the side of the main lobe of a rectangular window.
+    // A quarter of the main lobe's width under a rectangular window.
     let step = radar.elements as f64 / (2 * weights.len().max(1)) as f64;
-    let most = radar.elements as f64 / 2.0;
-    let mut high = step.min(most);
-    while high < most && magnitude(high) >= level {
-        high = (high + step).min(most);
+    let max_columns = radar.elements as f64 / 2.0;
+    let mut high = step.min(max_columns);
+    while high < max_columns && magnitude(high) >= level {
+        high = (high + step).min(max_columns);
     }
     let mut low = high - step.min(high);
     for _ in 0..30 {
@@ -69,7 +69,7 @@ pub fn range_transform(radar: &Radar, signal: &BeatSignal) -> RangeProfiles {
     channels_range_transform(radar, signal.samples.view())
 }
 
-/// [`range_transform`] in the memory of the samples, where these are not needed any more.
+/// As [`range_transform`], in the memory of the samples.
 pub fn range_transform_in_place(radar: &Radar, signal: BeatSignal) -> RangeProfiles {
     windowed_in_place(radar, signal.samples, &radar.window.weights(radar.samples))
 }
@@ -84,7 +84,6 @@ pub fn windowed_range_transform(radar: &Radar, samples: ArrayView2<'_, Complex64
     windowed_in_place(radar, samples.as_standard_layout().into_owned(), window)
 }
 
-/// `profiles` holds the samples; in the standard layout they stay where they are.
 fn windowed_in_place(radar: &Radar, mut profiles: Array2<Complex64>, window: &[f64]) -> RangeProfiles {
     if !profiles.is_standard_layout() {
         profiles = profiles.as_standard_layout().into_owned();
@@ -104,19 +103,18 @@ fn windowed_in_place(radar: &Radar, mut profiles: Array2<Complex64>, window: &[f
     RangeProfiles { profiles }
 }
 
-/// Range-angle map of the whole array's `profiles` seen through `aperture`.
+/// Range-angle map of `aperture` from the whole array's `profiles`.
 pub fn angle_transform(radar: &Radar, profiles: &RangeProfiles, aperture: Aperture) -> ComplexMap {
     angle_transform_of(radar, profiles.profiles.slice(s![aperture.channels(radar), ..]))
 }
 
-/// Range-angle map of the raw samples of a few neighbouring channels, `[channels, samples]`.
-///
-/// A reconstruction makes this map of one end: it has no other elements.
+/// Range-angle map of the samples of neighbouring channels, `[channels, samples]`, such as those of one end.
 pub fn channels_map(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> ComplexMap {
     angle_transform_of(radar, channels_range_transform(radar, samples).profiles.view())
 }
 
-/// Windows the channels, pads them with zeros to N_a, transforms, and rolls by N_a / 2 so that cos(theta) rises with the column.
+/// Range-angle map of channels' profiles: windowed, padded with zeros to N_a, transformed, and rolled by N_a / 2, so that cos(theta) rises with the
+/// column.
 pub(super) fn angle_transform_of(radar: &Radar, profiles: ArrayView2<'_, Complex64>) -> ComplexMap {
     let columns = radar.elements;
     let fft = Simd::chosen().forward_fft(columns);

@@ -24,7 +24,7 @@ pub(super) fn confidences(radar: &Radar, ends: &TwoEnds, found: &[Reflector], no
     let (mut left, hears) = (ends.flat(), ends.hears());
     let echo = |r: &Reflector| {
         let place = radar.polar_of(r.x_metres, r.y_metres);
-        ArrayEcho::at(radar, place.range_metres, place.cos_theta).where_heard(&hears)
+        ArrayEcho::at(radar, place.range_metres, place.cos_theta).masked(&hears)
     };
     let echoes: Vec<ArrayEcho> = found.par_iter().map(echo).collect();
     let count = echoes.len();

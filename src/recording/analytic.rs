@@ -4,8 +4,8 @@ use crate::signal::simd::Simd;
 use ndarray::{Array, ArrayView, Axis, Dimension};
 use num_complex::Complex64;
 
-/// [`analytic`] signals along the last axis of `samples`.
-pub(super) fn all_analytic<D: Dimension>(samples: ArrayView<'_, Complex64, D>, len: usize) -> Array<Complex64, D> {
+/// The [`analytic`] signal of each lane along the last axis of `samples`, whose length becomes `len`.
+pub(super) fn analytic_lanes<D: Dimension>(samples: ArrayView<'_, Complex64, D>, len: usize) -> Array<Complex64, D> {
     let last = Axis(samples.ndim().saturating_sub(1));
     let mut shape = samples.raw_dim();
     shape[last.index()] = len;
@@ -16,8 +16,8 @@ pub(super) fn all_analytic<D: Dimension>(samples: ArrayView<'_, Complex64, D>, l
     all
 }
 
-/// Takes out the mean along the last axis.
-pub(super) fn centre<D: Dimension>(samples: &mut Array<Complex64, D>) {
+/// Subtracts the mean of each lane along the last axis.
+pub(super) fn subtract_mean<D: Dimension>(samples: &mut Array<Complex64, D>) {
     let last = Axis(samples.ndim().saturating_sub(1));
     for mut row in samples.lanes_mut(last) {
         let mean = row.sum() / row.len().max(1) as f64;
@@ -25,7 +25,8 @@ pub(super) fn centre<D: Dimension>(samples: &mut Array<Complex64, D>) {
     }
 }
 
-/// The analytic signal of real samples, of `len` samples, half as many at least: the positive half of their spectrum, transformed back.
+/// The analytic signal of real `samples` at `len` samples: the positive half of their spectrum, transformed back. Zeros where `len` is less than half
+/// their number.
 pub(super) fn analytic(samples: &[Complex64], len: usize) -> Vec<Complex64> {
     let half = samples.len().div_ceil(2);
     if samples.is_empty() || len < half {
@@ -33,7 +34,7 @@ pub(super) fn analytic(samples: &[Complex64], len: usize) -> Vec<Complex64> {
     }
     let mut line = samples.to_vec();
     Simd::chosen().forward_fft::<f64>(samples.len()).process(&mut line);
-    // The transform back is the conjugate of the forward transform of the conjugate. Half the amplitude stands in the other half of the spectrum.
+    // The inverse transform is the conjugate of the forward transform of the conjugate. Factor 2: the negative half had half the amplitude.
     let scale = 2.0 / samples.len() as f64;
     let mut positive = vec![Complex64::default(); len];
     positive.iter_mut().zip(&line[..half]).for_each(|(to, v)| *to = scale * v.conj());

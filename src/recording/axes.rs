@@ -8,7 +8,8 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
 
-const MOST_JOINED: usize = 1 << 23;
+/// Most numbers of the chirps that are joined: they are in memory several times.
+const MAX_JOINED_NUMBERS: usize = 1 << 23;
 
 /// The quantity that an axis of an array counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -19,7 +20,7 @@ pub enum AxisKind {
     Transmitter,
     Receiver,
     Sample,
-    /// Chirps or anything else that repeats: [`Chirp`] picks.
+    /// Chirps or other repetitions, of which [`ChirpChoice`] selects.
     Chirp,
     Frame,
     /// Real and imaginary part, in this order.
@@ -28,65 +29,63 @@ pub enum AxisKind {
 
 impl Display for AxisKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Its name in texts.
         f.write_str(&format!("{self:?}").to_lowercase())
     }
 }
 
-/// The chirp or loop that is taken of several, or the way to join them all.
+/// The number of the chirp or loop that is read, or the way to join all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "expected a number from 0, \"mean\" or \"strongest\"")]
-pub enum Chirp {
+pub enum ChirpChoice {
     Number(usize),
     Joined(Join),
 }
 
-impl Default for Chirp {
+impl Default for ChirpChoice {
     fn default() -> Self {
-        Chirp::Number(0)
+        ChirpChoice::Number(0)
     }
 }
 
-/// A way to join chirps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Join {
-    /// Their complex mean: echoes that stand still stay, moving ones fade.
+    /// The complex mean: static echoes keep their amplitude, moving ones lose it.
     Mean,
-    /// Of each range bin the strongest Doppler cell and those that stand out beside it, transmitters in turn compensated for their velocities.
+    /// The strong Doppler cells of each range bin. The phase that a moving echo gains between transmitters that send in turn is removed.
     Strongest,
 }
 
-/// Takes one frame of `numbers`, whose axis is then gone from `kinds`; the first where none is asked for.
+/// Selects one frame of `numbers`, the first where `frame` is `None`, and removes the axis of frames from `kinds`.
 ///
 /// # Errors
 /// [`Fault`] where `kinds` are not the array's axes, or there is no such frame.
-pub(super) fn one_frame(numbers: Numbers, kinds: &mut Vec<AxisKind>, frame: Option<usize>) -> Result<Numbers, Fault> {
+pub(super) fn frame_of(numbers: Numbers, kinds: &mut Vec<AxisKind>, frame: Option<usize>) -> Result<Numbers, Fault> {
     let Some(place) = kinds.iter().position(|k| *k == AxisKind::Frame) else {
         return match frame {
             None => Ok(numbers),
             Some(_) => Err(unfit("recording.frame picks, but no axis is \"frame\"")),
         };
     };
-    check(kinds, numbers.shape())?;
-    let (frames, asked) = (numbers.shape()[place], frame.unwrap_or(0));
-    if asked >= frames {
+    check_kinds(kinds, numbers.shape())?;
+    let (frames, frame) = (numbers.shape()[place], frame.unwrap_or(0));
+    if frame >= frames {
         let last = frames.saturating_sub(1);
-        let message = format!("recording.frame is {asked}; expected 0 to {last}, the array has {frames} frames");
+        let message = format!("recording.frame is {frame}; expected 0 to {last}, the array has {frames} frames");
         return Err(Fault::Data(message));
     }
     kinds.remove(place);
     Ok(match numbers {
-        Numbers::Real(values) => Numbers::Real(values.index_axis_move(Axis(place), asked)),
-        Numbers::Complex(values) => Numbers::Complex(values.index_axis_move(Axis(place), asked)),
+        Numbers::Real(values) => Numbers::Real(values.index_axis_move(Axis(place), frame)),
+        Numbers::Complex(values) => Numbers::Complex(values.index_axis_move(Axis(place), frame)),
     })
 }
 
-/// Splits the axis of chirps into loops and `transmitters` that send in turn; elements are their receivers then.
+/// Splits the axis of chirps into loops and `transmitters` that send in turn. An axis of elements becomes one of receivers.
 ///
 /// # Errors
-/// [`Fault`] where the axes are others, or the chirps don't divide.
-pub(super) fn in_turn(
+/// [`Fault`] without an axis of chirps, with one of transmitters, or where the chirps are no multiple of `transmitters`.
+pub(super) fn split_turns(
     numbers: Numbers,
     kinds: &mut Vec<AxisKind>,
     transmitters: Option<usize>,
@@ -111,72 +110,74 @@ pub(super) fn in_turn(
     })
 }
 
-/// Sorts `numbers` into `[loops, transmitters, receivers, samples]`, where there are chirps to join. At most [`MOST_JOINED`] numbers are
-/// taken, since they are held several times: further chirps are left out.
+/// Sorts `numbers` into `[loops, transmitters, receivers, samples]`. Loops beyond [`MAX_JOINED_NUMBERS`] are left out.
 ///
 /// # Errors
 /// [`Fault`] where `kinds` are not the array's axes.
-pub(super) fn loops(numbers: Numbers, kinds: &[AxisKind]) -> Result<Array4<Complex64>, Fault> {
+pub(super) fn into_loops(numbers: Numbers, kinds: &[AxisKind]) -> Result<Array4<Complex64>, Fault> {
     let mut kinds = kinds.to_vec();
-    check(&kinds, numbers.shape())?;
+    check_kinds(&kinds, numbers.shape())?;
     let values = complex(numbers, &mut kinds)?;
     let place = |kind| kinds.iter().position(|k| *k == kind);
     let len = |kind| place(kind).map_or(1, |p| values.shape()[p]);
     let receivers = len(AxisKind::Receiver) * len(AxisKind::Element);
-    let of_a_loop = len(AxisKind::Transmitter) * receivers * len(AxisKind::Sample);
-    let held = (MOST_JOINED / of_a_loop.max(1)).clamp(1, len(AxisKind::Chirp).max(1));
-    let shape = (len(AxisKind::Chirp).min(held), len(AxisKind::Transmitter), receivers, len(AxisKind::Sample));
-    let sorted = values.view().permuted_axes(order(&kinds));
-    let numbers = sorted.iter().copied().take(shape.0 * of_a_loop).collect();
+    let loop_numbers = len(AxisKind::Transmitter) * receivers * len(AxisKind::Sample);
+    let max_loops = (MAX_JOINED_NUMBERS / loop_numbers.max(1)).max(1);
+    let shape = (len(AxisKind::Chirp).min(max_loops), len(AxisKind::Transmitter), receivers, len(AxisKind::Sample));
+    let sorted = values.view().permuted_axes(sorted_axes(&kinds));
+    let numbers = sorted.iter().copied().take(shape.0 * loop_numbers).collect();
     Array4::from_shape_vec(shape, numbers).map_err(unfit)
 }
 
-/// Sorts `numbers` into `[elements, samples]`. Real samples become the analytic signal of as many samples: the far half of the range axis is
-/// empty then.
+/// Sorts `numbers` into `[elements, samples]`. Real samples become their analytic signal of as many samples, with an empty far half of the range axis.
 ///
 /// # Errors
-/// [`Fault`] where `kinds` are not the array's axes, or `chirp` none of its chirps.
-pub(super) fn arrange(numbers: Numbers, kinds: &[AxisKind], chirp: Option<Chirp>) -> Result<Array2<Complex64>, Fault> {
+/// [`Fault`] where `kinds` are not the array's axes, or the array lacks `chirp`.
+pub(super) fn arrange(
+    numbers: Numbers,
+    kinds: &[AxisKind],
+    chirp: Option<ChirpChoice>,
+) -> Result<Array2<Complex64>, Fault> {
     let mut kinds = kinds.to_vec();
-    check(&kinds, numbers.shape())?;
+    check_kinds(&kinds, numbers.shape())?;
     let values = complex(numbers, &mut kinds)?;
-    let values = one_chirp(values, &mut kinds, chirp)?;
+    let values = select_chirp(values, &mut kinds, chirp)?;
     let samples = kinds.iter().position(|k| *k == AxisKind::Sample).map_or(1, |place| values.shape()[place]);
     let elements = values.len().checked_div(samples).unwrap_or(0);
-    let sorted = values.permuted_axes(order(&kinds));
-    // The same numbers in the same order: the shape can't fail to fit.
+    let sorted = values.permuted_axes(sorted_axes(&kinds));
     Array2::from_shape_vec((elements, samples), sorted.iter().copied().collect()).map_err(unfit)
 }
 
+/// The error of the key `recording.axes`.
 fn unfit(message: impl Display) -> Fault {
     Fault::Data(format!("recording.axes: {message}"))
 }
 
-/// The places of the axes from loops to samples.
-fn order(kinds: &[AxisKind]) -> IxDyn {
+/// Indices of the axes in the order from loops to samples.
+fn sorted_axes(kinds: &[AxisKind]) -> IxDyn {
     let all = [AxisKind::Chirp, AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Element, AxisKind::Sample];
     let places: Vec<usize> = all.iter().filter_map(|kind| kinds.iter().position(|k| k == kind)).collect();
     IxDyn(&places)
 }
 
-fn check(kinds: &[AxisKind], shape: &[usize]) -> Result<(), Fault> {
+fn check_kinds(kinds: &[AxisKind], shape: &[usize]) -> Result<(), Fault> {
     if kinds.len() != shape.len() {
         let named = kinds.len();
         return Err(Fault::Data(format!("recording.axes names {named} axes, but the array has shape {shape:?}")));
     }
     let has = |kind| kinds.contains(&kind);
-    if let Some(twice) = kinds.iter().enumerate().find(|(i, kind)| kinds[..*i].contains(kind)) {
-        return Err(unfit(format!("\"{}\" stands twice; expected each axis once", twice.1)));
+    if let Some((_, kind)) = kinds.iter().enumerate().find(|(i, kind)| kinds[..*i].contains(kind)) {
+        return Err(unfit(format!("\"{kind}\" stands twice; expected each axis once")));
     }
-    let whole = has(AxisKind::Element) && !has(AxisKind::Transmitter) && !has(AxisKind::Receiver);
-    let pairs = !has(AxisKind::Element) && has(AxisKind::Transmitter) && has(AxisKind::Receiver);
-    if !(whole || pairs) {
+    let counts_elements = has(AxisKind::Element) && !has(AxisKind::Transmitter) && !has(AxisKind::Receiver);
+    let counts_pairs = !has(AxisKind::Element) && has(AxisKind::Transmitter) && has(AxisKind::Receiver);
+    if !(counts_elements || counts_pairs) {
         return Err(unfit("expected either \"element\", or both \"transmitter\" and \"receiver\""));
     }
     Ok(())
 }
 
-/// Real and imaginary parts joined; the axis they stood on is gone from `kinds`.
+/// The array as complex numbers: joins real and imaginary parts, whose axis is removed from `kinds`, or makes real samples analytic.
 fn complex(numbers: Numbers, kinds: &mut Vec<AxisKind>) -> Result<ArrayD<Complex64>, Fault> {
     let place = kinds.iter().position(|k| *k == AxisKind::Iq);
     match (numbers, place) {
@@ -209,11 +210,11 @@ fn complex(numbers: Numbers, kinds: &mut Vec<AxisKind>) -> Result<ArrayD<Complex
     }
 }
 
-/// The chirp asked for; the axis of chirps is gone from `kinds`.
-fn one_chirp(
+/// Selects or joins chirps, and removes their axis from `kinds`.
+fn select_chirp(
     values: ArrayD<Complex64>,
     kinds: &mut Vec<AxisKind>,
-    chirp: Option<Chirp>,
+    chirp: Option<ChirpChoice>,
 ) -> Result<ArrayD<Complex64>, Fault> {
     let Some(place) = kinds.iter().position(|k| *k == AxisKind::Chirp) else {
         return match chirp {
@@ -224,13 +225,13 @@ fn one_chirp(
     kinds.remove(place);
     let chirps = values.shape()[place];
     let last = chirps.saturating_sub(1);
-    let none =
-        |asked| Fault::Data(format!("recording.chirp is {asked}; expected 0 to {last}, the array has {chirps} chirps"));
+    let no_such =
+        |chirp| Fault::Data(format!("recording.chirp is {chirp}; expected 0 to {last}, the array has {chirps} chirps"));
     match chirp {
-        // Where no loops are joined, the strongest cell is that of the echoes that stand still: the mean.
-        Some(Chirp::Joined(Join::Mean | Join::Strongest)) => values.mean_axis(Axis(place)).ok_or_else(|| none(0)),
-        Some(Chirp::Number(asked)) if asked >= chirps => Err(none(asked)),
-        Some(Chirp::Number(number)) => Ok(values.index_axis_move(Axis(place), number)),
+        // Without a transform over loops, the Doppler cell of static echoes stands for the strongest: the mean.
+        Some(ChirpChoice::Joined(_)) => values.mean_axis(Axis(place)).ok_or_else(|| no_such(0)),
+        Some(ChirpChoice::Number(number)) if number >= chirps => Err(no_such(number)),
+        Some(ChirpChoice::Number(number)) => Ok(values.index_axis_move(Axis(place), number)),
         None if chirps == 1 => Ok(values.index_axis_move(Axis(place), 0)),
         None => Err(Fault::Data(format!(
             "the array has {chirps} chirps; expected recording.chirp = 0 to {last}, \"mean\" or \"strongest\""

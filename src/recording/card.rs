@@ -1,4 +1,4 @@
-//! A capture card on the network: its packets to a port of this machine, handed on as frames. Not in a browser, which has no ports.
+//! A capture card on the network: packets to a port of this machine are assembled to frames. Not in a browser, which has no ports.
 
 use super::packets::{CardFrame, PacketCounts, Packets};
 use crate::platform::Instant;
@@ -10,55 +10,51 @@ use std::time::Duration;
 /// The port that most capture cards send to.
 pub const USUAL_PORT: u16 = 4098;
 
-const PACKET_BYTES: usize = 1 << 16;
-/// Time between two looks for the end of a silence.
-const PATIENCE: Duration = Duration::from_millis(100);
-
-/// The receiver's answer to a frame.
+/// The caller's response to a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Handed {
-    /// The frame is looked at.
+pub enum FrameResponse {
+    /// The frame is processed.
     Taken,
-    /// The frame, or one before it, is never looked at: the one before was still at work.
+    /// This frame, or an earlier one that waited, is not processed, since another was still being processed.
     Dropped,
-    /// No more frames are wanted.
+    /// Reception ends.
     Ended,
 }
 
 /// Counts of frames and packets so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CardSummary {
-    /// Frames that were handed on, dropped ones counted.
+    /// Frames received, dropped ones included.
     pub frames: u64,
-    /// Frames that were dropped.
+    /// Frames received but not processed.
     pub dropped: u64,
     /// Counts of packets.
     pub packets: PacketCounts,
 }
 
 impl CardSummary {
-    /// All counts in a sentence.
+    /// All counts as a sentence.
     pub fn sentence(&self) -> String {
-        let PacketCounts { packets, strange, late, lost_bytes, lost_frames, restarts } = self.packets;
+        let PacketCounts { packets, malformed, late, lost_bytes, lost_frames, restarts } = self.packets;
         format!(
             "{} frames of {packets} packets; dropped, since the one before was still looked at: {}; bytes lost: {lost_bytes}; frames lost: \
-             {lost_frames}; packets late or twice: {late}; no packets of a card: {strange}; times the card began anew: {restarts}",
+             {lost_frames}; packets late or twice: {late}; no packets of a card: {malformed}; times the card began anew: {restarts}",
             self.frames, self.dropped
         )
     }
 }
 
-/// Takes packets off the network.
+/// A socket on which a capture card's packets arrive, and the limits of reception.
 #[derive(Debug)]
 pub struct Card {
     socket: UdpSocket,
     /// Bytes of a frame.
     pub frame_bytes: usize,
-    /// File of the frames as they come, with zeros for lost bytes.
+    /// File to which every frame is written, with zeros for lost bytes.
     pub log: Option<File>,
-    /// Frames after which listening ends.
-    pub most_frames: Option<u64>,
-    /// Time without a packet after which listening ends.
+    /// Frames after which reception ends.
+    pub max_frames: Option<u64>,
+    /// Time without a packet after which reception ends.
     pub silence: Option<Duration>,
 }
 
@@ -69,8 +65,9 @@ impl Card {
     /// An error of the socket: another program may have the port.
     pub fn listen(port: u16, frame_bytes: usize) -> io::Result<Card> {
         let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, port))?;
-        socket.set_read_timeout(Some(PATIENCE))?;
-        Ok(Card { socket, frame_bytes, log: None, most_frames: None, silence: None })
+        // `run` calls `goes_on` at least this often.
+        socket.set_read_timeout(Some(Duration::from_millis(100)))?;
+        Ok(Card { socket, frame_bytes, log: None, max_frames: None, silence: None })
     }
 
     /// The port that it listens on.
@@ -81,41 +78,43 @@ impl Card {
         self.socket.local_addr().map(|address| address.port())
     }
 
-    /// Receives packets until the end: hands whole frames to `frames`, and asks `goes_on` with the counts so far, ten times a second or more.
+    /// Receives packets until a limit is reached, or until `take_frame` or `goes_on` ends it. `take_frame` gets each frame, and `goes_on` the counts so
+    /// far, at least ten times a second.
     ///
     /// # Errors
     /// An error of the socket or of the log file.
     pub fn run(
         mut self,
-        mut frames: impl FnMut(CardFrame) -> Handed,
+        mut take_frame: impl FnMut(CardFrame) -> FrameResponse,
         mut goes_on: impl FnMut(&CardSummary) -> bool,
     ) -> io::Result<CardSummary> {
         let mut packets = Packets::new(self.frame_bytes);
         let mut summary = CardSummary::default();
-        let mut buffer = vec![0; PACKET_BYTES];
-        let mut heard = Instant::now();
+        // No UDP packet is longer.
+        let mut buffer = vec![0; 1 << 16];
+        let mut last_packet = Instant::now();
         loop {
             let done = match self.socket.recv(&mut buffer) {
                 Ok(length) => {
-                    heard = Instant::now();
+                    last_packet = Instant::now();
                     packets.take(&buffer[..length])
                 }
                 Err(e) if [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut].contains(&e.kind()) => Vec::new(),
                 Err(e) => return Err(e),
             };
-            let is_silent = self.silence.is_some_and(|silence| heard.elapsed() > silence);
+            let is_silent = self.silence.is_some_and(|silence| last_packet.elapsed() > silence);
             let rest = if is_silent { packets.finish() } else { Vec::new() };
             for frame in done.into_iter().chain(rest) {
                 self.write(&frame)?;
                 summary.frames += 1;
-                match frames(frame) {
-                    Handed::Taken => {}
-                    Handed::Dropped => summary.dropped += 1,
-                    Handed::Ended => return Ok(summary),
+                match take_frame(frame) {
+                    FrameResponse::Taken => {}
+                    FrameResponse::Dropped => summary.dropped += 1,
+                    FrameResponse::Ended => return Ok(summary),
                 }
             }
             summary.packets = packets.counts();
-            let is_enough = self.most_frames.is_some_and(|most| summary.frames >= most);
+            let is_enough = self.max_frames.is_some_and(|max| summary.frames >= max);
             if is_silent || is_enough || !goes_on(&summary) {
                 return Ok(summary);
             }
@@ -134,17 +133,18 @@ impl Card {
 pub(crate) mod tests {
     use super::*;
 
-    const FRAME: usize = 40_000;
-    const DATA: usize = 1456;
+    const FRAME_BYTES: usize = 40_000;
+    const DATA_BYTES: usize = 1456;
 
+    /// Packets of the card with `bytes` as their data.
     pub fn sent(bytes: &[u8]) -> Vec<Vec<u8>> {
         let packet = |(n, data): (usize, &[u8])| {
-            [&(n as u32 + 1).to_le_bytes(), &((n * DATA) as u64).to_le_bytes()[..6], data].concat()
+            [&(n as u32 + 1).to_le_bytes(), &((n * DATA_BYTES) as u64).to_le_bytes()[..6], data].concat()
         };
-        bytes.chunks(DATA).enumerate().map(packet).collect()
+        bytes.chunks(DATA_BYTES).enumerate().map(packet).collect()
     }
 
-    /// Sends packets to a port of this machine, so long apart, with a pause before one of them.
+    /// Sends packets to a port of this machine at intervals of `apart`, with a pause before packet `pause_at`.
     pub fn replay(packets: Vec<Vec<u8>>, port: u16, apart: Duration, pause_at: usize) -> std::thread::JoinHandle<()> {
         std::thread::spawn(move || {
             let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
@@ -159,11 +159,11 @@ pub(crate) mod tests {
     fn a_replay_with_losses_and_a_pause_is_logged() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.bin");
-        let bytes: Vec<u8> = (0..5 * FRAME).map(|n| (n % 250 + 1) as u8).collect();
-        let mut card = Card::listen(0, FRAME).unwrap();
+        let bytes: Vec<u8> = (0..5 * FRAME_BYTES).map(|n| (n % 250 + 1) as u8).collect();
+        let mut card = Card::listen(0, FRAME_BYTES).unwrap();
         card.log = Some(File::create(&path).unwrap());
         card.silence = Some(Duration::from_secs(60));
-        card.most_frames = Some(5);
+        card.max_frames = Some(5);
         let mut packets = sent(&bytes);
         packets.swap(3, 7);
         packets.swap(60, 62);
@@ -181,10 +181,10 @@ pub(crate) mod tests {
             }
         });
         let mut taken = Vec::new();
-        // Two frames are looked at; the others are dropped.
+        // Two frames are processed; the others are dropped.
         let take = |frame: CardFrame| {
             taken.push((frame.number, frame.lost_bytes));
-            if taken.len() > 2 { Handed::Dropped } else { Handed::Taken }
+            if taken.len() > 2 { FrameResponse::Dropped } else { FrameResponse::Taken }
         };
         let goes_on = |_: &CardSummary| {
             taken_one.send(()).ok();
@@ -193,10 +193,10 @@ pub(crate) mod tests {
         let summary = card.run(take, goes_on).unwrap();
         drop(taken_one);
         replay.join().unwrap();
-        assert_eq!((summary.frames, summary.dropped, summary.packets.lost_bytes), (5, 3, DATA as u64));
-        assert_eq!(taken[..2], [(0, 0), (1, DATA as u64)]);
+        assert_eq!((summary.frames, summary.dropped, summary.packets.lost_bytes), (5, 3, DATA_BYTES as u64));
+        assert_eq!(taken[..2], [(0, 0), (1, DATA_BYTES as u64)]);
         let mut expected = bytes;
-        expected[40 * DATA..41 * DATA].fill(0);
+        expected[40 * DATA_BYTES..41 * DATA_BYTES].fill(0);
         assert!(std::fs::read(path).unwrap() == expected);
         assert!(summary.sentence().starts_with("5 frames of 137 packets"), "{}", summary.sentence());
     }

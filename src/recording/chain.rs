@@ -1,4 +1,4 @@
-//! Several files that are read as one: continued files of a capture, and files of the chips of a cascade.
+//! Several files that are read as one: the files of a split capture, and those of the chips of a cascade.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -6,14 +6,14 @@ pub(super) trait Source: Read + Seek {}
 
 impl<T: Read + Seek> Source for T {}
 
-/// Opens a data file by the name that the TOML gives it.
+/// A function that opens a data file by its name in the TOML.
 pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
 
-/// The file `first` alone, or as one with `more` files that go on from it, or with those of the other `chips` of a cascade.
+/// Opens `first` alone, or as one file with the `more` files that continue it, or with those of the other `chips` of a cascade.
 ///
 /// # Errors
 /// The error of `open`, or of a file whose size can't be read.
-pub(super) fn opened<T>(
+pub(super) fn open_joined<T>(
     first: &T,
     more: &[T],
     chips: &[T],
@@ -26,7 +26,7 @@ pub(super) fn opened<T>(
     Ok(if chips.is_empty() { Box::new(Chain::new(files)?) } else { Box::new(Chips::new(files)?) })
 }
 
-/// Files that are read as one, one after another.
+/// Files that are read one after another, with their sizes in bytes; `at` is the position in bytes.
 struct Chain {
     files: Vec<(Box<dyn Source>, u64)>,
     at: u64,
@@ -34,8 +34,8 @@ struct Chain {
 
 impl Chain {
     fn new(files: Vec<Box<dyn Source>>) -> io::Result<Self> {
-        let sized = |mut file: Box<dyn Source>| file.seek(SeekFrom::End(0)).map(|bytes| (file, bytes));
-        Ok(Chain { files: files.into_iter().map(sized).collect::<io::Result<_>>()?, at: 0 })
+        let with_size = |mut file: Box<dyn Source>| file.seek(SeekFrom::End(0)).map(|bytes| (file, bytes));
+        Ok(Chain { files: files.into_iter().map(with_size).collect::<io::Result<_>>()?, at: 0 })
     }
 }
 
@@ -58,27 +58,28 @@ impl Read for Chain {
 
 impl Seek for Chain {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.at = place(to, self.at, self.files.iter().map(|(_, bytes)| bytes).sum())?;
+        self.at = position_after(to, self.at, self.files.iter().map(|(_, bytes)| bytes).sum())?;
         Ok(self.at)
     }
 }
 
 /// The position after a seek by `to` from the position `at`, in a file of `bytes` bytes.
-fn place(to: SeekFrom, at: u64, bytes: u64) -> io::Result<u64> {
-    let place = match to {
+fn position_after(to: SeekFrom, at: u64, bytes: u64) -> io::Result<u64> {
+    let position = match to {
         SeekFrom::Start(at) => Some(at),
         SeekFrom::End(by) => bytes.checked_add_signed(by),
         SeekFrom::Current(by) => at.checked_add_signed(by),
     };
-    place.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "a place before the first byte"))
+    position.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "a place before the first byte"))
 }
 
 /// Bytes of a sample of the four receivers of a chip, in pairs of 16-bit words.
 const CHIP_BYTES: u64 = 16;
 /// Most samples of a chip that are read at once.
-const MOST_SAMPLES: u64 = 4096;
+const MAX_READ_SAMPLES: u64 = 4096;
 
-/// Files of the chips of a cascade, each four receivers sample by sample, as one file that has a sample of every receiver after the other.
+/// Files of the chips of a cascade, each with four interleaved receivers, as one file with all receivers interleaved. `samples` of each receiver; `at`
+/// is the position in bytes.
 struct Chips {
     files: Vec<Box<dyn Source>>,
     samples: u64,
@@ -105,16 +106,16 @@ impl Read for Chips {
             return Ok(0);
         }
         let (first, within) = (self.at / size, self.at % size);
-        let count = (within + wanted).div_ceil(size).min(MOST_SAMPLES) as usize;
-        let mut all = vec![0; count * size as usize];
-        let mut of_chip = vec![0; count * CHIP_BYTES as usize];
+        let count = (within + wanted).div_ceil(size).min(MAX_READ_SAMPLES) as usize;
+        let mut interleaved = vec![0; count * size as usize];
+        let mut chip_bytes = vec![0; count * CHIP_BYTES as usize];
         for (chip, file) in self.files.iter_mut().enumerate() {
             file.seek(SeekFrom::Start(first * CHIP_BYTES))?;
-            file.read_exact(&mut of_chip)?;
-            let samples = all.chunks_exact_mut(size as usize).zip(of_chip.chunks_exact(CHIP_BYTES as usize));
+            file.read_exact(&mut chip_bytes)?;
+            let samples = interleaved.chunks_exact_mut(size as usize).zip(chip_bytes.chunks_exact(CHIP_BYTES as usize));
             samples.for_each(|(to, from)| to[chip * from.len()..][..from.len()].copy_from_slice(from));
         }
-        let read = &all[within as usize..];
+        let read = &interleaved[within as usize..];
         let read = &read[..read.len().min(wanted as usize)];
         buffer[..read.len()].copy_from_slice(read);
         self.at += read.len() as u64;
@@ -124,7 +125,7 @@ impl Read for Chips {
 
 impl Seek for Chips {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.at = place(to, self.at, self.samples * self.sample_bytes())?;
+        self.at = position_after(to, self.at, self.samples * self.sample_bytes())?;
         Ok(self.at)
     }
 }
@@ -135,7 +136,7 @@ mod tests {
     use std::io::Cursor;
 
     #[test]
-    fn samples_of_chips_follow_one_another() {
+    fn samples_of_chips_are_interleaved() {
         let file =
             |chip: u8| Box::new(Cursor::new((0..40).map(|n| 64 * chip + n).collect::<Vec<u8>>())) as Box<dyn Source>;
         let mut chips = Chips::new(vec![file(0), file(1), file(2)]).unwrap();

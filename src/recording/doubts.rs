@@ -4,22 +4,22 @@ use super::Recorded;
 use crate::maps::channels_range_transform;
 use crate::radar::{Carrier, Radar};
 
-/// Part of the power in the far half of the range axis above which the beat's sign is doubted.
-const FAR_PART: f64 = 0.9;
-/// Spacing from which directions fold in the two-way reading, wavelengths: a quarter, and a little more for a carrier off the middle of the band.
-const FOLDS_FROM: f64 = 0.26;
-/// Least samples that tell one half of the range axis from the other.
-const LEAST_SAMPLES: usize = 8;
+/// Least part of the power in the far half of the range axis for which the beat's sign is doubted.
+const MIN_FAR_PART: f64 = 0.9;
+/// Largest element spacing of a two-way carrier without ambiguous directions, wavelengths: 1/4, and a margin for a carrier off the middle of the band.
+const MAX_SPACING_WAVELENGTHS: f64 = 0.26;
+/// Least samples of a chirp for which the halves of the range axis are compared.
+const MIN_SAMPLES: usize = 8;
 
-/// Warnings, a sentence each, where samples or radar are unlikely. Only `physical` recordings are doubted: an older text is taken as it is.
-pub(super) fn doubts(radar: &Radar, samples: &Recorded, physical: bool) -> Vec<String> {
+/// Warnings, a sentence each, about unlikely samples or radars. There are none without `is_physical`: texts of format 1 are read as they are.
+pub(super) fn doubts(radar: &Radar, samples: &Recorded, is_physical: bool) -> Vec<String> {
     let mut doubts = Vec::new();
-    if !physical {
+    if !is_physical {
         return doubts;
     }
     let spacing = radar.element_spacing_metres / radar.wavelength_metres();
     match radar.carrier {
-        Carrier::TwoWay if spacing > FOLDS_FROM => doubts.push(format!(
+        Carrier::TwoWay if spacing > MAX_SPACING_WAVELENGTHS => doubts.push(format!(
             "Elements stand {spacing:.2} wavelengths apart, and the carrier is two-way: directions beyond cos θ = {:.2} fold to the other side. In \
              the two-way reading an element stands halfway between its transmitter and its receiver, so a filled array has a quarter of a wavelength.",
             0.25 / spacing
@@ -30,7 +30,7 @@ pub(super) fn doubts(radar: &Radar, samples: &Recorded, physical: bool) -> Vec<S
         )),
         Carrier::OneWay | Carrier::TwoWay => {}
     }
-    if let Some(part) = far_part(radar, samples).filter(|part| *part > FAR_PART) {
+    if let Some(part) = far_part(radar, samples).filter(|part| *part > MIN_FAR_PART) {
         doubts.push(format!(
             "{:.0} % of the power stands in the far half of the range axis. Where echoes were nearer, recording.beat_sign is the other one.",
             100.0 * part
@@ -39,9 +39,9 @@ pub(super) fn doubts(radar: &Radar, samples: &Recorded, physical: bool) -> Vec<S
     doubts
 }
 
-/// Part of the power in the far half of the range axis, which holds the negative frequencies; `None` where few samples can't tell.
+/// Part of the power in the far half of the range axis, that of the negative frequencies; `None` below [`MIN_SAMPLES`] or without power.
 fn far_part(radar: &Radar, samples: &Recorded) -> Option<f64> {
-    if radar.samples < LEAST_SAMPLES {
+    if radar.samples < MIN_SAMPLES {
         return None;
     }
     let arrays = match samples {
@@ -51,7 +51,7 @@ fn far_part(radar: &Radar, samples: &Recorded) -> Option<f64> {
     let (mut far, mut all) = (0.0, 0.0);
     for array in arrays {
         for row in channels_range_transform(radar, array).profiles.outer_iter() {
-            // A constant stands in bin 0 and, by the window, beside it: it belongs to neither half.
+            // The constant part is in bin 0 and, by the window, in the bins beside it: it belongs to neither half.
             for (bin, value) in row.iter().enumerate().take(radar.samples - 1).skip(2) {
                 all += value.norm_sqr();
                 far += if bin > radar.samples / 2 { value.norm_sqr() } else { 0.0 };

@@ -36,18 +36,17 @@ pub enum Fault {
     Npz(#[from] NpzError),
     #[error("{0}")]
     Hdf5(#[from] Hdf5Error),
-    /// Samples that can't be read, or are others than the text or the `.cfg` says: the whole message.
+    /// Samples that can't be read, or contradict the text or the `.cfg`: the whole message.
     #[error("{0}")]
     Data(String),
 }
 
 impl Fault {
-    /// A key that can't be used.
     pub(super) fn key(key: &str, found: impl Into<String>, expected: impl Into<String>) -> Fault {
         Fault::Key { key: key.to_owned(), found: found.into(), expected: expected.into() }
     }
 
-    /// Too many or too few `what` in an array that is read as so many elements and samples.
+    /// The error of `found` elements, samples or pairs (`what`) in an array of this shape.
     pub(super) fn count(what: &str, found: usize, expected: &str, (elements, samples): (usize, usize)) -> Fault {
         Fault::Data(format!(
             "holds {found} {what}; expected {expected} (it is read as {elements} elements by {samples} samples)"

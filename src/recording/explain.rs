@@ -12,19 +12,19 @@ use ndarray::{Array2, Axis, s};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Most reflectors that a recording is explained with: their gains are fitted together.
-pub const MAX_EXPLAINING: usize = 512;
+/// Most reflectors whose gains are fitted to a recording together.
+pub const MAX_REFLECTORS: usize = 512;
 
-/// Ridge on the diagonal of the fit, relative to it: reflectors that no element distinguishes share their gain.
+/// Ridge on the diagonal of the normal equations, relative to it: reflectors at one place get equal gains.
 const SHARED_GAIN_RIDGE: f64 = 1e-10;
 
 /// A recording explained by reflectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explanation {
-    /// Complex gain of each reflector: a factor of the echo of reflectivity 1 at its place. Its magnitude is the reflectivity in the recording's own
-    /// unit.
+    /// Complex gain of each reflector: the factor of the echo of a reflector of reflectivity 1 at its place. Its magnitude is the reflectivity in the
+    /// recording's unit.
     pub gains: Vec<Complex64>,
-    /// Part of the recording's power that the reflectors explain, 0 to 1.
+    /// Part of the recording's power in the reflectors' echoes, 0 to 1.
     pub explained: f64,
     /// The recording less the reflectors' echoes.
     pub residual: Recording,
@@ -37,15 +37,15 @@ pub enum ExplainError {
     #[error("{0}")]
     Scene(#[from] SceneError),
     /// The scene has too many reflectors.
-    #[error("the scene has {0} reflectors; at most {MAX_EXPLAINING} are fitted to a recording")]
+    #[error("the scene has {0} reflectors; at most {MAX_REFLECTORS} are fitted to a recording")]
     TooMany(usize),
-    /// The gains can't be told from each other at all.
+    /// The normal equations can't be solved.
     #[error("the gains of these reflectors can't be fitted: {0}")]
     Unsolvable(String),
 }
 
-/// Fits a complex gain to the echo of each of `scene`'s reflectors, all together by least squares over every sample that was recorded,
-/// and takes them off: y = sum of `g_l a_l` + residual, `g` least squares. Reflectivities of the scene don't matter, places do.
+/// Fits complex gains `g` of the echoes `a` of `scene`'s reflectors by least squares over all recorded samples `y`, and subtracts the echoes:
+/// y = sum of `g_l a_l` + residual. The scene's reflectivities have no influence.
 ///
 /// # Errors
 /// [`ExplainError`] where the scene can't be seen by the recording's radar, or has too many reflectors.
@@ -53,13 +53,13 @@ pub fn explain(recording: &Recording, scene: &Scene) -> Result<Explanation, Expl
     let radar = &recording.radar;
     scene.validate(radar)?;
     let count = scene.reflector_count();
-    if count > MAX_EXPLAINING {
+    if count > MAX_REFLECTORS {
         return Err(ExplainError::TooMany(count));
     }
     let reflectors = scene.reflectors();
-    let (mut signal, elements) = whole(recording);
+    let (mut signal, elements) = whole_array(recording);
     let mut rows = signal.samples.select(Axis(0), &elements);
-    let before = power(&rows);
+    let total_power = power(&rows);
     let gains = fit(radar, &reflectors, &elements, &rows)?;
     let model = EchoModel::new(radar);
     rows.axis_iter_mut(Axis(0)).into_par_iter().zip(&elements).for_each(|(mut row, element)| {
@@ -69,7 +69,7 @@ pub fn explain(recording: &Recording, scene: &Scene) -> Result<Explanation, Expl
             add_echo(&model, radar.pair(*element), &unit, -gain, samples);
         }
     });
-    let explained = if before > 0.0 { (1.0 - power(&rows) / before).clamp(0.0, 1.0) } else { 0.0 };
+    let explained = if total_power > 0.0 { (1.0 - power(&rows) / total_power).clamp(0.0, 1.0) } else { 0.0 };
     signal.samples.fill(Complex64::default());
     rows.outer_iter().zip(&elements).for_each(|(row, element)| signal.samples.row_mut(*element).assign(&row));
     let samples = match recording.samples {
@@ -84,8 +84,8 @@ fn power(samples: &Array2<Complex64>) -> f64 {
     samples.iter().map(Complex64::norm_sqr).sum()
 }
 
-/// The samples of the whole array, silence where nothing was recorded; and the elements that were.
-fn whole(recording: &Recording) -> (BeatSignal, Vec<usize>) {
+/// The samples of the whole array, zeros where nothing was recorded, and the recorded elements.
+fn whole_array(recording: &Recording) -> (BeatSignal, Vec<usize>) {
     let radar = &recording.radar;
     let (signal, recorded) = match &recording.samples {
         Recorded::All(signal) => (signal.clone(), (0..radar.elements).collect::<Vec<_>>()),
@@ -100,7 +100,7 @@ fn whole(recording: &Recording) -> (BeatSignal, Vec<usize>) {
     (signal, recorded.into_iter().filter(|n| !recording.missing.contains(n)).collect())
 }
 
-/// The gains: normal equations of the unit echoes, whose inner products are known in closed form.
+/// The gains, by normal equations of the normalised echoes, whose inner products have a closed form.
 fn fit(
     radar: &Radar,
     reflectors: &[Reflector],
@@ -115,15 +115,15 @@ fn fit(
         .par_iter()
         .map(|r| {
             let place = radar.polar_of(r.x_metres, r.y_metres);
-            ArrayEcho::heard_by(radar, &pairs, place.range_metres, place.cos_theta)
+            ArrayEcho::at_pairs(radar, &pairs, place.range_metres, place.cos_theta)
         })
         .collect();
     let y: Vec<Complex64> = rows.iter().copied().collect();
-    let heard: Vec<Complex64> = echoes.par_iter().map(|e| e.correlate(&y)).collect();
+    let correlations: Vec<Complex64> = echoes.par_iter().map(|e| e.correlate(&y)).collect();
     let ridge = |i: usize, j: usize| if i == j { SHARED_GAIN_RIDGE } else { 0.0 };
     let gram = Mat::from_fn(echoes.len(), echoes.len(), |i, j| echoes[i].inner(&echoes[j]) + ridge(i, j));
     let factor = gram.llt(Side::Lower).map_err(|e| ExplainError::Unsolvable(format!("{e:?}")))?;
-    let solved = factor.solve(Mat::from_fn(echoes.len(), 1, |i, _| heard[i]));
+    let solved = factor.solve(Mat::from_fn(echoes.len(), 1, |i, _| correlations[i]));
     Ok(echoes.iter().enumerate().map(|(i, e)| solved[(i, 0)] / e.norm()).collect())
 }
 

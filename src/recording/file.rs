@@ -1,13 +1,13 @@
 //! The TOML of a recording; `docs/recordings.md` has its keys.
 
-use super::described::{Described, beside, open_file, read_text};
 use super::raw;
+use super::recording_text::{RecordingText, open_file, open_in, read_text};
 use super::{Fault, Offer, Origin, Recording, RecordingError};
 use crate::files::ends_in;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Whether a TOML is that of a recording: whether it has a table `[recording]`.
+/// Whether `text` is the TOML of a recording: it has a table `[recording]`.
 pub fn is_recording(text: &str) -> bool {
     toml::de::DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("recording"))
 }
@@ -17,12 +17,12 @@ pub fn is_recording_at(path: &Path) -> bool {
     raw::is_raw_at(path) || is_toml_at(path)
 }
 
-/// Whether the file `path` is the TOML of a recording; not where it can't be read or ends otherwise.
+/// Whether the file `path` is the TOML of a recording; false where it can't be read.
 fn is_toml_at(path: &Path) -> bool {
     ends_in(path, &["toml"]) && open_file(path).is_ok_and(|file| read_text(file).is_ok_and(|text| is_recording(&text)))
 }
 
-/// The file that holds the samples of the recording whose TOML is `path`; `None` where that is no such TOML.
+/// Path of the samples of the recording whose TOML is `path`; `None` where that is no such TOML.
 pub fn data_path(path: &Path) -> Option<PathBuf> {
     let text = read_text(open_file(path).ok()?).ok()?;
     let table: toml::Table = text.parse().ok()?;
@@ -30,7 +30,7 @@ pub fn data_path(path: &Path) -> Option<PathBuf> {
     Some(path.parent().unwrap_or(Path::new("")).join(name))
 }
 
-/// Reads a recording: the TOML `path` and what it names beside it, or a raw capture as it is ([`raw::open`]).
+/// Reads a recording: the TOML `path` with the files that it names, or a raw capture ([`raw::open`]).
 ///
 /// # Errors
 /// [`RecordingError`] names the file, the key or the array, and what was expected of it.
@@ -39,12 +39,12 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
         return raw::open(path, None);
     }
     let text = read_text(open_file(path).map_err(|e| Fault::from(e).of(path))?).map_err(|e| e.of(path))?;
-    let open = beside(path.parent().unwrap_or(Path::new("")));
-    let described = Described::by(&text, path, &open, None)?;
-    let recording = described.recording()?;
-    let origin = described.frames()?.map(|[frames, frame]| {
-        let described = "Read as its TOML says".to_owned();
-        let offer = Offer { described, log_odds: 0.0, power: Vec::new(), toml: text.clone() };
+    let open = open_in(path.parent().unwrap_or(Path::new("")));
+    let parsed = RecordingText::parse(&text, path, &open, None)?;
+    let recording = parsed.recording()?;
+    let origin = parsed.frames()?.map(|[frames, frame]| {
+        let description = "Read as its TOML says".to_owned();
+        let offer = Offer { description, log_odds: 0.0, power: Vec::new(), toml: text.clone() };
         Arc::new(Origin { data: path.to_owned(), offers: vec![offer], frames, frame, ..Origin::default() })
     });
     Ok(Recording { origin, ..recording })

@@ -1,4 +1,4 @@
-//! NumPy's `.npy` and `.npz` files. The header's sizes are checked before any memory is asked for.
+//! NumPy's `.npy` and `.npz` files. The header's sizes are checked before memory is allocated.
 
 use super::Fault;
 use super::numbers::{Numbers, bounded_count, too_large};
@@ -7,17 +7,11 @@ use crate::files::npz::Npz;
 use std::io::{self, Read, Seek};
 
 /// Reads the array `key` of an archive.
-///
-/// # Errors
-/// [`Fault`] names the key, and what was expected of it.
 pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     read_array(Npz::of(file)?.entry(key)?, &format!("array \"{key}\""))
 }
 
 /// Names and shapes of the arrays of an archive, without their numbers; those that can't be read are left out.
-///
-/// # Errors
-/// [`Fault`].
 pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut archive = Npz::of(file)?;
     let keys = archive.keys().to_vec();
@@ -26,9 +20,6 @@ pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>
 }
 
 /// Reads the one array of an `.npy` file.
-///
-/// # Errors
-/// [`Fault`].
 pub(super) fn read_npy(file: impl Read) -> Result<Numbers, Fault> {
     read_array(file, "the array")
 }
@@ -37,11 +28,11 @@ fn read_array(mut file: impl Read, what: &str) -> Result<Numbers, Fault> {
     let damaged = |e: io::Error| Fault::Data(format!("{what} can't be read: {e}; expected what numpy.save writes"));
     let header = NpyHeader::read(&mut file).map_err(damaged)?;
     bounded_count(&header.shape).ok_or_else(|| too_large(what, &header.shape))?;
-    let unread = || {
+    let unsupported = || {
         let expected = "complex or real numbers, integers of 16 or more bits or int8, or pairs of int16";
         Fault::Data(format!("{what} holds {}; expected {expected}", header.descriptor))
     };
-    header.numbers(file).ok_or_else(unread)?.map_err(damaged)
+    header.numbers(file).ok_or_else(unsupported)?.map_err(damaged)
 }
 
 #[cfg(test)]
@@ -128,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_header_may_not_ask_for_the_world() {
+    fn a_header_of_a_huge_array_is_refused() {
         let huge = with_header("{'descr': '<c16', 'fortran_order': False, 'shape': (1000000, 1000000), }");
         let message = read_npy(huge.as_slice()).unwrap_err().to_string();
         assert!(message.contains("[1000000, 1000000]") && message.contains("at most"), "{message}");

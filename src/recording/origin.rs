@@ -1,7 +1,7 @@
-//! The source of a recording that was opened without a text, and other ways to read its bytes.
+//! The file of a recording, its frames, and other ways to read it.
 
 use super::chain::Open;
-use super::described::{Described, FrameLoops, beside};
+use super::recording_text::{FrameLoops, RecordingText, open_in};
 use super::{Recording, RecordingError};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -10,41 +10,41 @@ use std::sync::Arc;
 /// One way to read a file: a layout of a raw capture, or kinds of an array's axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Offer {
-    /// The layout in a sentence's words.
-    pub described: String,
-    /// Natural logarithm of its odds, up to a constant that all offers of a file share.
+    /// The layout or the axes, as a part of a sentence.
+    pub description: String,
+    /// Natural logarithm of its odds, up to a constant that is the same for all offers of a file.
     pub log_odds: f64,
     /// Mean power of each range bin, in the square of the file's unit.
     pub power: Vec<f64>,
-    /// The TOML of the recording that is read so, to stand in the folder of the data.
+    /// The TOML of the recording read this way, for the folder of the data.
     pub toml: String,
 }
 
-/// The source of a recording whose file can be read in another way, or of which another frame can be taken.
+/// The file of a recording that can be read in other ways, or that has other frames.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Origin {
     /// The file with the samples, or the TOML that describes them.
     pub data: PathBuf,
-    /// The `.cfg` that was read, where there is one.
+    /// The `.cfg` that was read.
     pub config: Option<PathBuf>,
-    /// Ways to read the file, the most likely first; the TOML alone where there is one.
+    /// Ways to read the file, the most likely first; the only one where the file has a TOML.
     pub offers: Vec<Offer>,
-    /// Index of the way that was taken, in `offers`.
+    /// Index in `offers` of the way that is used.
     pub taken: usize,
-    /// The findings on the file, a sentence each.
+    /// Findings on the file, a sentence each.
     pub sentences: Vec<String>,
     /// Doubts that hold for every way to read the file, a sentence each.
     pub doubts: Vec<String>,
-    /// The board whose antennas were taken, where one was.
+    /// Name of the board whose antennas are used.
     pub board: Option<&'static str>,
-    /// Whole frames of the file.
+    /// Number of whole frames in the file.
     pub frames: u64,
-    /// Number of the frame that is looked at, from 0.
+    /// Index of the frame that is read.
     pub frame: u64,
 }
 
 impl Origin {
-    /// The text of the way that was taken.
+    /// The TOML of the way that is used; empty without offers.
     pub fn toml(&self) -> &str {
         self.offers.get(self.taken).map_or("", |offer| offer.toml.as_str())
     }
@@ -57,24 +57,24 @@ impl Origin {
         Origin { taken, frame, ..self.clone() }.recording()
     }
 
-    /// The recording as the text of the way that was taken describes it.
+    /// Reads the recording the way that is used.
     ///
     /// # Errors
     /// [`RecordingError`] names the file, the key or the array.
     pub fn recording(&self) -> Result<Recording, RecordingError> {
-        self.read(&beside(self.folder()))
+        self.read(&open_in(self.folder()))
     }
 
-    /// The recording of a frame whose bytes are given in place of the file.
+    /// The recording of a frame, with `bytes` in place of the file's.
     ///
     /// # Errors
     /// As [`Origin::recording`].
     pub fn recording_of(&self, bytes: &[u8]) -> Result<Recording, RecordingError> {
-        let other = beside(self.folder());
+        let open_other = open_in(self.folder());
         let own = self.data.file_name().map(|name| name.to_string_lossy().into_owned());
         self.read(&|name| match own.as_deref() == Some(name) {
             true => Ok(Box::new(Cursor::new(bytes.to_vec()))),
-            false => other(name),
+            false => open_other(name),
         })
     }
 
@@ -83,8 +83,8 @@ impl Origin {
     /// # Errors
     /// As [`Origin::recording`], and where the file holds no loops.
     pub fn loops(&self) -> Result<FrameLoops, RecordingError> {
-        let (path, open) = (self.data.with_extension("toml"), beside(self.folder()));
-        Described::by(self.toml(), &path, &open, Some(self.frame))?.loops()
+        let (path, open) = (self.data.with_extension("toml"), open_in(self.folder()));
+        RecordingText::parse(self.toml(), &path, &open, Some(self.frame))?.loops()
     }
 
     fn folder(&self) -> &Path {
@@ -93,9 +93,9 @@ impl Origin {
 
     fn read(&self, open: Open<'_>) -> Result<Recording, RecordingError> {
         let path = self.data.with_extension("toml");
-        let mut recording = Described::by(self.toml(), &path, open, Some(self.frame))?.recording()?;
-        let known = recording.doubts.clone();
-        recording.doubts.splice(0..0, self.doubts.iter().filter(|d| !known.contains(d)).cloned());
+        let mut recording = RecordingText::parse(self.toml(), &path, open, Some(self.frame))?.recording()?;
+        let own_doubts = recording.doubts.clone();
+        recording.doubts.splice(0..0, self.doubts.iter().filter(|d| !own_doubts.contains(d)).cloned());
         recording.origin = Some(Arc::new(self.clone()));
         Ok(recording)
     }

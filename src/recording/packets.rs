@@ -1,79 +1,79 @@
-//! Frames from the packets of a capture card: in order again, with zeros for lost packets, in bounded memory.
+//! Frames from the packets of a capture card: sorted, with zeros for lost packets, in bounded memory.
 //!
-//! A packet has 4 bytes of number, 6 of the count of bytes before it, and the data ("DCA1000EVM Data Capture Card", SPRUIJ4).
+//! A packet has 4 bytes of its number, 6 of the number of data bytes before it, and the data ("DCA1000EVM Data Capture Card", SPRUIJ4).
 
 use std::collections::VecDeque;
 
 /// Bytes before the data of a packet.
 const HEADER_BYTES: usize = 10;
-/// Longest data of a packet.
-const MOST_DATA_BYTES: usize = 1 << 16;
-/// Frames that may be open at once: packets of the next arrive before the last of this one.
-const OPEN: usize = 2;
-/// Number of bytes beyond a frame that end it, though some of it is missing: packets may be out of order by as much.
-const REORDERED_BYTES: u64 = 64 * 1456;
-/// Number of frames beyond the last from which a count of bytes is that of another capture.
-const MOST_SKIPPED: u64 = 4096;
+/// Longest data of a packet, bytes.
+const MAX_DATA_BYTES: usize = 1 << 16;
+/// Most frames that are open at once: packets of the next frame may arrive before the last of this one.
+const MAX_OPEN_FRAMES: usize = 2;
+/// Distance by which packets may be out of order, bytes: data farther behind the end of an incomplete frame closes it.
+const MAX_REORDERED_BYTES: u64 = 64 * 1456;
+/// Most frames between two packets of one capture: a packet farther ahead begins another.
+const MAX_SKIPPED_FRAMES: u64 = 4096;
 
 /// A frame of the capture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CardFrame {
-    /// Its number, by the count of bytes.
+    /// Index in the capture.
     pub number: u64,
-    /// Its bytes; those that are lost are zeros.
+    /// Data, with zeros in place of lost bytes.
     pub bytes: Vec<u8>,
     /// Number of lost bytes.
     pub lost_bytes: u64,
 }
 
-/// Counts of packets, of losses and of new beginnings.
+/// Counts of packets, losses and restarts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PacketCounts {
-    /// Packets that were taken.
+    /// Packets of a card.
     pub packets: u64,
-    /// Packets that are not a card's: shorter than the header, or longer than any.
-    pub strange: u64,
-    /// Packets of frames that were given away already, and packets that came twice.
+    /// Packets that are shorter than the header or too long.
+    pub malformed: u64,
+    /// Packets of frames that were closed already, and packets received twice.
     pub late: u64,
-    /// Bytes of frames that were given away with zeros in their place.
+    /// Missing bytes of closed frames.
     pub lost_bytes: u64,
-    /// Frames of which no packet came.
+    /// Frames without any packet.
     pub lost_frames: u64,
-    /// Times that the count of bytes began anew.
+    /// Beginnings of another capture.
     pub restarts: u64,
 }
 
-struct Open {
+struct OpenFrame {
     frame: CardFrame,
-    /// Parts that arrived, as ranges of bytes that don't touch, in order.
+    /// Received ranges of bytes, sorted, with gaps between them.
     parts: Vec<(usize, usize)>,
 }
 
-/// Puts packets together.
+/// Assembles packets to frames.
 pub struct Packets {
     frame_bytes: usize,
-    open: VecDeque<Open>,
-    /// The frame after the last that was given away, once there was one.
+    open: VecDeque<OpenFrame>,
+    /// Number of the frame after the last closed one; `None` before the first.
     next: Option<u64>,
     counts: PacketCounts,
 }
 
 impl Packets {
-    /// Packets of frames of `frame_bytes` bytes, at least one.
+    /// An assembler of frames of `frame_bytes` bytes; 0 is taken as 1.
     pub fn new(frame_bytes: usize) -> Self {
         Packets { frame_bytes: frame_bytes.max(1), open: VecDeque::new(), next: None, counts: PacketCounts::default() }
     }
 
-    /// Counts so far.
+    /// Counts of the packets so far.
     pub fn counts(&self) -> PacketCounts {
         self.counts
     }
 
-    /// Takes a packet, and returns the frames that are whole now or given up.
+    /// Adds a packet, and returns the frames that it closes, complete or not.
     pub fn take(&mut self, packet: &[u8]) -> Vec<CardFrame> {
-        let Some((header, data)) = packet.split_at_checked(HEADER_BYTES).filter(|(_, d)| d.len() <= MOST_DATA_BYTES)
+        let Some((header, data)) = packet.split_at_checked(HEADER_BYTES).filter(|(_, d)| d.len() <= MAX_DATA_BYTES)
         else {
-            self.counts.strange += 1;
+            self.counts.malformed += 1;
             return Vec::new();
         };
         self.counts.packets += 1;
@@ -82,36 +82,36 @@ impl Packets {
         let number = at / self.frame_bytes as u64;
         let last = self.open.back().map(|open| open.frame.number).or(self.next);
         let begins_anew = at == 0 && (self.next.is_some() || last.is_some_and(|last| last > 0));
-        if begins_anew || last.is_some_and(|last| number > last.saturating_add(MOST_SKIPPED)) {
+        if begins_anew || last.is_some_and(|last| number > last.saturating_add(MAX_SKIPPED_FRAMES)) {
             self.counts.restarts += 1;
             done.extend(self.finish());
             self.next = None;
         }
         let into = at % self.frame_bytes as u64;
-        if self.next.is_none() && self.open.is_empty() && into > REORDERED_BYTES {
-            // Packets before this one were never listened to: the next frame is the first.
+        if self.next.is_none() && self.open.is_empty() && into > MAX_REORDERED_BYTES {
+            // Reception began within this frame: the next one is the first.
             self.next = Some(number + 1);
         }
-        self.place(at, data, &mut done);
-        let behind = at.saturating_add(data.len() as u64).saturating_sub(REORDERED_BYTES);
+        self.add_data(at, data, &mut done);
+        let settled_bytes = at.saturating_add(data.len() as u64).saturating_sub(MAX_REORDERED_BYTES);
         while let Some(first) = self.open.front() {
             let is_whole = first.parts.as_slice() == [(0, self.frame_bytes)];
             let end = (first.frame.number + 1) * self.frame_bytes as u64;
-            if !is_whole && behind < end {
+            if !is_whole && settled_bytes < end {
                 break;
             }
-            done.extend(self.give());
+            done.extend(self.close_first());
         }
         done
     }
 
-    /// Gives the open frames away as they are.
+    /// Closes and returns all open frames.
     pub fn finish(&mut self) -> Vec<CardFrame> {
-        std::iter::from_fn(|| self.give()).collect()
+        std::iter::from_fn(|| self.close_first()).collect()
     }
 
-    /// Puts data from byte `at` of the capture on into the frames that it belongs to.
-    fn place(&mut self, at: u64, data: &[u8], done: &mut Vec<CardFrame>) {
+    /// Copies data from byte `at` of the capture on into its frames. `done` gets the frames that are closed.
+    fn add_data(&mut self, at: u64, data: &[u8], done: &mut Vec<CardFrame>) {
         let (mut at, mut data) = (at, data);
         while !data.is_empty() {
             let size = self.frame_bytes as u64;
@@ -120,34 +120,35 @@ impl Packets {
             if self.next.is_some_and(|next| number < next) {
                 self.counts.late += 1;
             } else {
-                self.put(number, offset, part, done);
+                self.add_part(number, offset, part, done);
             }
             (at, data) = (at + part.len() as u64, rest);
         }
     }
 
-    fn put(&mut self, number: u64, offset: usize, part: &[u8], done: &mut Vec<CardFrame>) {
+    /// Copies `part` to byte `offset` of frame `number`.
+    fn add_part(&mut self, number: u64, offset: usize, part: &[u8], done: &mut Vec<CardFrame>) {
         let index = self.open.partition_point(|open| open.frame.number < number);
         if self.open.get(index).is_none_or(|open| open.frame.number != number) {
             let bytes = vec![0; self.frame_bytes];
             let frame = CardFrame { number, bytes, lost_bytes: 0 };
-            self.open.insert(index, Open { frame, parts: Vec::new() });
+            self.open.insert(index, OpenFrame { frame, parts: Vec::new() });
         }
         let Some(open) = self.open.get_mut(index) else { return };
         open.frame.bytes[offset..offset + part.len()].copy_from_slice(part);
         if !join(&mut open.parts, (offset, offset + part.len())) {
             self.counts.late += 1;
         }
-        while self.open.len() > OPEN {
-            done.extend(self.give());
+        while self.open.len() > MAX_OPEN_FRAMES {
+            done.extend(self.close_first());
         }
     }
 
-    /// The first open frame, with what is missing counted.
-    fn give(&mut self) -> Option<CardFrame> {
-        let Open { mut frame, parts } = self.open.pop_front()?;
-        let there: usize = parts.iter().map(|(from, to)| to - from).sum();
-        frame.lost_bytes = (self.frame_bytes - there) as u64;
+    /// Closes the first open frame, and counts its missing bytes and the missing frames before it.
+    fn close_first(&mut self) -> Option<CardFrame> {
+        let OpenFrame { mut frame, parts } = self.open.pop_front()?;
+        let received: usize = parts.iter().map(|(from, to)| to - from).sum();
+        frame.lost_bytes = (self.frame_bytes - received) as u64;
         self.counts.lost_bytes += frame.lost_bytes;
         self.counts.lost_frames += self.next.map_or(0, |next| frame.number.saturating_sub(next));
         self.next = Some(frame.number + 1);
@@ -155,7 +156,7 @@ impl Packets {
     }
 }
 
-/// Adds a range to ranges that don't touch; false where all of it was there.
+/// Adds a range to sorted ranges with gaps between them; false where they contain it already.
 fn join(parts: &mut Vec<(usize, usize)>, (from, to): (usize, usize)) -> bool {
     if parts.iter().any(|(a, b)| *a <= from && to <= *b) {
         return false;
@@ -207,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn lost_packets_are_zeros_and_told() {
+    fn lost_packets_are_zeros_and_counted() {
         let bytes = capture(4, 1000);
         let mut packets = Packets::new(1000);
         let kept = (0..40).filter(|n| *n != 12 && !(20..30).contains(n));
@@ -219,13 +220,13 @@ mod tests {
     }
 
     #[test]
-    fn a_card_that_starts_again_starts_again() {
+    fn a_restarted_card_begins_at_frame_0() {
         let bytes = capture(2, 300);
         let mut packets = Packets::new(300);
         let twice = (0..6).chain(0..6).map(|n| packet(n, &bytes));
         let frames = all(&mut packets, twice);
         assert_eq!(frames.iter().map(|f| f.number).collect::<Vec<_>>(), [0, 1, 0, 1]);
-        assert_eq!((packets.counts().restarts, packets.take(&[1, 2, 3]).len(), packets.counts().strange), (1, 0, 1));
+        assert_eq!((packets.counts().restarts, packets.take(&[1, 2, 3]).len(), packets.counts().malformed), (1, 0, 1));
     }
 
     proptest! {
@@ -238,7 +239,7 @@ mod tests {
                 for frame in packets.take(&packet) {
                     prop_assert_eq!(frame.bytes.len(), 2000);
                 }
-                prop_assert!(packets.open.len() <= OPEN);
+                prop_assert!(packets.open.len() <= MAX_OPEN_FRAMES);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Recordings that come with the program: the files of `assets/recordings`, embedded in it.
 
 use super::chain::Open;
-use super::described::Described;
+use super::recording_text::RecordingText;
 use super::{Recording, RecordingError};
 use std::io::{self, Cursor};
 use std::path::Path;
@@ -17,7 +17,7 @@ pub struct Preset {
     pub data_name: &'static str,
     /// The samples, as that file has them.
     pub data: &'static [u8],
-    /// The notice that its licence asks for.
+    /// The notice required by its licence.
     pub licence: &'static str,
 }
 
@@ -50,7 +50,7 @@ impl Preset {
                 Err(io::Error::new(io::ErrorKind::NotFound, format!("expected {}", self.data_name)))
             }
         };
-        Described::by(self.toml, Path::new(&path), open, None)?.recording()
+        RecordingText::parse(self.toml, Path::new(&path), open, None)?.recording()
     }
 
     /// The preset called `id`.

@@ -1,50 +1,46 @@
-//! Samples in the data files of a recording, brought into the order of the array's elements.
+//! Samples of a recording's data files, sorted by the array's elements.
 
-use super::axes::{Join, arrange, in_turn, loops, one_frame};
-use super::capture::strongest_of;
-use super::chain::{Source, opened};
-use super::described::Described;
+use super::axes::{Join, arrange, frame_of, into_loops, split_turns};
+use super::capture::join_strongest;
+use super::chain::{Source, open_joined};
 use super::numbers::Numbers;
 use super::numpy::{read_npy, read_npz};
-use super::said_recording::{Covers, Table};
-use super::{AxisKind, Capture, Chirp, Fault, Recorded, hdf5};
+use super::recording_table::{CoveredElements, RecordingTable};
+use super::recording_text::RecordingText;
+use super::{AxisKind, Capture, ChirpChoice, Fault, Recorded, hdf5};
 use crate::radar::Radar;
 use crate::signal::BeatSignal;
 use ndarray::{Array2, Array3, Axis, ShapeError, concatenate};
 use num_complex::Complex64;
 use std::collections::HashSet;
 
-impl Described<'_> {
-    /// Reads the samples that the table names, with all its corrections, and sentences on doubts about them. The radar gives the numbers of elements
-    /// and samples expected.
-    ///
-    /// # Errors
-    /// [`Fault`] names the key or the array, and what was expected of it.
+impl RecordingText<'_> {
+    /// Reads the samples with all corrections of the table, and sentences on doubts about them. The radar has the expected numbers of elements and
+    /// samples.
     pub fn samples(&self) -> Result<(Recorded, Vec<String>), Fault> {
         let table = &self.table;
         let (mut rows, notes) = match &table.capture {
             Some(capture) => {
                 check_capture(table)?;
-                let (file, turns) = (self.open_capture(capture)?, turns(&self.radar));
-                let (rows, notes) = capture.read(file, self.profile.as_ref(), &turns, table.beat_rises())?;
-                (of_pairs(rows)?, notes)
+                let (file, pair_turns) = (self.open_capture(capture)?, pair_turns(&self.radar));
+                let (rows, notes) = capture.read(file, self.profile.as_ref(), &pair_turns, table.beat_rises())?;
+                (pairs_to_rows(rows)?, notes)
             }
-            None => self.arrays()?,
+            None => self.read_arrays()?,
         };
         if let Some(((element, sample), _)) = rows.indexed_iter().find(|(_, v)| !v.is_finite()) {
             let message = format!("sample {sample} of element {element} is not finite; expected finite numbers only");
             return Err(Fault::Data(message));
         }
-        table.calibration.take_off(&mut rows)?;
+        table.calibration.divide_out(&mut rows)?;
         self.signs.apply(&mut rows);
         if table.reverse_elements && !table.counts_pairs() {
             rows.invert_axis(Axis(0));
         }
-        Ok((self.sorted(self.in_element_order(rows)?)?, notes))
+        Ok((self.place_rows(self.in_element_order(rows)?)?, notes))
     }
 
-    /// `rows` in the order of elements from the left, where the file counts transmitters and receivers and the text gives their places; zeros at
-    /// gaps.
+    /// Sorts rows of pairs by the places of their elements, from the left, with zeros at gaps. Other rows stay as they are.
     fn in_element_order(&self, rows: Array2<Complex64>) -> Result<Array2<Complex64>, Fault> {
         let antennas = self.radar.antennas.as_ref().filter(|_| self.table.counts_pairs());
         let Some(antennas) = antennas else { return Ok(rows) };
@@ -63,86 +59,82 @@ impl Described<'_> {
     }
 
     /// Every loop of a frame, `[loops, elements, samples]`, with the signs of the maps' formula.
-    ///
-    /// # Errors
-    /// [`Fault`] names the key.
-    pub fn every_loop(&self) -> Result<Array3<Complex64>, Fault> {
+    pub fn read_loops(&self) -> Result<Array3<Complex64>, Fault> {
         let mut loops = match &self.table.capture {
             Some(capture) => {
                 check_capture(&self.table)?;
                 capture.loops(self.open_capture(capture)?, self.profile.as_ref())?
             }
-            None => self.array_loops()?,
+            None => self.read_array_loops()?,
         };
         self.signs.apply(&mut loops);
         Ok(loops)
     }
 
-    /// Every loop of an array's frame, `[loops, elements, samples]`: elements are the pairs of the transmitters and receivers taken.
-    fn array_loops(&self) -> Result<Array3<Complex64>, Fault> {
+    /// Every loop of an array's frame, `[loops, elements, samples]`. Elements are the pairs of the selected transmitters and receivers.
+    fn read_array_loops(&self) -> Result<Array3<Complex64>, Fault> {
         let table = &self.table;
         let mut kinds = table.axes.clone().unwrap_or_default();
         if !kinds.contains(&AxisKind::Chirp) {
             let expected = "an axis \"chirp\": one chirp tells no velocity";
             return Err(Fault::key("recording.axes", "has no loops", expected));
         }
-        let mut numbers = self.numbers(table.array.as_deref())?;
-        numbers.mend_signs();
-        let numbers = in_turn(one_frame(numbers, &mut kinds, table.frame)?, &mut kinds, table.transmitters_in_turn)?;
-        let loops = loops(numbers, &kinds)?;
+        let mut numbers = self.read_numbers(table.array.as_deref())?;
+        numbers.restore_signs();
+        let numbers = split_turns(frame_of(numbers, &mut kinds, table.frame)?, &mut kinds, table.transmitters_in_turn)?;
+        let loops = into_loops(numbers, &kinds)?;
         let (count, transmitters, receivers, samples) = loops.dim();
         let pairs = transmitters * receivers;
-        // The same numbers in the same order: the shape can't fail to fit.
         let rows = loops
             .into_shape_with_order((count, pairs, samples))
             .map_err(|e| Fault::key("recording.axes", e.to_string(), "others"))?;
-        Ok(match taken(table, pairs, [transmitters, receivers])? {
+        Ok(match taken_rows(table, pairs, [transmitters, receivers])? {
             Some(places) => rows.select(Axis(1), &places),
             None => rows,
         })
     }
 
-    /// Number of frames in the arrays.
+    /// Number of frames in the array; 1 without an axis of frames.
     pub fn count_frames(&self) -> Result<u64, Fault> {
         let table = &self.table;
         let place = table.axes.iter().flatten().position(|kind| *kind == AxisKind::Frame);
         let Some(place) = place else { return Ok(1) };
-        let numbers = self.numbers(table.array.as_deref().or(table.first.as_deref()))?;
+        let numbers = self.read_numbers(table.array.as_deref().or(table.first.as_deref()))?;
         Ok(numbers.shape().get(place).map_or(1, |frames| *frames as u64))
     }
 
-    /// The file of a capture, with those that go on from it.
+    /// Opens the files of a capture as one.
     pub fn open_capture(&self, capture: &Capture) -> Result<Box<dyn Source>, Fault> {
         let Capture { more_files, chips, .. } = capture;
         if !(more_files.is_empty() || chips.is_empty()) {
             return Err(Fault::key("recording.capture.chips", "stands beside more_files", "one of the two"));
         }
-        Ok(opened(&self.table.file, more_files, chips, |name| (self.open)(name))?)
+        Ok(open_joined(&self.table.file, more_files, chips, |name| (self.open)(name))?)
     }
 
-    fn arrays(&self) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
-        let Table { axes, array, first, last, .. } = &self.table;
+    /// Reads the array, or the arrays of both ends, `[elements, samples]`, and sentences on the samples.
+    fn read_arrays(&self) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+        let RecordingTable { axes, array, first, last, .. } = &self.table;
         let Some(axes) = axes else {
             let kinds = "a list of \"element\", \"sample\", \"chirp\" and so on, one for each axis of the array";
             return Err(Fault::key("recording.axes", "is missing", kinds));
         };
         match (array, first, last) {
-            (array, None, None) => self.array(array.as_deref(), axes.clone()),
+            (array, None, None) => self.array_of(array.as_deref(), axes.clone()),
             (None, Some(first), Some(last)) => {
-                let (first, mut notes) = self.array(Some(first), axes.clone())?;
-                let (last, of_last) = self.array(Some(last), axes.clone())?;
+                let (first, mut notes) = self.array_of(Some(first), axes.clone())?;
+                let (last, last_notes) = self.array_of(Some(last), axes.clone())?;
                 if first.dim() != last.dim() {
                     let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
                     return Err(Fault::count("numbers in \"last\"", last.len(), &expected, last.dim()));
                 }
-                notes.extend(of_last);
+                notes.extend(last_notes);
                 notes.dedup();
-                // Equal shapes join.
                 let rows = concatenate(Axis(0), &[first.view(), last.view()]);
-                let unlike = |e: ShapeError| {
+                let mismatch = |e: ShapeError| {
                     Fault::key("recording.last", format!("does not join ({e})"), "the shape of \"first\"")
                 };
-                Ok((rows.map_err(unlike)?, notes))
+                Ok((rows.map_err(mismatch)?, notes))
             }
             _ => {
                 Err(Fault::key("recording.array", "stands beside half a pair", "either array, or both first and last"))
@@ -150,51 +142,52 @@ impl Described<'_> {
         }
     }
 
-    /// The array called `key`, `[elements, samples]`, and sentences on its samples.
-    fn array(&self, key: Option<&str>, mut kinds: Vec<AxisKind>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+    /// Reads the array called `key`, `[elements, samples]`, and sentences on its samples.
+    fn array_of(&self, key: Option<&str>, mut kinds: Vec<AxisKind>) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
         let table = &self.table;
-        let mut numbers = self.numbers(key)?;
-        let mut notes: Vec<String> = numbers.mend_signs().into_iter().collect();
-        let numbers = one_frame(numbers, &mut kinds, table.frame)?;
-        notes.extend(told_of_real(&numbers, &kinds));
-        let numbers = in_turn(numbers, &mut kinds, table.transmitters_in_turn)?;
+        let mut numbers = self.read_numbers(key)?;
+        let mut notes: Vec<String> = numbers.restore_signs().into_iter().collect();
+        let numbers = frame_of(numbers, &mut kinds, table.frame)?;
+        notes.extend(real_samples_note(&numbers, &kinds));
+        let numbers = split_turns(numbers, &mut kinds, table.transmitters_in_turn)?;
         let len = |kind| kinds.iter().position(|k| *k == kind).map_or(1, |place| numbers.shape()[place]);
         let sizes = [len(AxisKind::Transmitter), len(AxisKind::Receiver)];
-        let rows = if table.chirp == Some(Chirp::Joined(Join::Strongest)) && kinds.contains(&AxisKind::Chirp) {
-            let (rows, told) = self.joined(numbers, &kinds)?;
-            notes.extend(told);
+        let rows = if table.chirp == Some(ChirpChoice::Joined(Join::Strongest)) && kinds.contains(&AxisKind::Chirp) {
+            let (rows, notes_on_loops) = self.join_loops(numbers, &kinds)?;
+            notes.extend(notes_on_loops);
             rows
         } else {
             arrange(numbers, &kinds, table.chirp)?
         };
-        let rows = match taken(table, rows.nrows(), sizes)? {
+        let rows = match taken_rows(table, rows.nrows(), sizes)? {
             Some(places) => rows.select(Axis(0), &places),
             None => rows,
         };
         Ok((rows, notes))
     }
 
-    /// The strongest Doppler cell of each range bin, `[elements, samples]`, and sentences on it.
-    fn joined(&self, numbers: Numbers, kinds: &[AxisKind]) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
+    /// Joins the loops of an array by the strongest Doppler cells, `[elements, samples]`, and returns sentences on it.
+    fn join_loops(&self, numbers: Numbers, kinds: &[AxisKind]) -> Result<(Array2<Complex64>, Vec<String>), Fault> {
         let chirps = kinds.iter().position(|kind| *kind == AxisKind::Chirp).map_or(1, |place| numbers.shape()[place]);
-        let loops = loops(numbers, kinds)?;
-        let (taken, transmitters, _, _) = loops.dim();
-        let left_out = (taken < chirps).then(|| {
+        let loops = into_loops(numbers, kinds)?;
+        let (read, transmitters, _, _) = loops.dim();
+        let left_out = (read < chirps).then(|| {
             format!(
-                "The first {taken} of {chirps} chirps are joined; the others are left out, since the frame is too large."
+                "The first {read} of {chirps} chirps are joined; the others are left out, since the frame is too large."
             )
         });
         let all: Vec<usize> = (0..transmitters).collect();
         let chosen = self.table.transmitters_taken.as_deref().unwrap_or(&all);
         if chosen.iter().any(|t| *t >= transmitters) {
-            return Err(no_such("recording.transmitters_taken", chosen, transmitters));
+            return Err(no_such_index("recording.transmitters_taken", chosen, transmitters));
         }
-        let (rows, note) = strongest_of(loops, chosen, &turns(&self.radar));
+        let (rows, note) = join_strongest(loops, chosen, &pair_turns(&self.radar));
         let notes: Vec<String> = note.into_iter().chain(left_out).collect();
-        Ok((of_pairs(rows)?, notes))
+        Ok((pairs_to_rows(rows)?, notes))
     }
 
-    fn numbers(&self, key: Option<&str>) -> Result<Numbers, Fault> {
+    /// Reads the array called `key`; `None` for the one array of an `.npy` file.
+    fn read_numbers(&self, key: Option<&str>) -> Result<Numbers, Fault> {
         let table = &self.table;
         let open = || (self.open)(&table.file);
         let extension = table.extension();
@@ -216,25 +209,25 @@ impl Described<'_> {
         }
     }
 
-    /// The rows of the file in their places of the array.
-    fn sorted(&self, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
-        let Described { table, radar, .. } = self;
+    /// Places the rows of the file in the whole array, with zeros for missing elements.
+    fn place_rows(&self, rows: Array2<Complex64>) -> Result<Recorded, Fault> {
+        let RecordingText { table, radar, .. } = self;
         if rows.ncols() != radar.samples {
             let expected = format!("{} as radar.samples says", radar.samples);
             return Err(Fault::count("samples", rows.ncols(), &expected, rows.dim()));
         }
-        let covered = table.covered(radar);
+        let covered = table.covered_elements(radar);
         let missing: HashSet<usize> = table.missing.iter().copied().collect();
         let present: Vec<usize> = covered.iter().copied().filter(|n| !missing.contains(n)).collect();
         let places = [&covered, &present].into_iter().find(|places| places.len() == rows.nrows()).ok_or_else(|| {
             let fewer =
                 (present.len() < covered.len()).then(|| format!(", or {} without the missing ones", present.len()));
-            let whose = if table.covers() == Covers::All {
+            let source = if table.covers() == CoveredElements::All {
                 "radar.elements says"
             } else {
                 "radar.end_elements says for two ends"
             };
-            let expected = format!("{} as {whose}{}", covered.len(), fewer.unwrap_or_default());
+            let expected = format!("{} as {source}{}", covered.len(), fewer.unwrap_or_default());
             Fault::count("elements", rows.nrows(), &expected, rows.dim())
         })?;
         let mut samples = Array2::zeros((radar.elements, radar.samples));
@@ -243,34 +236,35 @@ impl Described<'_> {
         }
         let signal = BeatSignal { samples };
         Ok(match table.covers() {
-            Covers::All => Recorded::All(signal),
-            Covers::Ends => Recorded::Ends(signal.two_ends(radar)),
+            CoveredElements::All => Recorded::All(signal),
+            CoveredElements::Ends => Recorded::Ends(signal.two_ends(radar)),
         })
     }
 }
 
 /// The samples of pairs, `[transmitters, receivers, samples]`, as `[elements, samples]`.
-fn of_pairs(rows: Array3<Complex64>) -> Result<Array2<Complex64>, Fault> {
+fn pairs_to_rows(rows: Array3<Complex64>) -> Result<Array2<Complex64>, Fault> {
     let kinds = [AxisKind::Transmitter, AxisKind::Receiver, AxisKind::Sample];
     arrange(Numbers::Complex(rows.into_dyn()), &kinds, None)
 }
 
-/// Turns of phase across the array of each pair at a cosine of 1, transmitter by transmitter.
-fn turns(radar: &Radar) -> Vec<f64> {
+/// Phase of each pair for an echo at a cosine of 1, in turns, transmitter by transmitter.
+fn pair_turns(radar: &Radar) -> Vec<f64> {
     let Some(antennas) = &radar.antennas else {
         return (0..radar.elements).map(|n| 2.0 * radar.element_x_metres(n) / radar.wavelength_metres()).collect();
     };
-    let of = |t: &f64| antennas.receiver_x_metres().iter().map(move |r| t + r).collect::<Vec<f64>>();
-    antennas.transmitter_x_metres().iter().flat_map(of).map(|sum| sum / radar.wavelength_metres()).collect()
+    let sums = |t: &f64| antennas.receiver_x_metres().iter().map(move |r| t + r).collect::<Vec<f64>>();
+    antennas.transmitter_x_metres().iter().flat_map(sums).map(|sum| sum / radar.wavelength_metres()).collect()
 }
 
-fn check_capture(table: &Table) -> Result<(), Fault> {
+/// Refuses keys and files of arrays beside a table `[recording.capture]`.
+fn check_capture(table: &RecordingTable) -> Result<(), Fault> {
     if ["npz", "npy", "mat", "h5", "hdf5"].contains(&table.extension().as_str()) {
         return Err(Fault::key("[recording.capture]", "is there", "it only beside a raw capture, such as a .bin file"));
     }
     let arrays = [("array", table.array.is_some()), ("first", table.first.is_some()), ("last", table.last.is_some())];
     let others = [("axes", table.axes.is_some()), ("chirp", table.chirp.is_some()), ("frame", table.frame.is_some())];
-    if let Some((key, _)) = arrays.iter().chain(&others).find(|(_, said)| *said) {
+    if let Some((key, _)) = arrays.iter().chain(&others).find(|(_, is_present)| *is_present) {
         return Err(Fault::key(
             &format!("recording.{key}"),
             "is there",
@@ -280,21 +274,25 @@ fn check_capture(table: &Table) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Places in `rows` of the transmitters and receivers that form the line, of those that the array counts; `None` for all.
-fn taken(table: &Table, rows: usize, [transmitters, receivers]: [usize; 2]) -> Result<Option<Vec<usize>>, Fault> {
-    let Table { transmitters_taken, receivers_taken, .. } = table;
+/// Indices among the `rows` of the pairs of the selected transmitters and receivers; `None` where all are used.
+fn taken_rows(
+    table: &RecordingTable,
+    rows: usize,
+    [transmitters, receivers]: [usize; 2],
+) -> Result<Option<Vec<usize>>, Fault> {
+    let RecordingTable { transmitters_taken, receivers_taken, .. } = table;
     if transmitters_taken.is_none() && receivers_taken.is_none() {
         return Ok(None);
     }
-    let of = |key: &str, taken: &Option<Vec<usize>>, count: usize| match taken {
+    let selected = |key: &str, indices: &Option<Vec<usize>>, count: usize| match indices {
         None => Ok((0..count).collect::<Vec<_>>()),
-        Some(taken) if taken.iter().all(|n| *n < count) => Ok(taken.clone()),
-        Some(taken) => Err(no_such(key, taken, count)),
+        Some(indices) if indices.iter().all(|n| *n < count) => Ok(indices.clone()),
+        Some(indices) => Err(no_such_index(key, indices, count)),
     };
-    let receivers_taken = of("recording.receivers_taken", receivers_taken, receivers)?;
-    let of_one = |t: &usize| receivers_taken.iter().map(|r| t * receivers + r).collect::<Vec<usize>>();
-    let transmitters = of("recording.transmitters_taken", transmitters_taken, transmitters)?;
-    let places: Vec<usize> = transmitters.iter().flat_map(of_one).collect();
+    let receivers_taken = selected("recording.receivers_taken", receivers_taken, receivers)?;
+    let pairs_of = |t: &usize| receivers_taken.iter().map(|r| t * receivers + r).collect::<Vec<usize>>();
+    let transmitters = selected("recording.transmitters_taken", transmitters_taken, transmitters)?;
+    let places: Vec<usize> = transmitters.iter().flat_map(pairs_of).collect();
     if places.iter().any(|place| *place >= rows) {
         let expected = "it only where axes count transmitters and receivers";
         return Err(Fault::key("recording.transmitters_taken", "is there", expected));
@@ -302,13 +300,13 @@ fn taken(table: &Table, rows: usize, [transmitters, receivers]: [usize; 2]) -> R
     Ok(Some(places))
 }
 
-fn no_such(key: &str, taken: &[usize], count: usize) -> Fault {
-    Fault::key(key, format!("is {taken:?}"), format!("numbers from 0 to {}, each once", count.saturating_sub(1)))
+fn no_such_index(key: &str, indices: &[usize], count: usize) -> Fault {
+    Fault::key(key, format!("is {indices:?}"), format!("numbers from 0 to {}, each once", count.saturating_sub(1)))
 }
 
 /// A note on real samples, or on complex ones whose imaginary parts are zero.
-fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
-    let told = match numbers {
+fn real_samples_note(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
+    let note = match numbers {
         Numbers::Real(_) if kinds.contains(&AxisKind::Iq) => return None,
         Numbers::Real(_) => "Samples are real: the positive half of their spectrum is taken (the analytic signal).",
         Numbers::Complex(values) if values.iter().all(|v| v.im == 0.0) && values.iter().any(|v| v.re != 0.0) => {
@@ -317,5 +315,5 @@ fn told_of_real(numbers: &Numbers, kinds: &[AxisKind]) -> Option<String> {
         }
         Numbers::Complex(_) => return None,
     };
-    Some(told.to_owned())
+    Some(note.to_owned())
 }

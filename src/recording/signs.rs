@@ -1,5 +1,4 @@
-//! The sign of a recording's phases, and the sample at which its carrier was measured: from the samples of a physical radar to those that the maps'
-//! formula takes.
+//! The signs and the carrier by which the samples of a physical radar become those of the maps' formula.
 //!
 //! A physical radar's sample `n` has the phase `s 2 pi f_n (R_t + R_r) / c`, where R_t and R_r are the distances from the transmitter
 //! and from the receiver. The sign `s` is one for all samples, and `f_n` rises or falls by `B / N` from sample to sample. The program's
@@ -9,23 +8,23 @@
 //!   where `R_t = R_r = R`.
 //! * one-way: `-2 pi (f - 2 B n / N) R / c`. Conjugated, and put in the order of falling frequency, physical samples are
 //!   `-2 pi (F - B n / N) (R_t + R_r) / c`. For plane waves over virtual elements at the sum of both positions the phase from element
-//!   to element is the same in the middle of the chirp where `f - B = F - B / 2`. Beside the middle it is not: the program's changes
-//!   twice as fast, so that it expects echoes to migrate through twice as many range bins along the array.
+//!   to element is the same in the middle of the chirp where `f - B = F - B / 2`. Elsewhere the program's changes twice as fast from sample to
+//!   sample: its formula has echoes migrate through twice as many range bins along the array.
 
 use super::Fault;
-use super::said_recording::{BeatSign, CarrierAt, Sweep, Table};
+use super::recording_table::{BeatSign, CarrierAt, RecordingTable, Sweep};
 use crate::radar::{Carrier, Radar};
 use ndarray::{Array, Axis, Dimension};
 use num_complex::Complex64;
 
-/// The format of today's texts; texts that name none are of format 1.
+/// The newest format of a recording's TOML. A text without the key is of format 1.
 pub const FORMAT: u32 = 3;
 
-pub(super) fn oldest() -> u32 {
+pub(super) fn first_format() -> u32 {
     1
 }
 
-/// Changes of the samples and of the carrier that bring a recording to the maps' formula.
+/// Changes of samples and carrier by which a recording fits the maps' formula.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Signs {
     pub conjugates: bool,
@@ -35,7 +34,7 @@ pub(super) struct Signs {
 }
 
 impl Signs {
-    /// Changes samples, whose last axis counts them within a chirp.
+    /// Applies the changes to samples, whose last axis is that within a chirp.
     pub fn apply<D: Dimension>(self, samples: &mut Array<Complex64, D>) {
         if self.conjugates {
             samples.mapv_inplace(|v| v.conj());
@@ -46,14 +45,13 @@ impl Signs {
     }
 }
 
-impl Table {
-    /// The changes that signs and carrier ask of the samples of `radar`, whose carrier is as the text says it. The carrier of a `.cfg` is that in the
-    /// middle of the samples.
+impl RecordingTable {
+    /// The changes by the keys of the table. `radar` has the carrier of the text, or that of the `.cfg` in the middle of the samples.
     ///
     /// # Errors
-    /// [`Fault::Key`] names the key that is missing, or that does not go with the others.
+    /// [`Fault::Key`] names the key that is missing or contradicts the others.
     pub fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
-        let Table { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
+        let RecordingTable { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
         let key = |name: &str| format!("recording.{name}");
         let is_there = |name: &str, expected: &str| Err(Fault::key(&key(name), "is there", expected));
         if has_profile && carrier_at == Some(CarrierAt::FirstSample) {
@@ -67,7 +65,7 @@ impl Table {
                     ("beat_sign", beat_sign.is_some()),
                     ("sweep", sweep.is_some()),
                 ];
-                if let Some((name, _)) = named.into_iter().find(|(_, said)| *said) {
+                if let Some((name, _)) = named.into_iter().find(|(_, is_present)| *is_present) {
                     return is_there(name, "it only below format = 2, a line above [radar]");
                 }
                 let conjugates = conjugate.unwrap_or(false);
@@ -93,31 +91,31 @@ impl Table {
                 return Err(Fault::key(&key("carrier_at"), "is missing", expected));
             }
         };
-        Ok(physical(radar, at, beat, sweep.unwrap_or_default()))
+        Ok(physical_signs(radar, at, beat, sweep.unwrap_or_default()))
     }
 }
 
-/// The changes of a physical radar's samples.
-fn physical(radar: &Radar, at: CarrierAt, beat: BeatSign, sweep: Sweep) -> Signs {
+/// The changes of a physical radar's samples (formats 2 and 3).
+fn physical_signs(radar: &Radar, at: CarrierAt, beat: BeatSign, sweep: Sweep) -> Signs {
     let rises = sweep == Sweep::Up;
-    // The beat's phase is the carrier's less what it was at the first sample: both signs are one where the frequency rises.
+    // The phase of a sample is that of the carrier plus that of the beat. Both have the same sign where the frequency rises.
     let phase_is_positive = (beat == BeatSign::Positive) == rises;
     let wants_positive = radar.carrier == Carrier::TwoWay;
     let conjugates = phase_is_positive != wants_positive;
-    // The program's beat turns forwards: its frequency rises where phases are positive, and falls where they are negative.
+    // In the maps' formula the beat frequency is positive. So the chirp's frequency rises where phases are positive, and falls elsewhere.
     let reverses_samples = rises != wants_positive && radar.samples > 1;
     let per_sample = radar.bandwidth_hz / radar.samples as f64;
-    let (last, way) = ((radar.samples - 1) as f64, if rises { 1.0 } else { -1.0 });
+    let (last, direction) = ((radar.samples - 1) as f64, if rises { 1.0 } else { -1.0 });
     let first_hz = match at {
         CarrierAt::FirstSample => radar.carrier_hz,
-        CarrierAt::Middle => radar.carrier_hz - way * radar.bandwidth_hz / 2.0,
+        CarrierAt::Middle => radar.carrier_hz - direction * radar.bandwidth_hz / 2.0,
     };
-    let first_taken_hz = if reverses_samples { first_hz + way * per_sample * last } else { first_hz };
+    let new_first_hz = if reverses_samples { first_hz + direction * per_sample * last } else { first_hz };
     let carrier_hz = match radar.carrier {
         _ if radar.samples == 1 => radar.carrier_hz,
-        Carrier::TwoWay => first_taken_hz,
-        // Halfway the program has taken off twice what the radar has.
-        Carrier::OneWay => first_taken_hz + per_sample * last / 2.0,
+        Carrier::TwoWay => new_first_hz,
+        // By the middle of the chirp the formula's frequency has fallen by twice as much as the radar's.
+        Carrier::OneWay => new_first_hz + per_sample * last / 2.0,
     };
     Signs { conjugates, reverses_samples, carrier_hz }
 }
@@ -135,21 +133,21 @@ mod tests {
         table(keys).signs(2, radar, false).unwrap()
     }
 
-    fn table(keys: &str) -> Table {
+    fn table(keys: &str) -> RecordingTable {
         toml::from_str(&format!("file = \"a.npz\"\n{keys}")).unwrap()
     }
 
-    const FIRST: &str = "carrier_at = \"first-sample\"\n";
+    const FIRST_SAMPLE: &str = "carrier_at = \"first-sample\"\n";
     const PLUS: &str = "beat_sign = \"+\"\n";
 
     #[test]
-    fn keys_that_do_not_go_together_are_told() {
-        let all = &format!("{FIRST}{PLUS}");
+    fn contradicting_keys_are_refused() {
+        let all = &format!("{FIRST_SAMPLE}{PLUS}");
         for (format, keys, part) in [
             (1, all.as_str(), "recording.carrier_at is there"),
             (4, all, "format is 4; expected 1, 2 or 3"),
             (2, &format!("{all}conjugate = true"), "beat_sign in its place"),
-            (2, FIRST, "recording.beat_sign is missing"),
+            (2, FIRST_SAMPLE, "recording.beat_sign is missing"),
             (2, PLUS, "recording.carrier_at is missing"),
         ] {
             let message = table(keys).signs(format, &radar(Carrier::OneWay), false).unwrap_err().to_string();

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// A way to evaluate equation 3.3.
+/// An algorithm that evaluates equation 3.3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Algorithm {
-    /// The formula word for word ([`super::direct`]), rounding noise included.
+    /// The formula as written ([`super::direct`]), rounding noise included.
     Direct,
     /// Phases reduced to turns ([`super::exact`]).
     Exact,
@@ -16,7 +16,7 @@ pub enum Algorithm {
     Split,
     /// Spread on a range grid and transformed ([`super::gridded`]).
     Gridded,
-    /// Range profiles from three Dirichlet kernels, on few rows ([`super::closed_form`]). Where samples are asked for, phasor split.
+    /// Range profiles from three Dirichlet kernels, on few rows ([`super::closed_form`]). For samples, [`Algorithm::Split`].
     ClosedForm,
 }
 
@@ -56,7 +56,7 @@ impl FromStr for Algorithm {
     }
 }
 
-/// Precision of everything after the phase, which is always formed in f64.
+/// Precision of all computations after that of the phase, which is in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {

@@ -11,8 +11,8 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Beat signal of a scene received by `array`, with the scene's ghosts and interferer, over the named floor. `seed` picks the floor's noise,
-/// which does not depend on an element's gain; dead elements receive nothing.
+/// Beat signal of a scene at `array`, with the scene's ghosts and interferer, over `floor` with noise by `seed`. The noise does not depend on an
+/// element's gain. The samples of dead elements are zeros.
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate_built(
@@ -25,7 +25,7 @@ pub fn simulate_built(
     simulate_built_for(&Task::default(), radar, scene, array, floor, seed).map_err(Unfinished::of_scene)
 }
 
-/// [`simulate_built`], unless `task` is cancelled before it is done. Noise comes after interference, gains and phases.
+/// As [`simulate_built`], with an error after a cancellation of `task`. Noise is added after interference, gains and phases.
 pub(super) fn simulate_built_for(
     task: &Task,
     radar: &Radar,
@@ -40,7 +40,7 @@ pub(super) fn simulate_built_for(
     let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
     let mut signal =
         BeatSignal { samples: samples_of(radar, array, (&echoing).into(), &plan, 0..radar.elements, task) };
-    hear(radar, scene, array, &mut signal);
+    disturb(radar, scene, array, &mut signal);
     task.check()?;
     if let Some(variance) = floor::noise_variance(radar, &echoing, floor) {
         floor::add_noise(&mut signal, &variance, seed);
@@ -53,7 +53,7 @@ pub(super) fn simulate_built_for(
     Ok(signal)
 }
 
-/// Samples are for any use and kept in f64. Their errors must not show under any normalisation; over a loud floor none may exceed 1e-12.
+/// Tolerance of the samples over `floor`: errors must be invisible in maps of any normalisation.
 pub(super) fn tolerance(floor: Floor) -> f64 {
     match floor {
         Floor::Exact => BEST_TOLERANCE,
@@ -63,14 +63,14 @@ pub(super) fn tolerance(floor: Floor) -> f64 {
 }
 
 /// Adds the scene's interferer at the elements of `array`, then applies gain and phase of each element.
-pub(super) fn hear(radar: &Radar, scene: &Scene, array: &BuiltArray, signal: &mut BeatSignal) {
+pub(super) fn disturb(radar: &Radar, scene: &Scene, array: &BuiltArray, signal: &mut BeatSignal) {
     if let Some(interferer) = &scene.disturbances.interferer {
         add_interference(radar, array, interferer, signal);
     }
     apply_responses(array, signal);
 }
 
-/// Applies gain and phase of each element; the samples of an element without errors keep their bits.
+/// Multiplies by gain and phase of each element; the samples of an element without errors keep their bits.
 pub fn apply_responses(array: &BuiltArray, signal: &mut BeatSignal) {
     for (mut samples, error) in signal.samples.outer_iter_mut().zip(&array.elements) {
         if error.dead || error.gain.0 != 0.0 || error.phase_degrees != 0.0 {
@@ -83,8 +83,8 @@ pub fn apply_responses(array: &BuiltArray, signal: &mut BeatSignal) {
 /// Order of the receiver's low-pass filter: gain `1 / sqrt(1 + (2f)^(2 n))` at f turns a sample.
 const FILTER_ORDER: i32 = 8;
 
-/// Adds the signal of `interferer` at each element: the difference of both frequencies is a chirp that passes zero at `crossing`, and the
-/// receiver's filter while it is below half a turn a sample. Propagation is one-way for both carriers.
+/// Adds the signal of `interferer` at each element. The difference between its frequency and the radar's is a chirp, zero at `crossing`, which passes
+/// the receiver's filter below half a turn a sample. Propagation is one-way for both carriers.
 pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interferer, signal: &mut BeatSignal) {
     let samples = radar.samples as f64;
     let sweep = 1.0 / (interferer.duration * samples);
@@ -94,17 +94,17 @@ pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interfer
         Complex64::from_polar(gain, TAU * (0.5 * sweep * since * since).fract())
     };
     let chirp: Vec<Complex64> = (0..radar.samples).map(beat).collect();
-    let way = radar.carrier_turns_per_metre().signum();
-    signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut heard)| {
+    let sign = radar.carrier_turns_per_metre().signum();
+    signal.samples.outer_iter_mut().into_par_iter().enumerate().for_each(|(n, mut samples)| {
         let [_, [receiver_x, receiver_y]] = array.pair(radar, n).places_metres();
         let across = interferer.x_metres - receiver_x;
         let ahead = interferer.y_metres - receiver_y;
         let distance = across.hypot(ahead);
-        let left = radar.pattern().map_or(1.0, |pattern| pattern.amplitude(ahead / distance));
-        let amplitude = left * radar.transmit_power_watts * interferer.strength / distance;
-        let turns = (way * distance / radar.wavelength_metres()).fract();
+        let gain = radar.pattern().map_or(1.0, |pattern| pattern.amplitude(ahead / distance));
+        let amplitude = gain * radar.transmit_power_watts * interferer.strength / distance;
+        let turns = (sign * distance / radar.wavelength_metres()).fract();
         let factor = Complex64::from_polar(amplitude, TAU * turns);
-        heard.iter_mut().zip(&chirp).for_each(|(v, c)| *v += factor * c);
+        samples.iter_mut().zip(&chirp).for_each(|(v, c)| *v += factor * c);
     });
 }
 
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dead_element_hears_nothing() {
+    fn a_dead_element_has_zeros() {
         let (radar, scene) = (small(), two_points());
         let ideal = simulate(&radar, &scene, Floor::Thesis, 3).unwrap();
         let same = simulate_built(&radar, &scene, &BuiltArray::default(), Floor::Thesis, 3).unwrap();
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn an_element_off_the_line_hears_what_stands_that_much_nearer() {
+    fn an_element_off_the_line_has_the_phase_of_its_distance() {
         let radar = small();
         let array = BuiltArray::default().bent(&radar, 3.0);
         let forward = array.forward_metres(7);
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pattern_takes_from_a_post_what_it_takes_from_a_point() {
+    fn a_pattern_weakens_a_post_as_a_point() {
         let budget = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
         let (isotropic, narrow) = (small(), Radar { budget: Some(budget), ..small() });
         let pattern = narrow.pattern().unwrap();

@@ -1,14 +1,14 @@
 //! Samples of several chirps while objects move.
 //!
-//! Within a chirp the range of every echo runs in a straight line, from its value at the beginning of the chirp to that at the beginning of the next:
-//! `R + D n / N` at sample `n` of `N`, put into equation 3.3 as it stands. The curvature of the range is left out: it is at most `v^2 Tc^2 / (8 R)`
-//! metres for a speed `v` at range `R` and an interval `Tc`, 3e-9 m for 20 m/s at 10 m and 25.6 microseconds. Amplitudes are those of the beginning
-//! of the chirp. Echoes of a body that appear or vanish between two chirps stand still in between.
+//! Within a chirp the range of every echo is linear in time, from its value at the beginning of the chirp to that at the beginning of the next:
+//! `R + D n / N` at sample `n` of `N` in equation 3.3. The neglected curvature of the range is at most `v^2 Tc^2 / (8 R)` metres for a speed `v` at
+//! range `R` and an interval `Tc`: 3e-9 m for 20 m/s at 10 m and 25.6 microseconds. Amplitudes are those at the beginning of the chirp. Echoes of a
+//! body that appear or vanish between two chirps have a constant range.
 //!
 //! Objects at rest are evaluated once, by the algorithms of a single chirp. Without moving objects the first chirp has the bits of
 //! [`simulate_ends_for`](super::simulate_ends_for). Each chirp has its own noise. An interferer is the same in every chirp.
 
-use super::built::{hear, tolerance};
+use super::built::{disturb, tolerance};
 use super::path::Path;
 use super::phase::{Echo, EchoModel};
 use super::plan::amplitude_bound;
@@ -24,28 +24,28 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Largest number of elements of each end, the outermost, whose chirps are evaluated.
+/// Most elements of each end, the outermost, whose chirps are evaluated.
 pub const MAX_END_ELEMENTS: usize = 4;
 
 /// Samples between exact evaluations of a running phasor.
 const RESTART_SAMPLES: usize = 128;
 
-/// Independent phasor recurrences, so that no sample waits for its predecessor.
+/// Number of independent phasor recurrences, which hide the latency of a multiplication.
 const LANES: usize = 8;
 
-/// Noise streams of one chirp: the largest number of elements.
-const STREAMS: usize = 65536;
+/// Noise streams of one chirp: the largest number of elements of a radar.
+const STREAMS_PER_CHIRP: usize = 65536;
 
 /// Samples of all chirps at the outer elements of both ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChirpSamples {
-    /// The samples, `[chirps, elements, samples]`.
+    /// `[chirps, elements, samples]`.
     pub samples: Array3<Complex64>,
 }
 
 impl ChirpSamples {
     /// Removes static clutter: subtracts the mean over all chirps from each element and sample.
-    pub fn take_out_static(&mut self) {
+    pub fn remove_static(&mut self) {
         if let Some(mean) = self.samples.mean_axis(Axis(0)) {
             self.samples.outer_iter_mut().for_each(|mut chirp| chirp -= &mean);
         }
@@ -58,9 +58,9 @@ pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
     [0..count, radar.elements - count..radar.elements]
 }
 
-/// Samples of every chirp of `radar` over the named floor, unless `task` is cancelled before they are done; `seed` picks its noise.
+/// Samples of every chirp of `radar` over `floor`, with noise by `seed`.
 /// # Errors
-/// [`Unfinished`](super::Unfinished) when the scene can't be simulated, at the first chirp or at the last, and soon after the task was cancelled.
+/// [`Unfinished`](super::Unfinished) when the scene can't be simulated, at the first chirp or at the last, and after a cancellation of `task`.
 pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<ChirpSamples> {
     scene.validate(radar)?;
     let array = &*scene.disturbances.elements_of(radar);
@@ -70,7 +70,7 @@ pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Flo
         scene.at(radar.chirps as f64 * radar.chirp_interval_seconds).validate(radar)?;
     }
     let ranges = chirp_elements(radar);
-    let base = at_rest(task, radar, scene, &moving.rest(radar, scene), floor, &ranges);
+    let base = rest_samples(task, radar, scene, &moving.rest(radar, scene), floor, &ranges);
     let variance = floor::noise_variance(radar, &Echoing::of(radar, scene), floor);
     let mut samples = Array3::zeros((radar.chirps, base.nrows(), radar.samples));
     let elements: Vec<usize> = ranges.iter().cloned().flatten().collect();
@@ -85,7 +85,7 @@ pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Flo
             let mut samples = samples.row_mut(row);
             if let Some(variance) = &variance {
                 let deviation = variance[*n].sqrt();
-                let noise = floor::unit_noise(seed, chirp * STREAMS + n);
+                let noise = floor::unit_noise(seed, chirp * STREAMS_PER_CHIRP + n);
                 samples.iter_mut().zip(noise).for_each(|(sample, noise)| *sample += noise * deviation);
             }
             if array.element(*n).dead {
@@ -97,11 +97,12 @@ pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Flo
     Ok(ChirpSamples { samples })
 }
 
+/// The echoes that change from chirp to chirp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Moving {
     Nothing,
-    /// The objects that move; they don't change the echoes of those at rest.
-    Some,
+    /// Those of moving objects, which don't influence the others.
+    Objects,
     Everything,
 }
 
@@ -111,14 +112,14 @@ impl Moving {
         match scene.is_moving() {
             false => Moving::Nothing,
             true if body_moves || (scene.has_bodies() && scene.disturbances.mirror.is_some()) => Moving::Everything,
-            true => Moving::Some,
+            true => Moving::Objects,
         }
     }
 
     fn rest(self, radar: &Radar, scene: &Scene) -> Echoing {
         match self {
             Moving::Nothing => Echoing::of(radar, scene),
-            Moving::Some => part(radar, scene, |object| !object.is_moving()),
+            Moving::Objects => echoing_of(radar, scene, |object| !object.is_moving()),
             Moving::Everything => Echoing::default(),
         }
     }
@@ -126,13 +127,13 @@ impl Moving {
     fn at(self, radar: &Radar, scene: &Scene, seconds: f64) -> Echoing {
         match self {
             Moving::Nothing => Echoing::default(),
-            Moving::Some => part(radar, &scene.at(seconds), Object::is_moving),
+            Moving::Objects => echoing_of(radar, &scene.at(seconds), Object::is_moving),
             Moving::Everything => Echoing::of(radar, &scene.at(seconds)),
         }
     }
 }
 
-fn part(radar: &Radar, scene: &Scene, keep: impl Fn(&Object) -> bool) -> Echoing {
+fn echoing_of(radar: &Radar, scene: &Scene, keep: impl Fn(&Object) -> bool) -> Echoing {
     if !scene.has_bodies() {
         let objects = scene.objects.iter().filter(|o| keep(o)).cloned().collect();
         let disturbances = scene.disturbances.clone();
@@ -143,7 +144,7 @@ fn part(radar: &Radar, scene: &Scene, keep: impl Fn(&Object) -> bool) -> Echoing
     Echoing::seen(radar, &kept)
 }
 
-fn at_rest(
+fn rest_samples(
     task: &Task,
     radar: &Radar,
     scene: &Scene,
@@ -158,7 +159,7 @@ fn at_rest(
         ranges.clone().map(of)
     } else {
         let mut signal = BeatSignal { samples: of(0..radar.elements) };
-        hear(radar, scene, array, &mut signal);
+        disturb(radar, scene, array, &mut signal);
         ranges.clone().map(|range| signal.samples.slice(s![range, ..]).to_owned())
     };
     let empty = || Array2::zeros((first.nrows() + last.nrows(), radar.samples));
@@ -181,42 +182,42 @@ impl Motion<'_> {
         }
         let seconds = |chirp: usize| chirp as f64 * self.radar.chirp_interval_seconds;
         let [now, next] = [chirp, chirp + 1].map(|c| self.moving.at(self.radar, self.scene, seconds(c)));
-        // The order of the echoes changes where a point comes into the shadow of a body.
+        // Where a point moves into the shadow of a body, the echoes have other indices.
         let is_alike = now.points.len() == next.points.len();
         let fastest = self.scene.objects.iter().map(Object::velocity_metres_per_second);
-        let fastest = fastest.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)));
+        let fastest = fastest.fold(0.0, |max: f64, [x, y]| max.max(x.hypot(y)));
         let part = self.radar.chirp_seconds / self.radar.chirp_interval_seconds;
-        let most = (1.0 + 1e-6) * fastest * self.radar.chirp_interval_seconds + 1e-12;
-        let (mut heard, mut then, mut scattered) = (Vec::new(), Vec::new(), Vec::new());
+        let max_metres = (1.0 + 1e-6) * fastest * self.radar.chirp_interval_seconds + 1e-12;
+        let (mut echoes, mut later, mut scattered) = (Vec::new(), Vec::new(), Vec::new());
         for (row, n) in self.elements.iter().enumerate() {
             let mut row = samples.row_mut(row);
             let Some(samples) = row.as_slice_mut() else { return };
-            self.echoes(*n, &now, &mut heard, &mut scattered);
-            self.echoes(*n, &next, &mut then, &mut scattered);
+            self.echoes(*n, &now, &mut echoes, &mut scattered);
+            self.echoes(*n, &next, &mut later, &mut scattered);
             let response = match self.array.element(*n) {
                 error if error.dead || error.gain.0 != 0.0 || error.phase_degrees != 0.0 => error.response(),
                 _ => Complex64::from(1.0),
             };
-            for (i, echo) in heard.iter().enumerate().filter(|(_, echo)| echo.amplitude != 0.0) {
-                let next = then.get(i).filter(|next| is_alike && next.amplitude != 0.0);
-                let way = next.map_or(0.0, |next| next.distance_metres - echo.distance_metres);
-                self.add_echo(echo, if way.abs() <= most { way * part } else { 0.0 }, response, samples);
+            for (i, echo) in echoes.iter().enumerate().filter(|(_, echo)| echo.amplitude != 0.0) {
+                let next = later.get(i).filter(|next| is_alike && next.amplitude != 0.0);
+                let change = next.map_or(0.0, |next| next.distance_metres - echo.distance_metres);
+                self.add_echo(echo, if change.abs() <= max_metres { change * part } else { 0.0 }, response, samples);
             }
         }
     }
 
-    /// Replaces `out` by the echoes at element `n`, in the same order for all; amplitude 0 for those hidden from it.
+    /// Replaces `out` by the echoes at element `n`, in the same order for all elements; hidden ones have amplitude 0.
     fn echoes(&self, n: usize, echoing: &Echoing, out: &mut Vec<Echo>, scattered: &mut Vec<PathEcho>) {
         let pair = self.array.pair(self.radar, n);
         out.clear();
         out.extend(echoing.points.iter().map(|r| self.model.echo(pair, r)));
         Sources::from(echoing).scattered(pair, scattered);
         let path = |e: &PathEcho| Path::new([e.range_metres], [e.amplitude]);
-        out.extend(scattered.iter().map(|e| self.model.heard::<1, false>(path(e)).first()));
+        out.extend(scattered.iter().map(|e| self.model.of_path::<1, false>(path(e)).first()));
     }
 
-    fn add_echo(&self, echo: &Echo, way_metres: f64, gain: Complex64, samples: &mut [Complex64]) {
-        let per_sample = way_metres / self.radar.samples as f64;
+    fn add_echo(&self, echo: &Echo, change_metres: f64, gain: Complex64, samples: &mut [Complex64]) {
+        let per_sample = change_metres / self.radar.samples as f64;
         let carrier = self.radar.carrier_turns_per_metre() * per_sample;
         let beat = self.radar.beat_turns_per_metre(1.0) * per_sample;
         let step = echo.turns_at(1) - echo.turns_at(0) + carrier;

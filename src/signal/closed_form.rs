@@ -1,5 +1,5 @@
-//! Range profiles of few reflectors without samples or transform: the windowed transform of a single beat in closed form, evaluated only on
-//! the rows where it exceeds the tolerance.
+//! Range profiles of few reflectors without samples or transform: the windowed transform of a single beat in closed form, on the rows where it
+//! exceeds the tolerance.
 //!
 //! The symmetric Hann window is a constant and two cosines, so a reflector's windowed range profile is three Dirichlet kernels, `N/(N-1)`
 //! bins apart. With `d` the distance from its range to the bin in bins, `x = pi d / N` and `a = pi / (N-1)` they add up to
@@ -9,10 +9,10 @@
 //! g = cos x / (2 sin x (1 - sin^2 x / sin^2 a))
 //! ```
 //!
-//! where no digits cancel but at the kernels' centres, `d = 0` and `d = +-N/(N-1)`, around which `z - 1` and the small factor of `g` are
-//! expanded together. Side lobes fall as `1 / (pi d^3)` of the peak: 12 bins either side for 1e-3, 110 for 1e-6.
+//! without cancellation except at the kernels' centres, `d = 0` and `d = +-N/(N-1)`, around which `z - 1` and the small factor of `g` are
+//! expanded together. Side lobes fall as `1 / (pi d^3)` of the peak: 12 bins on each side for 1e-3, 110 for 1e-6.
 
-use super::heard::HeardEchoes;
+use super::block_echoes::BlockEchoes;
 use super::path::{Path, range_span_metres};
 use super::phase::EchoLanes;
 use super::rows::Rows;
@@ -22,18 +22,18 @@ use crate::scene::Reflector;
 use num_complex::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Fewest samples for which the centres of the kernels lie apart from their repetitions.
+/// Least samples for which the kernels' centres are apart from their periodic repetitions.
 const MIN_SAMPLES: usize = 8;
-/// Bins around the peak where the kernels' centres lie.
+/// Bins on each side of the peak that contain the kernels' centres.
 const PEAK_BINS: f64 = 1.5;
 
-/// Bins on either side of a reflector's range in which its profile exceeds a quarter of `tolerance` times its peak: cells that are left out add up
-/// over reflectors, and all in step.
+/// Bins on each side of a reflector's range in which its profile exceeds a quarter of `tolerance` times its peak. A quarter, since the errors of many
+/// reflectors may add up in phase.
 pub fn reach(tolerance: f64) -> usize {
     (PI / 4.0 * tolerance.max(1e-18)).cbrt().recip().ceil() as usize + 1
 }
 
-/// Whether `radar` has a closed form: chirps of some length, under the Hann window.
+/// Whether `radar` has a closed form: at least [`MIN_SAMPLES`] under a Hann window.
 pub fn applies(radar: &Radar) -> bool {
     radar.samples >= MIN_SAMPLES && radar.window == WindowFunction::Hann
 }
@@ -51,7 +51,7 @@ pub struct ClosedForm<T> {
 }
 
 impl<T: Real> ClosedForm<T> {
-    /// Prepares for `radar`; cells that are left out stay below `tolerance` times a reflector's peak. `None` where it does not apply ([`applies`]).
+    /// Prepares for `radar`. Neglected cells are below `tolerance` times a reflector's peak. `None` where it does not apply ([`applies`]).
     pub fn new(radar: &Radar, tolerance: f64) -> Option<Self> {
         let samples = radar.samples;
         let turn = |n: usize| {
@@ -71,51 +71,51 @@ impl<T: Real> ClosedForm<T> {
     pub fn rows(&self, radar: &Radar, reflectors: &[Reflector], elements: usize) -> Rows {
         let mut rows = Rows::none(self.samples);
         for r in reflectors {
-            self.touch(radar, range_span_metres(radar, elements, r), self.reach, &mut rows);
+            self.add_rows(radar, range_span_metres(radar, elements, r), self.reach, &mut rows);
         }
         rows
     }
 
     /// Adds the rows that [`ClosedForm::add_block`] may write to for `paths`.
-    pub(super) fn touch_paths<const W: usize>(&self, radar: &Radar, paths: &[Path<W>], quiet: f64, rows: &mut Rows) {
+    pub(super) fn add_path_rows<const W: usize>(&self, radar: &Radar, paths: &[Path<W>], quiet: f64, rows: &mut Rows) {
         for path in paths {
             let Some(reach) = self.reach_of(&path.amplitude, quiet) else { continue };
-            self.touch(radar, path.range_metres.hi.bounds(), reach, rows);
+            self.add_rows(radar, path.range_metres.hi.bounds(), reach, rows);
         }
     }
 
-    /// Bins on either side of an echo's range in which it exceeds the tolerance, where an echo of amplitude `quiet` and all below it
-    /// may be wrong by as much as that of `quiet`; `None` where it never does.
+    /// Bins on each side of an echo's range in which it exceeds the tolerance, where an echo below the amplitude `quiet` has the error allowed to one of
+    /// `quiet`; `None` where it exceeds it nowhere.
     #[inline(always)]
     fn reach_of<const W: usize>(&self, amplitude: &Lanes<f64, W>, quiet: f64) -> Option<usize> {
-        let loudest = amplitude.0.iter().fold(0.0f64, |m, a| m.max(a.abs()));
-        if loudest >= quiet {
+        let strongest = amplitude.0.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+        if strongest >= quiet {
             return Some(self.reach);
         }
-        let tolerance = self.tolerance * (quiet / loudest);
+        let tolerance = self.tolerance * (quiet / strongest);
         (tolerance < 4.0).then(|| reach(tolerance).min(self.reach))
     }
 
     /// Adds the rows around ranges from the nearest to the farthest, in metres.
-    fn touch(&self, radar: &Radar, (nearest, farthest): (f64, f64), reach: usize, rows: &mut Rows) {
+    fn add_rows(&self, radar: &Radar, (nearest, farthest): (f64, f64), reach: usize, rows: &mut Rows) {
         let bins = |metres: f64| metres / radar.range_resolution_metres();
-        // The last bits of a very far range may be whole bins.
+        // Rounding of a very far range may be whole bins.
         let unsure = 2.0 + bins(farthest) * 1e-15;
         let margin = reach as f64 + unsure;
         rows.insert_wrapped((bins(nearest) - margin).floor(), (bins(farthest) + margin).ceil());
     }
 
-    /// Adds the range profiles of all that is `heard` at `pairs` to `cells`, `[range bins]`. Each may be wrong by the tolerance times its
-    /// amplitude, or times `quiet` where that is more: a quiet echo has few rows.
+    /// Adds the range profiles of `echoes` to `cells`, `[range bins]`. The error of each is at most the tolerance times its amplitude, or times `quiet`
+    /// where that is larger: a weak echo has few rows.
     #[inline(always)]
     pub(super) fn add_block<const W: usize, const FMA: bool>(
         &self,
-        heard: &HeardEchoes<'_, W>,
+        echoes: &BlockEchoes<'_, W>,
         quiet: f64,
         cells: &mut [ComplexLanes<T, W>],
     ) {
-        for i in 0..heard.len() {
-            let echo = heard.echo::<FMA>(i);
+        for i in 0..echoes.len() {
+            let echo = echoes.echo::<FMA>(i);
             if let Some(reach) = self.reach_of(&echo.amplitude, quiet) {
                 self.add::<W, FMA>(&echo, reach as isize, cells);
             }
@@ -166,7 +166,7 @@ impl<T: Real> ClosedForm<T> {
         }
     }
 
-    /// The profile less than [`PEAK_BINS`] bins from the peak: expanded around the nearest of the three kernels' centres.
+    /// The profile less than [`PEAK_BINS`] from the peak, expanded around the nearest of the three kernels' centres.
     #[inline(always)]
     fn near<const W: usize, const FMA: bool>(
         &self,

@@ -1,4 +1,4 @@
-//! Equation 3.3 word for word in f64: the phase in radians, unreduced, as the thesis' program evaluates it.
+//! Equation 3.3 as written, in f64: the phase in radians, without reduction, as in the thesis' program.
 //!
 //! Phases reach 6e4 rad, so every sample has a rounding error of about 1e-11 of its amplitude. This is the floor of a map normalised by its minimum,
 //! and so of the thesis' tables.
@@ -29,11 +29,11 @@ pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> BeatSi
         });
         let bodies = scattered.iter().filter(|e| e.is_heard());
         let bodies = bodies.map(|e| (e.range_metres, e.amplitude.norm(), e.amplitude.arg()));
-        for (distance, amplitude, turned) in points.chain(bodies) {
+        for (distance, amplitude, phase_radians) in points.chain(bodies) {
             let carrier_phase = carrier * 2.0 * PI * distance / wavelength;
             let bins = distance * bins_per_metre;
             for (n1, sample) in row.iter_mut().enumerate() {
-                let phase = (2.0 * PI * n1 as f64 / samples) * bins + (carrier_phase + turned);
+                let phase = (2.0 * PI * n1 as f64 / samples) * bins + (carrier_phase + phase_radians);
                 *sample += Complex64::from_polar(amplitude, phase);
             }
         }

@@ -38,25 +38,25 @@ pub(super) fn sum<const W: usize>(a: Lanes<f64, W>, b: Lanes<f64, W>) -> Double<
     Double { hi, lo: (a - (hi - t)) + (b - t) }
 }
 
-/// `a * b` exactly: one fused multiply-add where that is an instruction, else both factors cut in halves (Veltkamp, Dekker).
+/// `a * b` exactly: by a fused multiply-add where that is an instruction, else by both halves of the factors' digits (Veltkamp, Dekker).
 #[inline(always)]
 pub(super) fn product<const W: usize, const FMA: bool>(a: Lanes<f64, W>, b: Lanes<f64, W>) -> Double<Lanes<f64, W>> {
     let hi = a * b;
     if FMA {
         return Double { hi, lo: a.mul_add::<true>(b, -hi) };
     }
-    let cut = |v: Lanes<f64, W>| {
+    let halves = |v: Lanes<f64, W>| {
         let c = v * Lanes::splat(134_217_729.0); // 2^27 + 1
         let high = c - (c - v);
         (high, v - high)
     };
-    let ((ah, al), (bh, bl)) = (cut(a), cut(b));
+    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
     Double { hi, lo: ((ah * bh - hi) + ah * bl + al * bh) + al * bl }
 }
 
-/// `rate * distance` less the nearest multiple of `period`, a small whole number.
+/// `rate * distance` minus the nearest multiple of `period`, a small whole number.
 #[inline(always)]
-pub(super) fn rest<const W: usize, const FMA: bool>(
+pub(super) fn remainder<const W: usize, const FMA: bool>(
     distance: Double<Lanes<f64, W>>,
     rate: Double<f64>,
     period: f64,

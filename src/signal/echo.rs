@@ -1,4 +1,4 @@
-//! The exact near-field echo of a single reflector, as any line of elements samples it.
+//! The exact near-field echo of a single reflector at the elements of any line.
 
 use crate::radar::{End, Pair, Radar};
 use crate::scene::Reflector;
@@ -7,7 +7,7 @@ use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Lanes, Simd};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Samples between exact evaluations of a running phasor: keeps its rounding error at a few parts in 1e16.
+/// Samples between exact evaluations of a phasor recurrence: its rounding error is a few parts in 1e16.
 const RESTART_SAMPLES: usize = 32;
 
 /// Adds `gain` times the echo of a unit reflector to `samples` of `pair`.
@@ -31,7 +31,7 @@ struct Series {
     last: Complex64,
 }
 
-/// Echo of one reflector at several elements, with the norm of its samples, which are computed on request.
+/// Echo of one reflector at several elements: a geometric series for each, and the norm of all samples.
 #[derive(Debug, Clone)]
 pub struct ArrayEcho {
     /// The reflector; its reflectivity is 1.
@@ -42,21 +42,21 @@ pub struct ArrayEcho {
 }
 
 impl ArrayEcho {
-    /// The echo of a unit reflector in the centre's polar grid at (`range_metres`, `cos_theta`), as both ends hear it.
+    /// The echo of a unit reflector at (`range_metres`, `cos_theta`) from the array's centre, at the elements of both ends.
     pub fn at(radar: &Radar, range_metres: f64, cos_theta: f64) -> Self {
         let ends = End::BOTH.into_iter().flat_map(|end| radar.end_range(end));
         let pairs: Vec<Pair> = ends.map(|n| radar.pair(n)).collect();
-        ArrayEcho::heard_by(radar, &pairs, range_metres, cos_theta)
+        ArrayEcho::at_pairs(radar, &pairs, range_metres, cos_theta)
     }
 
-    pub fn heard_by(radar: &Radar, pairs: &[Pair], range_metres: f64, cos_theta: f64) -> Self {
+    pub fn at_pairs(radar: &Radar, pairs: &[Pair], range_metres: f64, cos_theta: f64) -> Self {
         let cos = cos_theta.clamp(-1.0, 1.0);
         let reflector = Reflector::at([range_metres * cos, range_metres * (1.0 - cos * cos).sqrt()], 1.0);
         let model = EchoModel::new(radar);
         let of_pair = |pair: &Pair| {
             let echo = model.echo(*pair, &reflector);
-            let turned = |sample: usize| Complex64::cis(TAU * (echo.turns_at(sample) - echo.turns_at(0)));
-            Series { start: echo.sample(0), step: turned(1), last: turned(radar.samples) }
+            let phasor_to = |sample: usize| Complex64::cis(TAU * (echo.turns_at(sample) - echo.turns_at(0)));
+            Series { start: echo.sample(0), step: phasor_to(1), last: phasor_to(radar.samples) }
         };
         let series = pairs.iter().map(of_pair).collect();
         ArrayEcho { reflector, series, samples: radar.samples, norm: 0.0 }.with_norm()
@@ -67,9 +67,8 @@ impl ArrayEcho {
         ArrayEcho { norm: (power * self.samples as f64).sqrt(), ..self }
     }
 
-    /// The echo at those elements alone for which `hears` is true; `hears` has one entry an element.
-    pub fn where_heard(mut self, hears: &[bool]) -> Self {
-        for (series, _) in self.series.iter_mut().zip(hears).filter(|(_, hears)| !**hears) {
+    pub fn masked(mut self, is_measured: &[bool]) -> Self {
+        for (series, _) in self.series.iter_mut().zip(is_measured).filter(|(_, is_measured)| !**is_measured) {
             series.start = Complex64::default();
         }
         self.with_norm()
@@ -112,7 +111,7 @@ impl ArrayEcho {
     }
 }
 
-/// Independent samples, and groups of them: enough to hide the latency of a multiplication.
+/// Lanes and groups of lanes that are computed independently, to hide the latency of a multiplication.
 const W: usize = LANES_F64;
 const GROUPS: usize = 4;
 const SUMS: usize = W * GROUPS;
@@ -136,7 +135,7 @@ impl Kernel for Correlate<'_> {
     }
 }
 
-/// `sum y[n] z^n` by Horner's rule from the last sample, [`SUMS`] interleaved sums at once; `z` lies on the unit circle.
+/// `sum y[n] z^n` for `z` on the unit circle, by Horner's rule in [`SUMS`] interleaved sums, from the last sample.
 #[inline(always)]
 fn polynomial<const FMA: bool>(z: Complex64, y: &[Complex64]) -> Complex64 {
     let mut powers = [Complex64::from(1.0); SUMS];
@@ -188,17 +187,17 @@ mod tests {
     }
 
     #[test]
-    fn elements_that_hear_nothing_have_no_part_in_an_echo() {
+    fn masked_elements_have_zeros_in_an_echo() {
         let radar = Radar { samples: 16, end_elements: 3, ..Radar::default() };
-        let hears = [true, false, true, true, true, false];
+        let is_measured = [true, false, true, true, true, false];
         let whole = ArrayEcho::at(&radar, 17.3, -0.4);
-        let part = whole.clone().where_heard(&hears);
+        let part = whole.clone().masked(&is_measured);
         let samples = part.unit_samples();
         let energy: f64 = samples.iter().map(Complex64::norm_sqr).sum();
         assert!((energy - 1.0).abs() < 1e-12 && (part.inner(&part).re - 1.0).abs() < 1e-12);
         for (n, (part, whole)) in samples.chunks(16).zip(whole.unit_samples().chunks(16)).enumerate() {
             let silent = part.iter().all(|v| v.norm_sqr() == 0.0);
-            assert!(silent != hears[n] && (silent || (part[3] / whole[3]).im.abs() < 1e-12));
+            assert!(silent != is_measured[n] && (silent || (part[3] / whole[3]).im.abs() < 1e-12));
         }
     }
 

@@ -17,7 +17,7 @@ pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> BeatSi
         let mut scattered = Vec::new();
         sources.scattered(pair, &mut scattered);
         let bodies = scattered.iter().filter(|e| e.is_heard());
-        let bodies = bodies.map(|e| model.heard::<1, false>(Path::new([e.range_metres], [e.amplitude])).first());
+        let bodies = bodies.map(|e| model.of_path::<1, false>(Path::new([e.range_metres], [e.amplitude])).first());
         for echo in sources.points.iter().map(|r| model.echo(pair, r)).chain(bodies) {
             for (n1, sample) in row.iter_mut().enumerate() {
                 *sample += echo.sample(n1);

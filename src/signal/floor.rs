@@ -1,4 +1,4 @@
-//! The noise floor of a map. A map normalised by its minimum shows its floor as much as its peaks, so no function picks a floor silently.
+//! The noise floor of a map. A map normalised by its minimum shows its floor as much as its peaks, so no function has a default floor.
 //!
 //! A level in dBm needs a convention for the power of a sample. Without a link budget `|y|^2` counts as watts: a sample `y` of one reflector
 //! has amplitude `P_out sigma / R^2` (`P_out` in watts, `R` in metres) and level `10 log10(|y|^2 / 1 mW)`. Sigma 1 at 20 m and 100 W give
@@ -24,15 +24,14 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Floor {
-    /// The rounding noise that the thesis' f64 evaluation leaves: the floor of its tables.
+    /// The rounding noise of the thesis' f64 program: the floor of its tables.
     #[default]
     Thesis,
-    /// No noise: the formula as exactly as f64 holds it.
+    /// No noise: the formula to the precision of f64.
     Exact,
     /// Thermal noise at this signal-to-noise ratio, measured per sample over the whole array.
     Snr(Decibels),
-    /// Thermal noise of this level a sample, for any scene: an empty scene over it is noise alone. The [module](self) says what a
-    /// sample's level is.
+    /// Thermal noise of this level a sample, for any scene. The [module](self) defines the level of a sample.
     #[serde(rename = "dbm")]
     Level(DecibelMilliwatts),
     /// Receiver noise `k T B F` by the radar's link budget, or [`LinkBudget::default`](crate::radar::LinkBudget) without one.
@@ -55,7 +54,6 @@ impl Floor {
         }
     }
 
-    /// Whether the level of the floor's noise does not depend on the scene.
     pub fn has_level(self) -> bool {
         matches!(self, Floor::Level(_) | Floor::Thermal)
     }
@@ -110,26 +108,25 @@ impl fmt::Display for Floor {
     }
 }
 
-/// Variance of the white complex noise, for each element, that leaves the floor of the thesis' f64 evaluation: the sum over
-/// reflectors of `amplitude^2 * ulp(2 pi |s q| R / lambda)^2 / 12`: the phase is rounded evenly within one ulp.
+/// Variance of white complex noise with the power of the thesis' rounding, for each element: the sum over reflectors of
+/// `amplitude^2 * ulp(2 pi |s q| R / lambda)^2 / 12`, since the rounding of a phase is uniform within one ulp.
 pub fn thesis_noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> Vec<f64> {
-    powers(radar, sources.into(), THESIS_ROUNDING, Some(thesis_radians_per_metre(radar)))
+    powers(radar, sources.into(), THESIS_ROUNDING_FACTOR, Some(thesis_radians_per_metre(radar)))
 }
 
-/// Variance of an echo's rounding, for each unit of its power and of the squared ulp of its phase.
-const THESIS_ROUNDING: f64 = 1.0 / 12.0;
+/// Variance of an echo's rounding relative to its power times the squared ulp of its phase.
+const THESIS_ROUNDING_FACTOR: f64 = 1.0 / 12.0;
 
 fn thesis_radians_per_metre(radar: &Radar) -> f64 {
     radar.carrier_radians_per_metre().abs()
 }
 
-/// Mean power over both ends' channels of the rounding that [`thesis_noise_variance`] gives an echo of this power from this range.
+/// Variance of the rounding of an echo of this power at this range, as in [`thesis_noise_variance`].
 pub fn thesis_noise_of_echo(radar: &Radar, power: f64, range_metres: f64) -> f64 {
-    power * THESIS_ROUNDING * ulp(thesis_radians_per_metre(radar) * range_metres).powi(2)
+    power * THESIS_ROUNDING_FACTOR * ulp(thesis_radians_per_metre(radar) * range_metres).powi(2)
 }
 
-/// Variance of thermal noise at `snr`, the same for every element: the sum of the reflectors' powers, averaged over the array, over the
-/// ratio. Interference between echoes does not change it; silence has none.
+/// Variance of thermal noise at `snr`, the same for every element: the sum of the reflectors' powers, averaged over the array, over the ratio.
 pub fn snr_noise_variance<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, snr: Decibels) -> Vec<f64> {
     vec![mean_power(radar, sources.into()) / snr.power_ratio(); radar.elements]
 }
@@ -205,7 +202,7 @@ impl Kernel for BlockPowers<'_> {
     }
 }
 
-/// White complex noise of unit variance for one element, the same for the same seed on any thread.
+/// White complex noise of unit variance for one element.
 pub fn unit_noise(seed: u64, element: usize) -> impl Iterator<Item = Complex64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(element as u64);

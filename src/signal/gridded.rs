@@ -1,32 +1,32 @@
 //! Equation 3.3 by gridding: a type-1 non-uniform transform over range with twofold oversampling.
 //!
 //! Every reflector is spread over a few cells of a fine range grid with the "exponential of semicircle" kernel (Barnett, Magland and af
-//! Klinteberg, SIAM J. Sci. Comput. 41, C479, 2019); one transform of the grid and a division by the kernel's own transform give the
-//! samples. The cost of a reflector is a dozen cells instead of 512 samples.
+//! Klinteberg, SIAM J. Sci. Comput. 41, C479, 2019). The samples are the transform of the grid over that of the kernel. A reflector costs a dozen
+//! cells instead of 512 samples.
 
-use super::heard::HeardEchoes;
+use super::block_echoes::BlockEchoes;
 use super::lane_fft::LaneFft;
 use super::phase::EchoLanes;
 use super::simd::{ComplexLanes, Lanes, Real, phasor};
 use crate::radar::Radar;
 use std::f64::consts::{PI, TAU};
 
-/// Widest kernel; its error is near the last bits of f64.
+/// Width of the widest kernel, cells; its error is near the precision of f64.
 const MAX_WIDTH: usize = 16;
 
 /// `exp(beta (sqrt(1 - (2x/width)^2) - 1))` for |x| <= width/2, as polynomials between the cells.
 #[derive(Debug, Clone)]
-struct Kernel {
+struct SpreadingKernel {
     width: usize,
     beta: f64,
 }
 
-impl Kernel {
+impl SpreadingKernel {
     /// The narrowest kernel of even width that keeps the error below `tolerance`, relative to the sum of amplitudes.
     fn for_tolerance(tolerance: f64) -> Self {
         let digits = -tolerance.max(1e-16).log10();
         let width = ((digits + 2.0).ceil() as usize).next_multiple_of(2).min(MAX_WIDTH);
-        Kernel { width, beta: 2.3 * width as f64 }
+        SpreadingKernel { width, beta: 2.3 * width as f64 }
     }
 
     fn value(&self, x: f64) -> f64 {
@@ -95,7 +95,6 @@ pub struct GriddedScratch<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> GriddedScratch<T, W> {
-    /// Working memory for chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
         GriddedScratch { grid: vec![zero; 2 * samples], spare: vec![zero; 2 * samples] }
@@ -103,10 +102,10 @@ impl<T: Real, const W: usize> GriddedScratch<T, W> {
 }
 
 impl<T: Real> Gridding<T> {
-    /// Prepares the kernel for `radar`; the error stays below `tolerance` times the sum of amplitudes, but for the rounding of `T`.
+    /// Prepares the kernel for `radar`. The error is below `tolerance` times the sum of amplitudes, except for the rounding of `T`.
     pub fn new(radar: &Radar, tolerance: f64) -> Self {
         let samples = radar.samples;
-        let kernel = Kernel::for_tolerance(tolerance.max(T::EPSILON));
+        let kernel = SpreadingKernel::for_tolerance(tolerance.max(T::EPSILON));
         let terms = kernel.width + 4;
         let pieces = (0..kernel.width / 2)
             .map(|cell| {
@@ -123,43 +122,43 @@ impl<T: Real> Gridding<T> {
     }
 }
 
-/// Reflectors that are added up at a time in f64: sums of sums lose fewer digits than one long sum.
-const SUMMED_AT_ONCE: usize = 64;
-/// Largest sum that meets f32's tolerance even where all rounding errors agree, as for coincident points. Longer sums keep the rounding error
-/// of each addition and add it at the end (Kahan, Commun. ACM 8, 1965).
-const UNCORRECTED_TERMS: usize = 16;
+/// Reflectors in a partial sum in f64: sums of partial sums have smaller rounding errors than one long sum.
+const PARTIAL_SUM_TERMS: usize = 64;
+/// Most reflectors whose sum meets f32's tolerance even where all rounding errors agree, as for coincident points. Longer sums keep the rounding
+/// errors and add them at the end (Kahan, Commun. ACM 8, 1965).
+const MAX_UNCORRECTED_TERMS: usize = 16;
 
-/// Beat signal of all that is `heard` at `pairs`, written to `out`, one vector a sample.
+/// Beat signal of `echoes`, written to `out`, one vector a sample.
 #[inline(always)]
 pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
     plan: &Gridding<T>,
-    heard: &HeardEchoes<'_, W>,
+    echoes: &BlockEchoes<'_, W>,
     scratch: &mut GriddedScratch<T, W>,
     out: &mut [ComplexLanes<T, W>],
 ) {
     let GriddedScratch { grid, spare } = scratch;
     grid.fill(ComplexLanes::zero());
-    if heard.len() > UNCORRECTED_TERMS {
+    if echoes.len() > MAX_UNCORRECTED_TERMS {
         spare.fill(ComplexLanes::zero());
     }
-    if T::EPSILON > f64::EPSILON && heard.len() > UNCORRECTED_TERMS {
-        for i in 0..heard.len() {
-            spread::<T, W, FMA, true>(plan, &heard.echo::<FMA>(i), grid, spare);
+    if T::EPSILON > f64::EPSILON && echoes.len() > MAX_UNCORRECTED_TERMS {
+        for i in 0..echoes.len() {
+            spread::<T, W, FMA, true>(plan, &echoes.echo::<FMA>(i), grid, spare);
         }
         grid.iter_mut().zip(spare.iter()).for_each(|(cell, lost)| *cell = *cell + *lost);
     } else {
-        for begin in (0..heard.len()).step_by(SUMMED_AT_ONCE) {
+        for begin in (0..echoes.len()).step_by(PARTIAL_SUM_TERMS) {
             if begin > 0 {
                 for (total, cell) in spare.iter_mut().zip(grid.iter_mut()) {
                     *total = *total + *cell;
                     *cell = ComplexLanes::zero();
                 }
             }
-            for i in begin..heard.len().min(begin + SUMMED_AT_ONCE) {
-                spread::<T, W, FMA, false>(plan, &heard.echo::<FMA>(i), grid, &mut []);
+            for i in begin..echoes.len().min(begin + PARTIAL_SUM_TERMS) {
+                spread::<T, W, FMA, false>(plan, &echoes.echo::<FMA>(i), grid, &mut []);
             }
         }
-        if heard.len() > SUMMED_AT_ONCE {
+        if echoes.len() > PARTIAL_SUM_TERMS {
             grid.iter_mut().zip(spare.iter()).for_each(|(cell, total)| *cell = *cell + *total);
         }
     }
@@ -168,7 +167,7 @@ pub(super) fn block_signal<T: Real, const W: usize, const FMA: bool>(
     for (n, (sample, correction)) in out.iter_mut().zip(&plan.correction).enumerate() {
         let cell = if n < half { plan.grid + n - half } else { n - half };
         let factor = Lanes::splat(*correction);
-        // The grid held conjugates, so that a forward transform serves as a backward one.
+        // The grid has conjugates: the forward transform is the conjugate of the inverse one.
         *sample = ComplexLanes { re: grid[cell].re * factor, im: -(grid[cell].im * factor) };
     }
 }
@@ -207,9 +206,9 @@ fn kernel_values<T: Real, const W: usize, const FMA: bool>(
     values
 }
 
-/// Adds one echo to `grid`, and with `KEEP` the rounding error of each cell to `lost`.
+/// Adds one echo to `grid`, and with `KEEPS_ERRORS` the rounding error of each cell to `lost`.
 #[inline(always)]
-fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
+fn spread<T: Real, const W: usize, const FMA: bool, const KEEPS_ERRORS: bool>(
     plan: &Gridding<T>,
     echo: &EchoLanes<W>,
     grid: &mut [ComplexLanes<T, W>],
@@ -230,7 +229,7 @@ fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
     let values = kernel_values::<T, W, FMA>(plan, t);
 
     let (lowest, highest) = left.bounds();
-    // Neighbouring elements nearly always share their left cell; where not, each group of lanes is spread by itself.
+    // Neighbouring elements nearly always have the same left cell. Elsewhere each group of lanes is spread by itself.
     let mut start = lowest;
     while start <= highest {
         let value = if lowest == highest {
@@ -244,7 +243,7 @@ fn spread<T: Real, const W: usize, const FMA: bool, const KEEP: bool>(
                 cell -= plan.grid;
             }
             let sum = &mut grid[cell];
-            if KEEP {
+            if KEEPS_ERRORS {
                 lost[cell] = lost[cell] + add_exactly(sum, value.scaled(*kernel));
             } else {
                 sum.re = value.re.mul_add::<FMA>(*kernel, sum.re);
@@ -263,7 +262,7 @@ mod tests {
     #[test]
     fn polynomials_follow_the_kernel() {
         for tolerance in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15] {
-            let kernel = Kernel::for_tolerance(tolerance);
+            let kernel = SpreadingKernel::for_tolerance(tolerance);
             let mut worst = 0.0f64;
             for cell in 0..kernel.width {
                 let p = kernel.polynomial(cell, kernel.width + 4);
@@ -281,7 +280,7 @@ mod tests {
     #[test]
     fn the_kernel_transform_of_known_sums() {
         // Poisson: the sum over whole numbers is the sum of the transform at whole frequencies, all but the first tiny.
-        let kernel = Kernel::for_tolerance(1e-12);
+        let kernel = SpreadingKernel::for_tolerance(1e-12);
         let sum: f64 = (-8..=8).map(|i| kernel.value(f64::from(i))).sum();
         assert!((sum - kernel.transforms(std::iter::once(0.0))[0]).abs() < 1e-13 * sum);
     }

@@ -1,5 +1,4 @@
-//! Equation 3.3 in double-double arithmetic (about 31 digits), slow and simple: the reference of every other algorithm. Tests compare it with
-//! known values, and with [`super::direct`] for small phases.
+//! Equation 3.3 in double-double arithmetic (about 31 digits): the reference of every other algorithm. Tests compare it with known values.
 
 use super::samples::BeatSignal;
 use crate::radar::{Pair, Radar};
@@ -8,7 +7,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use twofloat::TwoFloat;
 
-/// Beat signal of all scatterers, `[elements, samples]`, correctly rounded to f64 but for a last bit.
+/// Beat signal of all scatterers, `[elements, samples]`, exact in f64 to the last bit.
 pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> BeatSignal {
     let sources = sources.into();
     let mut signal = BeatSignal::silence(radar);
@@ -25,7 +24,7 @@ pub fn element_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, elemen
     pair_signal(radar, sources, radar.pair(element))
 }
 
-/// Beat signal of one pair of antennas, `[samples]`. Ranges and amplitudes of bodies are taken as f64 has them.
+/// Beat signal of one pair of antennas, `[samples]`. Ranges and amplitudes of bodies have the precision of f64.
 pub fn pair_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, pair: Pair) -> Vec<Complex64> {
     let sources = sources.into();
     let zero = TwoFloat::from(0.0);
@@ -89,7 +88,7 @@ const TAU_HIGH: f64 = std::f64::consts::TAU;
 const TAU_LOW: f64 = 2.449_293_598_294_706_4e-16;
 
 impl Phasor {
-    /// `exp(2 pi j t)`: quarter turns taken off, then Taylor series for an angle of at most pi/4.
+    /// `exp(2 pi j t)`: without quarter turns, by Taylor series for an angle of at most pi/4.
     fn of_turns(t: TwoFloat) -> Phasor {
         let quarters = (t.hi() * 4.0).round();
         let angle = (t - quarters / 4.0) * TwoFloat::new_add(TAU_HIGH, TAU_LOW);

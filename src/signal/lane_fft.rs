@@ -1,5 +1,5 @@
-//! Fourier transforms of many channels at once, one lane an element: without shuffles, and in the transposed order of maps. Powers of two go
-//! through Stockham's radix-4 algorithm, other lengths through rustfft, lane by lane.
+//! Fourier transforms of several channels at once, one lane an element. Powers of two are transformed by Stockham's radix-4 algorithm, other lengths
+//! by rustfft, lane by lane.
 
 use super::simd::{ComplexLanes, Real, Simd};
 use num_complex::Complex;
@@ -28,19 +28,19 @@ impl<T: Real> LaneFft<T> {
             return LaneFft { len, method: Method::Rustfft(Simd::chosen().forward_fft(len)) };
         }
         let mut stages = Vec::new();
-        let mut left = len;
-        while left >= 4 {
+        let mut remaining = len;
+        while remaining >= 4 {
             let twiddle = |p: usize, power: usize| {
-                let (sin, cos) = (-TAU * (p * power) as f64 / left as f64).sin_cos();
+                let (sin, cos) = (-TAU * (p * power) as f64 / remaining as f64).sin_cos();
                 Complex::new(T::of(cos), T::of(sin))
             };
-            stages.push((0..left / 4).map(|p| [1, 2, 3].map(|power| twiddle(p, power))).collect());
-            left /= 4;
+            stages.push((0..remaining / 4).map(|p| [1, 2, 3].map(|power| twiddle(p, power))).collect());
+            remaining /= 4;
         }
         LaneFft { len, method: Method::Stockham(stages) }
     }
 
-    /// Transforms `data` in place; `spare` must be as long (it is overwritten).
+    /// Transforms `data` in place; `spare` is overwritten and must be as long.
     #[inline(always)]
     pub fn process<const W: usize, const FMA: bool>(
         &self,

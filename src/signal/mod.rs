@@ -2,22 +2,23 @@
 //!
 //! | file | what it is | use it for |
 //! |---|---|---|
-//! | [`direct`] | the formula word for word in f64 | the thesis' own numbers, rounding floor included |
+//! | [`direct`] | the formula as written, in f64 | the thesis' own numbers, rounding floor included |
 //! | [`exact`] | the same with phases reduced to turns first | accuracy to the last bits of f64 |
-//! | [`split`] | products of 16 + 32 phasors, one lane an element | few reflectors, or the last bits |
+//! | [`split`] | products of 16 + 32 phasors, one lane an element | few reflectors, or full precision |
 //! | [`gridded`] | reflectors spread on a range grid, then transformed | many reflectors |
-//! | [`closed_form`] | range profiles from three Dirichlet kernels, on the rows that matter | one or few reflectors, loose tolerances |
+//! | [`closed_form`] | range profiles from three Dirichlet kernels, on rows above the tolerance | one or few reflectors, loose tolerances |
 //! | [`judge`] | equation 3.3 in double-double | the reference of all others |
 //!
 //! [`Sources`](crate::scattering::Sources) are the scatterers: points, and bodies with their shadows.
 //!
 //! * [`path`] (range and amplitude of an echo at a pair of antennas) and [`phase`] are the forward model of every simulation, fit and bound.
-//! * A [`Plan`] picks algorithm and precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
+//! * A [`Plan`] has algorithm and precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
 //! * [`simulate`] goes from a scene to samples over a [`floor`]: the thesis' rounding noise, none, or thermal noise.
 //! * [`built`] adds element errors and interference; [`calibration`] estimates gains and phases; [`chirps`] has moving objects.
-//! * [`echo`] is one reflector's echo as a value, the atom of sparse methods.
+//! * [`echo`] is one reflector's echo as a value, the dictionary atom of sparse methods.
 
 mod algorithm;
+mod block_echoes;
 pub mod built;
 pub mod calibration;
 pub mod chirps;
@@ -28,7 +29,6 @@ pub mod echo;
 pub mod exact;
 pub mod floor;
 pub mod gridded;
-mod heard;
 pub mod judge;
 pub mod lane_fft;
 pub mod path;

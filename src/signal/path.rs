@@ -1,8 +1,8 @@
 //! The path of an echo: its range and complex amplitude at a pair of antennas.
 //!
-//! Simulation, fits, bounds and theory all take the geometry from here and the phases from [`EchoModel`](super::phase::EchoModel). A point of
-//! reflectivity `g` has range `R = (Rt + Rr) / 2` and amplitude `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from transmitter and
-//! receiver. [`Pattern::amplitude`] multiplies both ways. [`Path::new`] takes the echoes of bodies ([`crate::scattering`]).
+//! Simulation, fits, bounds and theory use this geometry, and the phases of [`EchoModel`](super::phase::EchoModel). A point of reflectivity `g` has
+//! range `R = (Rt + Rr) / 2` and amplitude `P g / (Rt Rr)`, where `Rt` and `Rr` are its distances from transmitter and receiver, times
+//! [`Pattern::amplitude`] of both. [`Path::new`] is for echoes of bodies ([`crate::scattering`]).
 
 mod change;
 
@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 pub struct PairBlocks<const W: usize> {
     /// x of transmitters and of receivers.
     x_metres: [Lanes<f64, W>; 2],
-    /// y of transmitters and of receivers; `None` where all stand on the array's line.
+    /// y of transmitters and of receivers; `None` where all are on the array's line.
     y_metres: [Option<Lanes<f64, W>>; 2],
     is_monostatic: bool,
 }
@@ -40,7 +40,6 @@ impl<const W: usize> PairBlocks<W> {
     }
 }
 
-/// Monostatic elements.
 impl<const W: usize> From<Lanes<f64, W>> for PairBlocks<W> {
     #[inline(always)]
     fn from(element_x_metres: Lanes<f64, W>) -> Self {
@@ -49,7 +48,7 @@ impl<const W: usize> From<Lanes<f64, W>> for PairBlocks<W> {
 }
 
 impl<const W: usize> PairBlocks<W> {
-    /// Ranges of the places at x and y, one a lane, in plain double precision, metres.
+    /// Ranges of the places (x, y), one a lane, in double precision, metres.
     #[inline(always)]
     pub fn ranges_metres(&self, x_metres: Lanes<f64, W>, y_metres: Lanes<f64, W>) -> Lanes<f64, W> {
         let leg = |antenna_x: Lanes<f64, W>, antenna_y: Option<Lanes<f64, W>>| {
@@ -75,12 +74,12 @@ impl From<Pair> for PairBlocks<1> {
 pub struct Path<const W: usize> {
     pub(super) range_metres: Double<Lanes<f64, W>>,
     pub(super) amplitude: Lanes<f64, W>,
-    /// Turns by which the amplitude's phase is not 0; `None` where it is 0 in every lane.
+    /// Phase of the complex amplitude, turns; `None` where it is 0 in every lane.
     pub(super) turns: Option<Lanes<f64, W>>,
 }
 
 impl<const W: usize> Path<W> {
-    /// An echo of any kind: its range in metres and its complex amplitude, one a lane.
+    /// The path of an echo by its range in metres and its complex amplitude, one a lane.
     pub fn new(range_metres: [f64; W], amplitude: [Complex64; W]) -> Self {
         Path {
             range_metres: Double { hi: Lanes(range_metres), lo: Lanes::splat(0.0) },
@@ -89,7 +88,7 @@ impl<const W: usize> Path<W> {
         }
     }
 
-    /// The echo of a point under a transmit power of `power_watts`, between elements of this pattern.
+    /// The path of a point's echo at a transmit power of `power_watts`, between elements of this pattern.
     #[inline(always)]
     pub(super) fn of_point<const FMA: bool>(
         power_watts: f64,
@@ -98,33 +97,33 @@ impl<const W: usize> Path<W> {
         r: &Reflector,
     ) -> Self {
         let scale = power_watts * r.reflectivity;
-        let ahead = pairs.y_metres;
-        let there = leg::<W, FMA>(pairs.x_metres[0], ahead[0], r);
+        let antenna_y = pairs.y_metres;
+        let there = leg::<W, FMA>(pairs.x_metres[0], antenna_y[0], r);
         if pairs.is_monostatic {
             let amplitude = there.hi.map(|d| scale / (d * d));
-            let amplitude = through(pattern, amplitude, [there.hi, there.hi], ahead, r);
+            let amplitude = with_pattern(pattern, amplitude, [there.hi, there.hi], antenna_y, r);
             return Path { range_metres: there, amplitude, turns: None };
         }
-        let back = leg::<W, FMA>(pairs.x_metres[1], ahead[1], r);
+        let back = leg::<W, FMA>(pairs.x_metres[1], antenna_y[1], r);
         let amplitude = there.hi.zip(back.hi, |t, r| scale / (t * r));
-        let amplitude = through(pattern, amplitude, [there.hi, back.hi], ahead, r);
+        let amplitude = with_pattern(pattern, amplitude, [there.hi, back.hi], antenna_y, r);
         Path { range_metres: Double::mean(there, back), amplitude, turns: None }
     }
 }
 
-/// An amplitude times the pattern of both ways to `r`, whose lengths are `legs` in metres; `ahead` is the antennas' y.
+/// An amplitude times the pattern of both ways to `r`, whose lengths are `legs` in metres; `antenna_y` is the antennas' y.
 #[inline(always)]
-fn through<const W: usize>(
+fn with_pattern<const W: usize>(
     pattern: Option<Pattern>,
     amplitude: Lanes<f64, W>,
     legs: [Lanes<f64, W>; 2],
-    ahead: [Option<Lanes<f64, W>>; 2],
+    antenna_y: [Option<Lanes<f64, W>>; 2],
     r: &Reflector,
 ) -> Lanes<f64, W> {
     let Some(pattern) = pattern else { return amplitude };
-    legs.into_iter().zip(ahead).fold(amplitude, |amplitude, (leg, ahead)| {
+    legs.into_iter().zip(antenna_y).fold(amplitude, |amplitude, (leg, antenna_y)| {
         let y = Lanes::splat(r.y_metres);
-        let cos = ahead.map_or(y, |ahead| y - ahead).zip(leg, |y, d| y / d);
+        let cos = antenna_y.map_or(y, |antenna_y| y - antenna_y).zip(leg, |y, d| y / d);
         amplitude.zip(cos, |a, cos| a * pattern.amplitude(cos))
     })
 }
@@ -155,23 +154,23 @@ fn leg<const W: usize, const FMA: bool>(
 pub(super) fn plain_path<const W: usize>(radar: &Radar, pairs: &PairBlocks<W>, r: &Reflector) -> [Lanes<f64, W>; 2] {
     let scale = radar.transmit_power_watts * r.reflectivity;
     let pattern = radar.pattern();
-    let ahead = pairs.y_metres;
-    let square = |antenna_x_metres: Lanes<f64, W>, ahead: Option<Lanes<f64, W>>| {
+    let antenna_y = pairs.y_metres;
+    let square = |antenna_x_metres: Lanes<f64, W>, antenna_y: Option<Lanes<f64, W>>| {
         let dx = antenna_x_metres - Lanes::splat(r.x_metres);
-        let y2 = match ahead {
+        let y2 = match antenna_y {
             None => Lanes::splat(r.y_metres * r.y_metres),
             Some(y) => (y - Lanes::splat(r.y_metres)) * (y - Lanes::splat(r.y_metres)),
         };
         dx * dx + y2
     };
-    let there = square(pairs.x_metres[0], ahead[0]);
+    let there = square(pairs.x_metres[0], antenna_y[0]);
     if pairs.is_monostatic {
         let range = there.sqrt();
-        return [range, through(pattern, there.map(|s| scale / s), [range, range], ahead, r)];
+        return [range, with_pattern(pattern, there.map(|s| scale / s), [range, range], antenna_y, r)];
     }
-    let (there, back) = (there.sqrt(), square(pairs.x_metres[1], ahead[1]).sqrt());
+    let (there, back) = (there.sqrt(), square(pairs.x_metres[1], antenna_y[1]).sqrt());
     let amplitude = there.zip(back, |t, r| scale / (t * r));
-    [(there + back) * Lanes::splat(0.5), through(pattern, amplitude, [there, back], ahead, r)]
+    [(there + back) * Lanes::splat(0.5), with_pattern(pattern, amplitude, [there, back], antenna_y, r)]
 }
 
 /// Range in metres and amplitude of a point for one pair, rounded as the thesis' program rounds them.
@@ -183,8 +182,8 @@ pub(super) fn thesis_path(radar: &Radar, pair: Pair, r: &Reflector) -> (f64, f64
     let [there, back] = pair.places_metres().map(leg);
     let amplitude = radar.transmit_power_watts * r.reflectivity / (there * back);
     let [out, home] = [r.y_metres - pair.transmitter_y_metres, r.y_metres - pair.receiver_y_metres];
-    let left = radar.pattern().map_or(1.0, |p| p.amplitude(out / there) * p.amplitude(home / back));
-    ((there + back) / 2.0, amplitude * left)
+    let gain = radar.pattern().map_or(1.0, |p| p.amplitude(out / there) * p.amplitude(home / back));
+    ((there + back) / 2.0, amplitude * gain)
 }
 
 /// Bounds of the ranges of `r` from elements of `radar` up to `elements`, metres; for single antennas they are reached.
@@ -294,8 +293,8 @@ mod tests {
             let r = point(2.0, 11.0);
             let (range, amplitude) = thesis_path(&radar, SEPARATE_PAIR, &r);
             let factor = Complex64::from_polar(1.5, 2.0);
-            let plain = model.heard::<1, false>(Path::new([range], [Complex64::from(amplitude)])).first();
-            let turned = model.heard::<1, false>(Path::new([range], [factor * amplitude])).first();
+            let plain = model.of_path::<1, false>(Path::new([range], [Complex64::from(amplitude)])).first();
+            let turned = model.of_path::<1, false>(Path::new([range], [factor * amplitude])).first();
             for n1 in [0, 1, 200, 511] {
                 let off = (turned.sample(n1) - plain.sample(n1) * factor).norm();
                 assert!(off < 1e-14 * turned.amplitude, "sample {n1}: {off:e}");

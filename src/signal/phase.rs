@@ -1,10 +1,10 @@
 //! Phases in turns, reduced modulo one before any sine is taken.
 //!
-//! At 20 m the carrier has turned 5000 times, so rounding a distance to f64 costs 1e-12 of a turn. Distances and turns are therefore sums of
-//! two f64 (error-free transformations, Dekker 1971) until the whole turns are removed. The radar's constants count as exact in their f64
-//! values. Everything is written over [`Lanes`], one lane a pair of antennas; one echo at one pair is the case of a single lane.
+//! At 20 m the carrier's phase is 5000 turns, so the rounding of a distance to f64 is 1e-12 turns. Distances and turns are therefore sums of
+//! two f64 (error-free transformations, Dekker 1971) until the whole turns are removed. The radar's constants are exact in their f64
+//! values. All functions are written over [`Lanes`], one lane a pair of antennas; one echo at one pair has a single lane.
 
-use super::double::{Double, product, rest};
+use super::double::{Double, product, remainder};
 use super::path::{PairBlocks, Path};
 use super::simd::Lanes;
 use crate::radar::{Pair, Pattern, Radar};
@@ -17,13 +17,12 @@ use std::f64::consts::TAU;
 pub struct Echo {
     /// Amplitude: `P_out * reflectivity / R^2` for a reflector before isotropic elements.
     pub amplitude: f64,
-    /// Range R in metres.
     pub distance_metres: f64,
-    /// Turns of the carrier, in [-1/2, 1/2] times the carrier's turns per wavelength, and those of a complex amplitude.
+    /// Phase of the carrier, in [-1/2, 1/2] times the carrier's turns per wavelength, plus that of a complex amplitude, turns.
     pub carrier_turns: f64,
-    /// Turns from one sample to the next, in [-1/2, 1/2].
+    /// Phase from one sample to the next, turns in [-1/2, 1/2].
     pub beat_turns: f64,
-    /// Rounding error of [`Echo::beat_turns`], which counts when multiplied by a sample's number.
+    /// Rounding error of [`Echo::beat_turns`], significant when multiplied by a sample's number.
     pub beat_turns_low: f64,
 }
 
@@ -40,7 +39,6 @@ impl Echo {
         (lanes.beat_turns_at::<false>(n1 as f64) + lanes.carrier_turns).0[0]
     }
 
-    /// Sample `n1`.
     pub fn sample(&self, n1: usize) -> Complex64 {
         Complex64::from_polar(self.amplitude, TAU * self.turns_at(n1))
     }
@@ -53,12 +51,10 @@ pub struct EchoLanes<const W: usize> {
     pub distance_metres: Lanes<f64, W>,
     pub carrier_turns: Lanes<f64, W>,
     pub beat_turns: Lanes<f64, W>,
-    /// See [`Echo::beat_turns_low`].
     pub beat_turns_low: Lanes<f64, W>,
 }
 
 impl EchoLanes<1> {
-    /// The only lane.
     pub fn first(&self) -> Echo {
         Echo {
             amplitude: self.amplitude.0[0],
@@ -71,7 +67,7 @@ impl EchoLanes<1> {
 }
 
 impl<const W: usize> EchoLanes<W> {
-    /// Turns of the beat alone from sample 0 to sample `n1`, whole turns taken off: in about [-1/2, 1/2], exact to about 1e-16.
+    /// Phase of the beat from sample 0 to sample `n1` without whole turns: in about [-1/2, 1/2], exact to about 1e-16.
     #[inline(always)]
     pub fn beat_turns_at<const FMA: bool>(&self, n1: f64) -> Lanes<f64, W> {
         let n1 = Lanes::splat(n1);
@@ -79,7 +75,7 @@ impl<const W: usize> EchoLanes<W> {
         (p.hi - p.hi.nearest()) + (p.lo + n1 * self.beat_turns_low)
     }
 
-    /// Range in cells, `cells` to a turn of the beat. All lanes lie on the first lane's side of the wrap.
+    /// Range in units of `1 / cells` turns of the beat. All lanes are within half a turn of the first.
     #[inline(always)]
     pub(super) fn position_in(&self, cells: f64) -> Lanes<f64, W> {
         let of = Lanes::<f64, W>::splat;
@@ -101,7 +97,6 @@ pub struct EchoModel {
 }
 
 impl EchoModel {
-    /// Prepares the constants of `radar`.
     pub fn new(radar: &Radar) -> Self {
         EchoModel {
             power_watts: radar.transmit_power_watts,
@@ -118,22 +113,22 @@ impl EchoModel {
         self.echo_lanes::<1, false>(pair, r).first()
     }
 
-    /// Echo of `r` between the antennas of `pairs`; lanes of positions are monostatic elements.
+    /// Echo of `r` between the antennas of `pairs`.
     #[inline(always)]
     pub fn echo_lanes<const W: usize, const FMA: bool>(
         &self,
         pairs: impl Into<PairBlocks<W>>,
         r: &Reflector,
     ) -> EchoLanes<W> {
-        self.heard::<W, FMA>(Path::of_point::<FMA>(self.power_watts, self.pattern, &pairs.into(), r))
+        self.of_path::<W, FMA>(Path::of_point::<FMA>(self.power_watts, self.pattern, &pairs.into(), r))
     }
 
-    /// The echo that came along `path`.
+    /// The echo of a path.
     #[inline(always)]
-    pub fn heard<const W: usize, const FMA: bool>(&self, path: Path<W>) -> EchoLanes<W> {
+    pub fn of_path<const W: usize, const FMA: bool>(&self, path: Path<W>) -> EchoLanes<W> {
         let of = Lanes::<f64, W>::splat;
-        let carrier = rest::<W, FMA>(path.range_metres, self.per_wavelength, 1.0);
-        let bins = rest::<W, FMA>(path.range_metres, self.per_bin, self.samples);
+        let carrier = remainder::<W, FMA>(path.range_metres, self.per_wavelength, 1.0);
+        let bins = remainder::<W, FMA>(path.range_metres, self.per_bin, self.samples);
         let beat = bins.hi.map(|v| v / self.samples);
         let back = product::<W, FMA>(beat, of(self.samples));
         let carrier_turns = of(self.carrier) * (carrier.hi + carrier.lo);

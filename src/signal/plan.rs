@@ -8,12 +8,12 @@ use crate::scattering::{Echoing, SeenObject, Sources};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Algorithm, precision, tolerance and instructions of a simulation. Fields may be changed before it runs ([`super::beat_signal`]).
+/// Algorithm, precision, tolerance and instructions of a simulation by [`super::beat_signal`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Plan {
     pub algorithm: Algorithm,
     pub precision: Precision,
-    /// Error allowed in a sample, relative to the sum of the reflectors' amplitudes.
+    /// Largest error of a sample, relative to the sum of the reflectors' amplitudes.
     pub tolerance: f64,
     pub simd: Simd,
 }
@@ -21,18 +21,18 @@ pub struct Plan {
 /// Error of the best f64 evaluation, relative to the sum of amplitudes.
 pub const BEST_TOLERANCE: f64 = 1e-15;
 /// Smallest tolerance that f32 meets.
-const F32_TOLERANCE: f64 = 9e-7;
-/// Smallest tolerance that gridding meets; far beneath the thesis' floor, which is 1e-11 a sample.
+const MIN_F32_TOLERANCE: f64 = 9e-7;
+/// Smallest tolerance that gridding meets; far below the thesis' floor, which is 1e-11 a sample.
 pub const FLOOR_TOLERANCE: f64 = 1e-14;
-/// From this many reflectors on, spreading is cheaper than summing phasors (`apertura bench` measures it).
-const GRIDDED_FROM: usize = 4;
-/// Cells up to which the closed form is cheaper than making samples and transforming them (`apertura bench` measures it).
-const CLOSED_FORM_CELLS: usize = 3300;
-/// f32 holds squares of magnitudes only between these amplitudes.
-const F32_AMPLITUDES: std::ops::Range<f64> = 1e-12..1e12;
+/// Least number of reflectors for which gridding is cheaper than phasor split (`apertura bench` measures it).
+const MIN_GRIDDED_REFLECTORS: usize = 4;
+/// Most cells for which the closed form is cheaper than samples and their transform (`apertura bench` measures it).
+const MAX_CLOSED_FORM_CELLS: usize = 3300;
+/// Amplitudes whose squares f32 can hold.
+const F32_AMPLITUDE_RANGE: std::ops::Range<f64> = 1e-12..1e12;
 
-/// Most reflectors whose sum in f32 stays within [`F32_TOLERANCE`] even where all roundings agree, as they do for coincident points.
-fn most_in_f32(algorithm: Algorithm) -> usize {
+/// Most reflectors whose sum in f32 has at most the error [`MIN_F32_TOLERANCE`], even where all rounding errors agree, as for coincident points.
+fn max_f32_reflectors(algorithm: Algorithm) -> usize {
     match algorithm {
         // One long sum.
         Algorithm::ClosedForm => 60,
@@ -46,9 +46,9 @@ fn most_in_f32(algorithm: Algorithm) -> usize {
 impl Plan {
     /// The cheapest way to evaluate `count` reflectors whose amplitudes sum to at most `amplitude`, within `tolerance`.
     pub fn cheapest(count: usize, amplitude: f64, tolerance: f64) -> Plan {
-        let gridded = count >= GRIDDED_FROM && tolerance >= FLOOR_TOLERANCE;
+        let gridded = count >= MIN_GRIDDED_REFLECTORS && tolerance >= FLOOR_TOLERANCE;
         let algorithm = if gridded { Algorithm::Gridded } else { Algorithm::Split };
-        let single = tolerance >= F32_TOLERANCE && holds(amplitude) && count <= most_in_f32(algorithm);
+        let single = tolerance >= MIN_F32_TOLERANCE && holds(amplitude) && count <= max_f32_reflectors(algorithm);
         let precision = if single { Precision::F32 } else { Precision::F64 };
         Plan { algorithm, precision, tolerance, simd: Simd::chosen() }
     }
@@ -56,8 +56,8 @@ impl Plan {
     /// The plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.
     pub fn on_few_rows(self, radar: &Radar, count: usize) -> Plan {
         let cells = count.saturating_mul(2 * closed_form::reach(self.tolerance));
-        let holds = self.precision == Precision::F64 || count <= most_in_f32(Algorithm::ClosedForm);
-        if cells <= CLOSED_FORM_CELLS && holds && closed_form::applies(radar) {
+        let holds = self.precision == Precision::F64 || count <= max_f32_reflectors(Algorithm::ClosedForm);
+        if cells <= MAX_CLOSED_FORM_CELLS && holds && closed_form::applies(radar) {
             self.with_algorithm(Algorithm::ClosedForm)
         } else {
             self
@@ -78,12 +78,11 @@ pub struct Sum {
     pub amplitude: f64,
 }
 
-/// The reason for which f32 must not be used for `sum`, if there is one: it can't hold the squares of very large or very small amplitudes, nor very
-/// long sums.
+/// The reason for which f32 must not be used for `sum`: too large or too small amplitudes, or too many reflectors. `None` where it may be used.
 pub fn refusal(sum: &Sum) -> Option<&'static str> {
     if !holds(sum.amplitude) {
         Some("f64 although f32 was asked for: f32 can't hold such amplitudes")
-    } else if sum.reflectors > most_in_f32(sum.algorithm) {
+    } else if sum.reflectors > max_f32_reflectors(sum.algorithm) {
         Some("f64 although f32 was asked for: f32 loses digits over so many reflectors")
     } else {
         None
@@ -91,11 +90,11 @@ pub fn refusal(sum: &Sum) -> Option<&'static str> {
 }
 
 fn holds(amplitude: f64) -> bool {
-    amplitude == 0.0 || F32_AMPLITUDES.contains(&amplitude)
+    amplitude == 0.0 || F32_AMPLITUDE_RANGE.contains(&amplitude)
 }
 
-/// Elements whose echoes of bodies are looked at for [`amplitude_bound`].
-const LOOKED_AT: usize = 48;
+/// Number of elements at which [`amplitude_bound`] evaluates the echoes of bodies.
+const BOUND_ELEMENTS: usize = 48;
 
 /// Sum of the largest amplitude of each reflector at the array, and of each echo of a body at some elements: the scale of tolerances.
 pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f64 {
@@ -107,7 +106,7 @@ pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f6
     let mut largest: Vec<f64> = vec![0.0; sources.len() - sources.points.len()];
     let mut echoes = Vec::new();
     let last = radar.elements - 1;
-    for n in (0..last).step_by((radar.elements / LOOKED_AT).max(1)).chain([last]) {
+    for n in (0..last).step_by((radar.elements / BOUND_ELEMENTS).max(1)).chain([last]) {
         sources.scattered(radar.pair(n), &mut echoes);
         largest.iter_mut().zip(&echoes).for_each(|(l, echo)| *l = l.max(echo.amplitude.norm()));
     }

@@ -1,4 +1,4 @@
-//! Sets of range bins: the rows of profiles and maps that may be other than zero.
+//! Sets of range bins: the rows of profiles and maps that may be non-zero.
 
 use std::ops::Range;
 
@@ -9,7 +9,6 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// An empty set of `bins` bins.
     pub fn none(bins: usize) -> Self {
         Rows { bins: vec![false; bins] }
     }
@@ -18,7 +17,6 @@ impl Rows {
         Rows { bins: vec![true; bins] }
     }
 
-    /// Whether the set has `bin`.
     pub fn contains(&self, bin: usize) -> bool {
         self.bins.get(bin).copied().unwrap_or(false)
     }
@@ -27,7 +25,6 @@ impl Rows {
         self.bins.iter().filter(|b| **b).count()
     }
 
-    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         !self.bins.contains(&true)
     }

@@ -4,10 +4,10 @@ use crate::radar::{End, Radar};
 use ndarray::{Array2, ArrayView2, Axis, s};
 use num_complex::Complex64;
 
-/// Sampled beat signal: complex, `[elements, samples]`, one row an element.
+/// Sampled beat signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BeatSignal {
-    /// The samples, `[elements, samples]`.
+    /// `[elements, samples]`.
     pub samples: Array2<Complex64>,
 }
 
@@ -23,12 +23,10 @@ impl BeatSignal {
         self.samples.slice(s![range, ..])
     }
 
-    /// The samples of both ends.
     pub fn two_ends(&self, radar: &Radar) -> TwoEnds {
         TwoEnds { first: self.end(radar, End::First).to_owned(), last: self.end(radar, End::Last).to_owned() }
     }
 
-    /// The samples of the elements with the numbers in `layout`.
     pub fn of_layout(&self, layout: &[usize]) -> LayoutSamples {
         LayoutSamples { layout: layout.to_vec(), samples: self.samples.select(Axis(0), layout) }
     }
@@ -65,7 +63,7 @@ impl TwoEnds {
         }
     }
 
-    /// Whether each element measured, those of the first end first. A dead or missing element did not, which differs from a zero echo.
+    /// Whether each element was measured, those of the first end first. The samples of dead and missing elements are zeros.
     pub fn hears(&self) -> Vec<bool> {
         let elements = self.first.outer_iter().chain(self.last.outer_iter());
         elements.map(|samples| samples.iter().any(|v| v.norm_sqr() > 0.0)).collect()

@@ -9,27 +9,27 @@ use crate::scattering::Echoing;
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
 
-/// Beat signal of a scene over the named floor; `seed` picks the floor's noise.
+/// Beat signal of a scene over `floor`, with noise by `seed`.
 ///
-/// Uses the fastest algorithm whose error stays far below the floor. `floor::Floor::Thesis` is exact phase and noise with the power of the
-/// rounding errors of the thesis' evaluation, which [`super::direct::beat_signal`] repeats. The same arguments give the same bits on the
-/// same instruction set, on any number of threads.
+/// The algorithm is the fastest with an error far below the floor. [`Floor::Thesis`] has exact phases and noise with the power of the rounding errors
+/// in the thesis' program, which [`super::direct::beat_signal`] repeats. The same arguments give the same bits on the same instruction set, on any
+/// number of threads.
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
     simulate_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
 }
 
-/// [`simulate`], unless `task` is cancelled before it is done.
+/// As [`simulate`].
 /// # Errors
-/// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
+/// [`Unfinished`] when the scene can't be simulated, and after a cancellation of `task`.
 pub fn simulate_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<BeatSignal> {
     simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed)
 }
 
-/// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them, unless `task` is cancelled before they are done.
+/// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them.
 /// # Errors
-/// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled.
+/// [`Unfinished`] when the scene can't be simulated, and after a cancellation of `task`.
 pub fn simulate_ends_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<TwoEnds> {
     if !scene.disturbances.is_none_to(radar) {
         return Ok(simulate_for(task, radar, scene, floor, seed)?.two_ends(radar));

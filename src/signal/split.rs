@@ -1,9 +1,9 @@
 //! Equation 3.3 by phasors split at 32 samples: sample `n = 32 a + b` is `A[a] * B[b]`, so 512 phasors cost 16 + 32.
 //!
-//! Unlike a recurrence it does not drift: every phasor is the product of four with exact phase. The sum over reflectors is a matrix product,
-//! carried out in registers, one lane an element.
+//! Rounding errors don't grow as in a recurrence: every phasor is the product of four with exact phase. The sum over reflectors is a matrix product
+//! in registers, one lane an element.
 
-use super::heard::HeardEchoes;
+use super::block_echoes::BlockEchoes;
 use super::path::PairBlocks;
 use super::phase::{EchoLanes, EchoModel};
 use super::simd::{ComplexLanes, Real, phasor};
@@ -11,14 +11,14 @@ use crate::scene::Reflector;
 
 /// Samples in a row of the split.
 pub const STRIDE: usize = 32;
-/// Reflectors whose phasors are kept at a time: as many as fit the first-level cache.
+/// Reflectors whose phasors are computed together: they fit the first-level cache.
 pub const CHUNK: usize = 8;
-/// Phasors evaluated from their phase are this many apart; those between are products.
+/// Distance between phasors that are evaluated from their phase; those between are products.
 const STEP: usize = 4;
 /// Rows and columns of the product kept in registers.
 const TILE: (usize, usize) = (2, 4);
 
-/// Rows of the split of chirps of `samples` samples, the last of which may go on beyond the chirp.
+/// Rows of the split of chirps of `samples` samples; the last may extend beyond the chirp.
 pub const fn rows_of(samples: usize) -> usize {
     samples.div_ceil(STRIDE).next_multiple_of(STEP)
 }
@@ -26,29 +26,25 @@ pub const fn rows_of(samples: usize) -> usize {
 /// Phasors of one reflector: its echo at sample `32 a + b` is `rows[a] * columns[b]`.
 #[derive(Debug, Clone)]
 pub struct Factors<T, const W: usize> {
-    /// Amplitude and phase of every 32nd sample; somewhat more of them than the chirp needs.
+    /// Amplitude and phase of every 32nd sample, [`rows_of`] of them.
     pub rows: Vec<ComplexLanes<T, W>>,
     /// Phase from such a sample to each of the next 32.
     pub columns: [ComplexLanes<T, W>; STRIDE],
 }
 
-/// Phasors of one reflector, with rows of their own where the reflector's gain is in them.
+/// [`Factors`] by reference, which may have rows of another gain.
 #[derive(Debug, Clone, Copy)]
 pub struct Product<'a, T, const W: usize> {
-    /// As [`Factors::rows`].
     pub rows: &'a [ComplexLanes<T, W>],
-    /// As [`Factors::columns`].
     pub columns: &'a [ComplexLanes<T, W>; STRIDE],
 }
 
 impl<T: Real, const W: usize> Factors<T, W> {
-    /// The echo itself.
     #[inline(always)]
     pub fn product(&self) -> Product<'_, T, W> {
         Product { rows: &self.rows, columns: &self.columns }
     }
 
-    /// Memory for the phasors of chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
         Factors { rows: vec![zero; rows_of(samples)], columns: [zero; STRIDE] }
@@ -63,7 +59,6 @@ pub struct SplitScratch<T, const W: usize> {
 }
 
 impl<T: Real, const W: usize> SplitScratch<T, W> {
-    /// Memory for the phasors of chirps of `samples` samples.
     pub fn new(samples: usize) -> Self {
         let factors = vec![Factors::new(samples); CHUNK];
         let padded = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
@@ -73,16 +68,16 @@ impl<T: Real, const W: usize> SplitScratch<T, W> {
 
 #[inline(always)]
 pub(super) fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
-    heard: &HeardEchoes<'_, W>,
+    echoes: &BlockEchoes<'_, W>,
     samples: usize,
     scratch: &'s mut SplitScratch<T, W>,
 ) -> &'s mut [ComplexLanes<T, W>] {
     let SplitScratch { factors, padded } = scratch;
     padded.fill(ComplexLanes::zero());
-    for begin in (0..heard.len()).step_by(CHUNK) {
-        let count = CHUNK.min(heard.len() - begin);
+    for begin in (0..echoes.len()).step_by(CHUNK) {
+        let count = CHUNK.min(echoes.len() - begin);
         for (i, f) in factors.iter_mut().enumerate().take(count) {
-            let echo = heard.echo::<FMA>(begin + i);
+            let echo = echoes.echo::<FMA>(begin + i);
             fill_with::<T, W, FMA>(&echo, &mut f.rows, &mut f.columns);
         }
         let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());

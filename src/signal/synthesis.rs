@@ -1,10 +1,9 @@
-//! Runs a block algorithm over the whole array: elements in blocks of one vector, blocks in parallel. Results do not depend on the number of
-//! threads.
+//! Block algorithms over the whole array: elements in blocks of one vector, blocks in parallel. Results do not depend on the number of threads.
 
+use super::block_echoes::BlockEchoes;
 use super::closed_form::ClosedForm;
 use super::floor::unit_noise;
 use super::gridded::{self, Gridding};
-use super::heard::HeardEchoes;
 use super::lane_fft::LaneFft;
 use super::phase::EchoModel;
 use super::plan::BEST_TOLERANCE;
@@ -23,9 +22,8 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockProfiles<T, const W: usize> {
     pub bins: usize,
-    /// The profiles, block after block.
     pub cells: Vec<ComplexLanes<T, W>>,
-    /// Range bins that may hold anything but zeros.
+    /// Range bins that may be non-zero.
     pub touched: Rows,
 }
 
@@ -34,13 +32,12 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
         let bins = radar.samples;
         BlockProfiles {
             bins,
-            // Allocated in parallel: most of the time goes to pages that are touched for the first time.
+            // Allocated in parallel: most of the time is that of the first access to memory pages.
             cells: rayon::iter::repeat_n(ComplexLanes::zero(), bins * radar.elements.div_ceil(W)).collect(),
             touched: Rows::none(bins),
         }
     }
 
-    /// Makes the profiles silent again.
     pub fn clear(&mut self) {
         let bins = self.bins;
         let runs = std::mem::replace(&mut self.touched, Rows::none(bins)).runs();
@@ -56,7 +53,7 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
         Some(cells.iter().map(|c| Complex64::new(c.re.0[lane].wide(), c.im.0[lane].wide())).collect())
     }
 
-    /// Adds (`sign` = 1) or takes away (`sign` = -1) other profiles.
+    /// Adds (`sign` = 1) or subtracts (`sign` = -1) other profiles.
     pub fn add(&mut self, other: &Self, sign: f64) {
         let sign = Lanes::splat(T::of(sign));
         let bins = self.bins;
@@ -70,7 +67,7 @@ impl<T: Real, const W: usize> BlockProfiles<T, W> {
     }
 }
 
-/// A plan made ready for one radar.
+/// A plan prepared for one radar.
 #[derive(Clone)]
 pub struct Synthesis<T: Real, const W: usize> {
     model: EchoModel,
@@ -96,20 +93,20 @@ enum Scratch<T, const W: usize> {
 
 struct Block<'a, 'b, T: Real, const W: usize> {
     synthesis: &'a Synthesis<T, W>,
-    heard: &'a HeardEchoes<'a, W>,
+    echoes: &'a BlockEchoes<'a, W>,
     scratch: &'b mut Scratch<T, W>,
 }
 
 impl<'b, T: Real, const W: usize> Block<'_, 'b, T, W> {
     #[inline(always)]
     fn samples<const FMA: bool>(self) -> &'b mut [ComplexLanes<T, W>] {
-        let Block { synthesis, heard, scratch } = self;
+        let Block { synthesis, echoes, scratch } = self;
         match (scratch, &synthesis.method) {
             (Scratch::Gridded(scratch, out), Method::Gridded(gridding)) => {
-                gridded::block_signal::<T, W, FMA>(gridding, heard, scratch, out);
+                gridded::block_signal::<T, W, FMA>(gridding, echoes, scratch, out);
                 out
             }
-            (Scratch::Split(scratch), _) => split::block_signal::<T, W, FMA>(heard, synthesis.radar.samples, scratch),
+            (Scratch::Split(scratch), _) => split::block_signal::<T, W, FMA>(echoes, synthesis.radar.samples, scratch),
             (Scratch::Gridded(_, out), _) => out,
         }
     }
@@ -155,7 +152,7 @@ impl<T: Real, const W: usize> Kernel for ToProfiles<'_, '_, T, W> {
 
 struct AddProfiles<'a, 'b, T: Real, const W: usize> {
     plan: &'a ClosedForm<T>,
-    heard: &'a HeardEchoes<'a, W>,
+    echoes: &'a BlockEchoes<'a, W>,
     quiet: f64,
     cells: &'b mut [ComplexLanes<T, W>],
 }
@@ -164,7 +161,7 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
     type Output = ();
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        self.plan.add_block::<W, FMA>(self.heard, self.quiet, self.cells);
+        self.plan.add_block::<W, FMA>(self.echoes, self.quiet, self.cells);
     }
 }
 
@@ -195,8 +192,8 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         Synthesis { array: array.clone(), ..self }
     }
 
-    fn heard<'a>(&'a self, sources: Sources<'a>, first_element: usize) -> HeardEchoes<'a, W> {
-        HeardEchoes::new(&self.model, sources, |lane| self.array.pair(&self.radar, first_element + lane))
+    fn echoes<'a>(&'a self, sources: Sources<'a>, first_element: usize) -> BlockEchoes<'a, W> {
+        BlockEchoes::new(&self.model, sources, |lane| self.array.pair(&self.radar, first_element + lane))
     }
 
     pub fn plan(&self) -> &Plan {
@@ -217,8 +214,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         }
     }
 
-    /// Samples of a run of neighbouring elements, `[elements, samples]`. Blocks that are left when `task` is cancelled are left out: the samples must
-    /// not be used then.
+    /// Samples of neighbouring elements, `[elements, samples]`; incomplete after a cancellation of `task`.
     pub fn samples<'a>(
         &self,
         sources: impl Into<Sources<'a>>,
@@ -231,23 +227,22 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
             || self.scratch(),
             |scratch, (block, mut rows)| {
                 if let (Some(rows), false) = (rows.as_slice_mut(), task.is_cancelled()) {
-                    let heard = &self.heard(sources, elements.start + block * W);
-                    self.simd().run(ToRows(Block { synthesis: self, heard, scratch }, rows));
+                    let echoes = &self.echoes(sources, elements.start + block * W);
+                    self.simd().run(ToRows(Block { synthesis: self, echoes, scratch }, rows));
                 }
             },
         );
         out
     }
 
-    /// Windowed range profiles of every element, written over `out`. Blocks that are left when `task` is cancelled are left out: the profiles must
-    /// not be used then.
+    /// Windowed range profiles of every element, written over `out`; incomplete after a cancellation of `task`.
     pub fn range_profiles<'a>(&self, sources: impl Into<Sources<'a>>, out: &mut BlockProfiles<T, W>, task: &Task) {
         self.range_profiles_beside(sources, 0.0, out, task);
     }
 
-    /// [`Synthesis::range_profiles`] of echoes that stand beside others. The error of each may be the plan's tolerance times its amplitude, or
-    /// times `quiet` where that is more. If `quiet` is the mean amplitude of all echoes, the error of the sum doubles at most. Only the
-    /// closed form makes use of it.
+    /// As [`Synthesis::range_profiles`], for a part of a scene's echoes. The error of each is at most the plan's tolerance times its amplitude, or
+    /// times `quiet` where that is larger. If `quiet` is the mean amplitude of all echoes, the error of the sum at most doubles. Only the closed form
+    /// uses it.
     pub fn range_profiles_beside<'a>(
         &self,
         sources: impl Into<Sources<'a>>,
@@ -267,18 +262,18 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                 if task.is_cancelled() {
                     return rows;
                 }
-                let heard = &self.heard(sources, block * W);
-                plan.touch_paths(&self.radar, &heard.paths, quiet, &mut rows);
-                self.simd().run(AddProfiles { plan, heard, quiet, cells });
+                let echoes = &self.echoes(sources, block * W);
+                plan.add_path_rows(&self.radar, &echoes.paths, quiet, &mut rows);
+                self.simd().run(AddProfiles { plan, echoes, quiet, cells });
                 rows
             };
-            let either = |mut rows: Rows, others: Rows| {
+            let joined = |mut rows: Rows, others: Rows| {
                 rows.extend(&others);
                 rows
             };
-            let of_paths = out.cells.par_chunks_mut(bins).enumerate().map(fill).reduce(|| Rows::none(bins), either);
-            let of_points = plan.rows(&self.radar, sources.points, self.radar.elements.next_multiple_of(W));
-            out.touched = either(of_points, of_paths);
+            let path_rows = out.cells.par_chunks_mut(bins).enumerate().map(fill).reduce(|| Rows::none(bins), joined);
+            let point_rows = plan.rows(&self.radar, sources.points, self.radar.elements.next_multiple_of(W));
+            out.touched = joined(point_rows, path_rows);
             return;
         }
         out.touched = Rows::all(bins);
@@ -288,7 +283,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
                 if task.is_cancelled() {
                     return;
                 }
-                let block = Block { synthesis: self, heard: &self.heard(sources, block * W), scratch };
+                let block = Block { synthesis: self, echoes: &self.echoes(sources, block * W), scratch };
                 self.simd().run(ToProfiles(self, Some(block), cells, spare));
             },
         );

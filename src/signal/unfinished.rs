@@ -3,7 +3,7 @@
 use crate::scene::SceneError;
 use crate::task::Cancelled;
 
-/// A reason for which there are no samples.
+/// A reason for which a simulation has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Unfinished {
     #[error(transparent)]
@@ -12,11 +12,11 @@ pub enum Unfinished {
     Cancelled(#[from] Cancelled),
 }
 
-/// A query with its value, or the reason why it has none.
+/// The result of a simulation that may be cancelled.
 pub type Made<T> = Result<T, Unfinished>;
 
 impl Unfinished {
-    /// The fault of the scene, for work on a task without another owner.
+    /// The fault of the scene, for a task that can't be cancelled.
     pub(crate) fn of_scene(self) -> SceneError {
         match self {
             Unfinished::Scene(error) => error,

@@ -108,7 +108,7 @@ fn far_points() -> Scene {
 
 fn target(radar: &Radar, scene: &Scene) -> RangeAngleMap {
     let signal = simulate(radar, scene, Floor::Exact, 0).unwrap();
-    let maps = LogMaps::heard_by(radar, &scene.disturbances.elements, &signal);
+    let maps = LogMaps::of_elements(radar, &scene.disturbances.elements, &signal);
     maps.full.normalise(Normalisation::DynamicRange(Decibels(40.0)))
 }
 

@@ -74,7 +74,7 @@ fn source_map(source: &Source, static_clutter_out: bool, task: &Task) -> Result<
     if let Some(origin) = source.recording.as_ref().and_then(|r| r.origin.as_ref()) {
         let FrameLoops { radar, mut samples, knows_interval } = origin.loops().map_err(|e| e.to_string())?;
         if static_clutter_out {
-            samples.take_out_static();
+            samples.remove_static();
         }
         let decades = RangeDopplerMap::of(&radar, samples).log_magnitude();
         return Ok((radar, knows_interval, decades));

@@ -5,7 +5,7 @@
 
 use crate::app::state::{CardPlan, LiveFrame};
 use crate::platform::{self, lock};
-use crate::recording::card::{Card, CardSummary, Handed};
+use crate::recording::card::{Card, CardSummary, FrameResponse};
 use crate::recording::packets::CardFrame;
 use crate::recording::raw::{self, boards};
 use crate::recording::{Origin, Recording, RecordingError};
@@ -169,7 +169,7 @@ fn receive(card: impl FnOnce() -> io::Result<Card>, shared: &Between, wake: impl
         let before = lock(&shared.held).newest.replace(frame);
         shared.changed.notify_all();
         wake();
-        if before.is_some() { Handed::Dropped } else { Handed::Taken }
+        if before.is_some() { FrameResponse::Dropped } else { FrameResponse::Taken }
     };
     let goes_on = |summary: &CardSummary| {
         let mut held = lock(&shared.held);

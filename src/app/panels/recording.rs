@@ -50,7 +50,7 @@ pub fn show(
             None => _ = ui.weak("Read as its TOML says."),
             Some(origin) => {
                 match origin.offers.as_slice() {
-                    [only] if only.power.is_empty() => _ = ui.weak(&only.described),
+                    [only] if only.power.is_empty() => _ = ui.weak(&only.description),
                     _ => layouts(ui, origin, &mut ways),
                 }
                 if origin.frames > 1 {
@@ -115,7 +115,7 @@ fn layouts(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
             let is_taken = n == origin.taken;
             let clicked = profile(ui, n, offer, is_taken).on_hover_text(tooltip.as_str()).clicked();
             ui.vertical(|ui| {
-                let text = ui.selectable_label(is_taken, &offer.described).on_hover_text(tooltip);
+                let text = ui.selectable_label(is_taken, &offer.description).on_hover_text(tooltip);
                 if (clicked || text.clicked()) && !is_taken {
                     asked.push(Way::Layout(n));
                 }
@@ -174,8 +174,8 @@ pub mod tests {
 
     /// A recording of 20 frames, whose layout is in doubt.
     pub fn some_recording() -> Recording {
-        let offer = |described: &str, log_odds: f64| Offer {
-            described: described.to_owned(),
+        let offer = |description: &str, log_odds: f64| Offer {
+            description: description.to_owned(),
             log_odds,
             power: (0..64).map(|bin| if bin == 9 { 1e6 } else { 1.0 }).collect(),
             toml: String::new(),

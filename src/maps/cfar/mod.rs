@@ -1,13 +1,13 @@
 //! Detection at a constant false-alarm rate: each cell against a threshold from the cells around it.
 //!
-//! A window around the cell under test has guard cells, which may hold the cell's own echo, and training cells beyond them, which measure the
-//! noise. The cell is a detection where its power exceeds the measured noise times a factor. The factor follows from the wanted rate of false
+//! A window around the cell under test has guard cells, which may contain the cell's echo, and training cells beyond them, by which the noise is
+//! estimated. The cell is a detection where its power exceeds the noise times a factor. The factor follows from the wanted rate of false
 //! alarms, for noise whose power is exponentially distributed and independent from cell to cell.
 //!
 //! * Cell averaging (H. M. Finn and R. S. Johnson, *Adaptive detection mode with threshold control as a function of spatially sampled
-//!   clutter-level estimates*, RCA Review 29, 1968) takes the mean of the training cells.
+//!   clutter-level estimates*, RCA Review 29, 1968) uses the mean of the training cells.
 //! * Ordered statistics (H. Rohling, *Radar CFAR thresholding in clutter and multiple target situations*, IEEE Transactions on Aerospace and
-//!   Electronic Systems 19, 1983) takes the training cell of rank 3/4: strong echoes among the training cells don't raise it.
+//!   Electronic Systems 19, 1983) uses the training cell of rank 3/4, which strong echoes among the training cells hardly raise.
 //!
 //! A window function or missing elements correlate neighbouring cells. The false-alarm rate then differs from the nominal one.
 
@@ -23,12 +23,12 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Most guard or training cells a side.
-pub const MOST_CELLS: usize = 1000;
+pub const MAX_CELLS: usize = 1000;
 
 /// The threshold between the two values of a map of detected cells ([`Mask::as_map`]).
 pub const DETECTED: f32 = 0.5;
 
-const RANK: f64 = 0.75;
+const RANK_PART: f64 = 0.75;
 
 /// The noise estimate from the training cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -39,7 +39,6 @@ pub enum Statistic {
 }
 
 impl Statistic {
-    /// Both estimates.
     pub const ALL: [Statistic; 2] = [Statistic::CellAveraging, Statistic::OrderedStatistics];
 
     pub fn name(self) -> &'static str {
@@ -79,14 +78,14 @@ impl Default for Cfar {
     }
 }
 
-/// A reason for which a detector can't work.
+/// A reason for which a detector can't be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CfarError {
     #[error("the wanted false-alarm rate is {0}; expected a number between 0 and 1, without these")]
     Rate(f64),
     #[error("there are no training cells; expected at least one a side, in range or in angle")]
     NoTraining,
-    #[error("{what} are {cells} cells a side; expected at most {MOST_CELLS}")]
+    #[error("{what} are {cells} cells a side; expected at most {MAX_CELLS}")]
     Large { what: &'static str, cells: usize },
     #[error("guard and training cells span {span} columns and the map has {columns}; expected fewer cells in angle")]
     Wide { span: usize, columns: usize },
@@ -103,7 +102,6 @@ pub enum CfarError {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
     pub training: usize,
-    /// The noise by the training cells.
     pub noise: f64,
     /// The noise times the factor: the cell is a detection above it.
     pub threshold: f64,
@@ -111,14 +109,12 @@ pub struct Level {
 }
 
 impl Level {
-    /// Whether the cell is a detection.
     pub fn is_detected(&self) -> bool {
         self.power > self.threshold
     }
 }
 
-/// Power of every cell relative to the map's peak, linear, from Lambda. A cell at Lambda 0 has at most this power: a dynamic range cuts the map
-/// off there.
+/// Power of every cell relative to the map's peak, linear, from Lambda; at Lambda 0 an upper bound, where a dynamic range limits the map.
 pub fn relative_power(map: &RangeAngleMap, scale: LambdaScale) -> Array2<f64> {
     let decades = 2.0 * (scale.peak - scale.floor).max(0.0);
     map.lambda.mapv(|lambda| 10f64.powf((f64::from(lambda) - 1.0) * decades))
@@ -136,7 +132,7 @@ impl Cfar {
             return Err(CfarError::NoTraining);
         }
         for (what, sides) in [("the guard cells", self.guard), ("the training cells", self.training)] {
-            if let Some(&cells) = sides.iter().find(|cells| **cells > MOST_CELLS) {
+            if let Some(&cells) = sides.iter().find(|cells| **cells > MAX_CELLS) {
                 return Err(CfarError::Large { what, cells });
             }
         }
@@ -170,33 +166,33 @@ impl Cfar {
         }
     }
 
-    /// The cells that are detections. `power` is linear, `[range bins, columns]`; its unit doesn't matter.
+    /// The detections. `power` is linear, `[range bins, columns]`, in any unit.
     ///
-    /// Takes time in proportion to the cells and to the window's sides for cell averaging, to the training cells for ordered statistics.
+    /// The time is proportional to the map's cells, and to the window's sides for cell averaging, or to the training cells for ordered statistics.
     /// # Errors
     /// [`Cfar::check_map`].
     pub fn detect(&self, power: ArrayView2<'_, f64>) -> Result<Mask, CfarError> {
         let (bins, columns) = power.dim();
         self.check_map([bins, columns])?;
         let window = window::Window::new(self.guard, self.training);
-        let mut known = BTreeMap::new();
-        let of_count = |n: usize| (n, *known.entry(n).or_insert_with(|| self.factor(n)));
-        let of_bin: Vec<(usize, f64)> = (0..bins).map(|bin| window.cells(bin, bins)).map(of_count).collect();
+        let mut factors = BTreeMap::new();
+        let with_factor = |n: usize| (n, *factors.entry(n).or_insert_with(|| self.factor(n)));
+        let by_bin: Vec<(usize, f64)> = (0..bins).map(|bin| window.cells(bin, bins)).map(with_factor).collect();
         let cells = match self.statistic {
-            Statistic::CellAveraging => window.above_sum(power, |bin| of_bin[bin].1 / of_bin[bin].0 as f64),
-            Statistic::OrderedStatistics => window.above_rank(power, |bin| (rank(of_bin[bin].0), of_bin[bin].1)),
+            Statistic::CellAveraging => window.above_sum(power, |bin| by_bin[bin].1 / by_bin[bin].0 as f64),
+            Statistic::OrderedStatistics => window.above_rank(power, |bin| (rank(by_bin[bin].0), by_bin[bin].1)),
         };
         Ok(Mask { cells })
     }
 
-    /// [`Cfar::detect`] of a map that is Lambda under `scale`.
+    /// As [`Cfar::detect`], of a map of Lambda by `scale`.
     /// # Errors
     /// [`Cfar::check_map`].
     pub fn detect_lambda(&self, map: &RangeAngleMap, scale: LambdaScale) -> Result<Mask, CfarError> {
         self.detect(relative_power(map, scale).view())
     }
 
-    /// The verdict on the cell `[bin, column]` alone.
+    /// Noise estimate and threshold of one cell `[bin, column]`, for the power `of` each cell of a map of `[range bins, columns]`.
     /// # Errors
     /// As [`Cfar::check_map`].
     /// # Panics
@@ -215,7 +211,7 @@ impl Cfar {
 }
 
 fn rank(training: usize) -> usize {
-    ((RANK * training as f64).round() as usize).clamp(1, training.max(1))
+    ((RANK_PART * training as f64).round() as usize).clamp(1, training.max(1))
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
-//! The window around a cell, and its training cells summed or counted for every cell of a map.
+//! The window around a cell, and sums or counts of its training cells for every cell of a map.
 //!
-//! Only positive numbers are summed: differences in a summed-area table would lose the noise, since a map may span 30 decades of power, more
-//! than the 16 digits of a double.
+//! There are no differences of sums, as in a summed-area table: a map may span 30 decades of power, but a double has 16 digits.
 
 use ndarray::{Array2, ArrayView2, Axis, Zip};
 use std::ops::Range;
@@ -10,7 +9,7 @@ use std::ops::Range;
 #[derive(Debug, Clone, Copy)]
 pub struct Window {
     guard: [usize; 2],
-    /// Guard and training cells together.
+    /// Guard and training cells.
     reach: [usize; 2],
 }
 
@@ -30,13 +29,13 @@ impl Window {
         (all - guarded) * (2 * self.reach[1] + 1) + guarded * 2 * (self.reach[1] - self.guard[1])
     }
 
-    /// The rows of training cells, each with whether it also holds guard cells.
+    /// The rows of training cells, each with whether it also has guard cells.
     fn training_rows(&self, bin: usize, bins: usize) -> impl Iterator<Item = (usize, bool)> + use<> {
         let guarded = Self::rows(bin, self.guard[0], bins);
         Self::rows(bin, self.reach[0], bins).map(move |row| (row, guarded.contains(&row)))
     }
 
-    /// The shifts of training columns, from 0 for the leftmost of the window.
+    /// Indices of the training columns in the window.
     fn shifts(&self, is_guarded: bool) -> impl Iterator<Item = usize> + use<> {
         let [guard, reach] = [self.guard[1], self.reach[1]];
         (0..=2 * reach).filter(move |shift| !is_guarded || shift.abs_diff(reach) > guard)
@@ -50,7 +49,7 @@ impl Window {
         })
     }
 
-    /// Rows that are longer by the window's reach at both ends, where columns wrap around.
+    /// The rows, circularly padded by the window's reach at both ends.
     fn wrapped(&self, power: ArrayView2<'_, f64>) -> Array2<f64> {
         let (bins, columns) = power.dim();
         let first = columns - self.reach[1];
@@ -71,12 +70,12 @@ impl Window {
             });
             sums
         };
-        // Sums over the columns of a row, once with and once without those that are guarded.
-        let [whole, beside] = [along(false), along(true)];
+        // Sums over the columns of a row, with and without the guarded columns.
+        let [whole, unguarded] = [along(false), along(true)];
         self.for_each_bin(power, |bin, row, above| {
             let mut sums = vec![0.0f64; columns];
             for (other, is_guarded) in self.training_rows(bin, bins) {
-                let part = if is_guarded { beside.row(other) } else { whole.row(other) };
+                let part = if is_guarded { unguarded.row(other) } else { whole.row(other) };
                 sums.iter_mut().zip(part).for_each(|(sum, cell)| *sum += cell);
             }
             let factor = factor(bin);
@@ -84,8 +83,8 @@ impl Window {
         })
     }
 
-    /// Whether each cell exceeds the training cell of a rank, from 1, times a factor, both of its range bin: where at least `rank` training cells lie
-    /// below the cell over the factor.
+    /// Whether each cell exceeds the training cell of a rank, from 1, times a factor, both by range bin: whether at least `rank` training cells are below
+    /// the cell over the factor.
     pub fn above_rank(&self, power: ArrayView2<'_, f64>, of: impl Fn(usize) -> (usize, f64) + Sync) -> Array2<bool> {
         let (bins, columns) = power.dim();
         let wrapped = self.wrapped(power);
@@ -105,7 +104,6 @@ impl Window {
         })
     }
 
-    /// A mask, row by row.
     fn for_each_bin(
         &self,
         power: ArrayView2<'_, f64>,

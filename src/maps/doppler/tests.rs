@@ -83,7 +83,7 @@ fn at_rest_the_first_chirp_has_the_bits_of_a_single_one() {
 }
 
 #[test]
-fn what_moves_is_heard_by_disturbed_elements_as_what_rests() {
+fn moving_objects_are_disturbed_as_those_at_rest() {
     let radar = radar();
     let of = |slow: f64| {
         let mut scene = scene(vec![moving(2.0, 11.0, [0.0, slow]), Object::Point(Point::new(-3.0, 9.0))]);

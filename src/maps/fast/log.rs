@@ -1,10 +1,10 @@
-//! Magnitudes to decades, in vectors, with the extremes noted on the way.
+//! Magnitudes to decades, in vectors, with their extremes.
 
 use super::super::log_map::{LOG_GUARD, guard};
 use crate::signal::simd::{ComplexLanes, Lanes, Real};
 use num_complex::Complex;
 
-/// The scale at which magnitudes are squared in f32 without overflow, and its share of the decades.
+/// The factor by which magnitudes are squared in f32 without overflow, and its decades.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LogScale {
     factor: f64,
@@ -43,8 +43,7 @@ pub fn silence_decades(bound: f64) -> f32 {
 
 /// log10 of a positive normal number, within 4e-6 for results below 32.
 ///
-/// `v = 2^e m` with m in [0.707, 1.414), and `log10 m` by a polynomial that vanishes at 1 and whose largest error (6.5e-7) is as small as
-/// its six coefficients allow; without a division.
+/// `v = 2^e m` with m in [0.707, 1.414), and `log10 m` by the minimax polynomial of six coefficients that is 0 at 1, with an error of at most 6.5e-7.
 #[inline(always)]
 fn log10<const FMA: bool>(v: f32) -> f32 {
     const HALF_ROOT: i32 = 0x3f35_04f3; // bits of sqrt(1/2)
@@ -74,7 +73,7 @@ impl<const W: usize> Extremes<W> {
     }
 
     #[inline(always)]
-    pub(super) fn take(&mut self, v: Lanes<f32, W>) {
+    pub(super) fn add(&mut self, v: Lanes<f32, W>) {
         self.min = v.zip(self.min, |v, min| if v < min { v } else { min });
         self.max = v.zip(self.max, |v, max| if v > max { v } else { max });
     }
@@ -95,21 +94,21 @@ pub(super) fn log_rolled<T: Real, const W: usize, const FMA: bool>(
     let half = row.len() / 2;
     let (low, high) = out.split_at_mut(half);
     let (positive, negative) = row.split_at(row.len() - half);
-    // A copy that may live in registers.
+    // A copy that may be in registers.
     let mut seen = *extremes;
     for (from, to) in [(positive, high), (negative, low)] {
         let ((from, from_rest), (to, to_rest)) = (from.as_chunks::<W>(), to.as_chunks_mut::<W>());
         for (from, to) in from.iter().zip(to) {
             let d = log.decades::<T, W, FMA>(parts(from));
-            seen.take(d);
+            seen.add(d);
             *to = d.0;
         }
         if let Some(first) = from_rest.first() {
-            // A short last chunk repeats its first cell, so that the extremes stay right.
+            // The last chunk is padded with its first cell, which does not change the extremes.
             let mut padded = [*first; W];
             padded[..from_rest.len()].copy_from_slice(from_rest);
             let d = log.decades::<T, W, FMA>(parts(&padded));
-            seen.take(d);
+            seen.add(d);
             to_rest.copy_from_slice(&d.0[..from_rest.len()]);
         }
     }

@@ -1,8 +1,7 @@
-//! Range profiles to log-magnitude maps in one pass over the rows: floor added, windowed, transformed, rolled and taken to decades
-//! while a row is in the cache; the ends by a transform that knows how few of its inputs are not zero. Unchanged and empty
-//! rows are not transformed.
+//! Range profiles to log-magnitude maps in one pass over the rows: the floor is added, and rows are windowed, transformed, rolled and converted to
+//! decades while they are in the cache. The ends' transforms skip the zeros among their inputs. Unchanged and empty rows are not transformed.
 //!
-//! Decades are kept in f32 (error at most 4e-6); [`super::LogMap`] keeps them in f64.
+//! Decades are f32 (error at most 4e-6); those of [`super::LogMap`] are f64.
 
 mod log;
 mod normalise;
@@ -21,13 +20,13 @@ pub use log::silence_decades;
 use log::{Extremes, LogScale, log_rolled};
 use ndarray::Array2;
 use num_complex::Complex;
-use pruned::Pruned;
+use pruned::PrunedFft;
 use rayon::prelude::*;
 use rustfft::Fft;
 use std::sync::Arc;
 
-/// Rows that are gathered from the blocks at a time: neighbours share cache lines and pages.
-const ROWS: usize = 8;
+/// Rows that are gathered from the blocks together: neighbours are in the same cache lines and pages.
+const GROUP_ROWS: usize = 8;
 
 /// Largest difference between the logarithms of equal cells, decades.
 const ROUNDING_DECADES: f32 = 1e-5;
@@ -49,9 +48,8 @@ impl FastLogMap {
         FastLogMap { cells, min: guard, max: guard, rows: vec![(guard, guard); radar.samples] }
     }
 
-    /// The scale from this map's decades to Lambda.
     pub fn scale(&self, normalisation: Normalisation) -> LambdaScale {
-        // Cells that differ by the rounding of their logarithms alone are flat.
+        // A map is flat where cells differ only by the rounding of their logarithms.
         let is_flat = self.max - self.min < ROUNDING_DECADES;
         let min = if is_flat { self.max } else { self.min };
         LambdaScale::new(f64::from(min), f64::from(self.max), normalisation)
@@ -71,7 +69,6 @@ pub struct MapNoise<'a, T, const W: usize> {
 #[derive(Debug, Clone, Copy)]
 pub struct MapSources<'a, T, const W: usize> {
     pub profiles: &'a [&'a BlockProfiles<T, W>],
-    /// The floor, if any.
     pub noise: Option<MapNoise<'a, T, W>>,
     /// Upper bound of the magnitude of a map's cells; it only sets the scale at which magnitudes are squared.
     pub bound: f64,
@@ -84,7 +81,7 @@ pub struct MapMaker<T: Real, const W: usize> {
     simd: Simd,
     window: Vec<T>,
     fft: Arc<dyn Fft<T>>,
-    ends: Pruned<T, W>,
+    ends: PrunedFft<T, W>,
 }
 
 impl<T: Real, const W: usize> MapMaker<T, W> {
@@ -92,20 +89,20 @@ impl<T: Real, const W: usize> MapMaker<T, W> {
     pub fn new(radar: &Radar, simd: Simd) -> Self {
         let scale = (radar.elements as f64).sqrt().recip();
         let window = radar.window.weights(radar.elements).into_iter().map(|w| T::of(w * scale)).collect();
-        let (fft, ends) = (simd.forward_fft(radar.elements), Pruned::new(radar, simd));
+        let (fft, ends) = (simd.forward_fft(radar.elements), PrunedFft::new(radar, simd));
         MapMaker { radar: radar.clone(), simd, window, fft, ends }
     }
 
     /// Fills `rows` of the maps that are given: first end, last end, whole array.
     pub fn fill(&self, sources: MapSources<'_, T, W>, maps: [Option<&mut FastLogMap>; 3], rows: &Rows) {
         let columns = self.radar.elements;
-        let groups = self.radar.samples.div_ceil(ROWS);
+        let groups = self.radar.samples.div_ceil(GROUP_ROWS);
         let mut parts: Vec<[Option<Part<'_>>; 3]> = (0..groups).map(|_| [None, None, None]).collect();
         let mut totals = Vec::new();
         for (i, map) in maps.into_iter().enumerate() {
             let Some(FastLogMap { cells, min, max, rows }) = map else { continue };
             if let Some(cells) = cells.as_slice_mut() {
-                let chunks = cells.chunks_mut(ROWS * columns).zip(rows.chunks_mut(ROWS));
+                let chunks = cells.chunks_mut(GROUP_ROWS * columns).zip(rows.chunks_mut(GROUP_ROWS));
                 for (part, (cells, extremes)) in parts.iter_mut().zip(chunks) {
                     part[i] = Some(Part { cells, extremes });
                 }
@@ -117,7 +114,7 @@ impl<T: Real, const W: usize> MapMaker<T, W> {
             .enumerate()
             .map_init(
                 || Scratch {
-                    rows: vec![Complex::default(); ROWS * columns],
+                    rows: vec![Complex::default(); GROUP_ROWS * columns],
                     fft: vec![Complex::default(); self.fft.get_inplace_scratch_len()],
                 },
                 |scratch, (group, maps)| self.simd.run(Group { maker: self, sources, rows, group, maps, scratch }),
@@ -158,14 +155,14 @@ impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
     fn run<const FMA: bool>(self) -> Self::Output {
         let Group { maker, sources, rows, group, mut maps, scratch } = self;
         let (bins, columns) = (maker.radar.samples, maker.radar.elements);
-        let first = group * ROWS;
-        let here = first..bins.min(first + ROWS);
+        let first = group * GROUP_ROWS;
+        let here = first..bins.min(first + GROUP_ROWS);
         let touches = |p: &BlockProfiles<T, W>| here.clone().any(|bin| p.touched.contains(bin));
         let profiles: Vec<&BlockProfiles<T, W>> = sources.profiles.iter().copied().filter(|p| touches(p)).collect();
         let sources = MapSources { profiles: &profiles, ..sources };
-        let heard = |bin: usize| sources.noise.is_some() || profiles.iter().any(|p| p.touched.contains(bin));
-        let sounding = std::array::from_fn(|i| rows.contains(first + i) && heard(first + i));
-        gather::<T, W, FMA>(&sources, bins, first, &sounding, columns, &mut scratch.rows);
+        let has_echo = |bin: usize| sources.noise.is_some() || profiles.iter().any(|p| p.touched.contains(bin));
+        let is_nonzero = std::array::from_fn(|i| rows.contains(first + i) && has_echo(first + i));
+        gather::<T, W, FMA>(&sources, bins, first, &is_nonzero, columns, &mut scratch.rows);
         let log = LogScale::new(sources.bound);
         let silence = silence_decades(sources.bound);
         for (i, (bin, row)) in here.zip(scratch.rows.chunks_mut(columns)).enumerate() {
@@ -173,7 +170,7 @@ impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
                 continue;
             }
             let cells = i * columns..(i + 1) * columns;
-            if !sounding[i] {
+            if !is_nonzero[i] {
                 for map in maps.iter_mut().flatten() {
                     map.cells[cells.clone()].fill(silence);
                     map.extremes[i] = (silence, silence);
@@ -205,13 +202,13 @@ impl<T: Real, const W: usize> Kernel for Group<'_, '_, T, W> {
     }
 }
 
-/// Adds up the sources of those rows from `first` on that are `wanted` into `out`, `[rows, elements]`.
+/// Writes the sums of the sources to `out`, `[rows, elements]`, for those rows from `first` on that are `wanted`.
 #[inline(always)]
 fn gather<T: Real, const W: usize, const FMA: bool>(
     sources: &MapSources<'_, T, W>,
     bins: usize,
     first: usize,
-    wanted: &[bool; ROWS],
+    wanted: &[bool; GROUP_ROWS],
     columns: usize,
     out: &mut [Complex<T>],
 ) {

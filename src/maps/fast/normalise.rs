@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 const CELLS_AT_ONCE: usize = 1 << 15;
 
-/// Writes Lambda of every cell of each map to the map beside it, which has the same shape.
+/// Writes Lambda of each log map to the other map of its pair, which has the same shape.
 pub fn normalise_into(maps: Vec<(&FastLogMap, &mut RangeAngleMap)>, normalisation: Normalisation) {
     let mut parts = Vec::new();
     for (decades, map) in maps {

@@ -1,4 +1,4 @@
-//! The ends' transforms. They skip the inputs that are zero: all but those of an end's few elements.
+//! The ends' transforms, which skip the zeros among their inputs: all but those of an end's elements.
 
 use super::log::{Extremes, LogScale, log_rolled};
 use crate::radar::Radar;
@@ -11,20 +11,20 @@ use std::sync::Arc;
 /// Transform of a few inputs padded with zeros: `columns = small * stride` splits into `stride` transforms of `small` points,
 /// `X[stride p + q] = sum_n (x[n] w^(n q)) exp(-2 pi j n p / small)`, one lane a `q`.
 #[derive(Clone)]
-pub(super) struct Pruned<T: Real, const W: usize> {
+pub(super) struct PrunedFft<T: Real, const W: usize> {
     columns: usize,
     /// Window times twiddle: `[q / W][n]`.
     twiddles: Vec<Vec<ComplexLanes<T, W>>>,
     small: LaneFft<T>,
     points: usize,
-    /// Window and plain transform, where the lengths do not fit.
+    /// Window and plain transform, for lengths that do not factor so.
     plain: Option<(Vec<T>, Arc<dyn Fft<T>>)>,
 }
 
 /// Most points of the small transforms.
 const MAX_POINTS: usize = 64;
 
-impl<T: Real, const W: usize> Pruned<T, W> {
+impl<T: Real, const W: usize> PrunedFft<T, W> {
     pub(super) fn new(radar: &Radar, simd: Simd) -> Self {
         let (inputs, columns) = (radar.end_elements, radar.elements);
         let points = inputs.next_power_of_two();
@@ -42,7 +42,7 @@ impl<T: Real, const W: usize> Pruned<T, W> {
             };
             (0..inputs).map(|n| ComplexLanes { re: lanes(n, |t| t.0), im: lanes(n, |t| t.1) }).collect()
         };
-        Pruned {
+        PrunedFft {
             columns,
             twiddles: if fits { (0..stride).step_by(W).map(chunk).collect() } else { Vec::new() },
             small: LaneFft::new(points),
@@ -69,13 +69,13 @@ impl<T: Real, const W: usize> Pruned<T, W> {
             return log_rolled::<T, W, FMA>(&row, log, out, extremes);
         }
         let stride = self.columns / self.points;
-        // A copy that may live in registers.
+        // A copy that may be in registers.
         let mut seen = *extremes;
         let mut data = [ComplexLanes::<T, W>::zero(); MAX_POINTS];
         let mut spare = [ComplexLanes::<T, W>::zero(); MAX_POINTS];
         for (chunk, twiddles) in self.twiddles.iter().enumerate() {
             for (n, x) in inputs.iter().enumerate() {
-                // Indexed, not zipped: the loop over inputs must not look as if it could be done in vectors, or it is, with gathers.
+                // Indexed, not zipped: else the compiler vectorises the loop over inputs, with slow gathers.
                 data[n] = twiddles[n].times::<FMA>(ComplexLanes::splat(*x));
             }
             data[inputs.len()..self.points].fill(ComplexLanes::zero());
@@ -83,7 +83,7 @@ impl<T: Real, const W: usize> Pruned<T, W> {
             for (p, v) in data[..self.points].iter().enumerate() {
                 let column = (stride * p + chunk * W + self.columns / 2) % self.columns;
                 let d = log.decades::<T, W, FMA>(*v);
-                seen.take(d);
+                seen.add(d);
                 d.store(&mut out[column..]);
             }
         }

@@ -1,6 +1,6 @@
-//! The whole array's map from range profiles without an engine: decades in f32, in one pass over the rows.
+//! The whole array's map from range profiles: decades in f32, in one pass over the rows.
 
-use super::ROWS;
+use super::GROUP_ROWS;
 use super::log::{Extremes, LogScale, log_rolled};
 use crate::maps::RangeProfiles;
 use crate::radar::Radar;
@@ -9,23 +9,23 @@ use ndarray::{Array2, Axis, s};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Decades of the whole array's map, `[range bins, columns]`: those of [`crate::maps::LogMap`] within 1e-5, in a part of its time.
+/// Decades of the whole array's map, `[range bins, columns]`: those of [`crate::maps::LogMap`] within 1e-5, in less time.
 pub fn whole_map(radar: &Radar, profiles: &RangeProfiles) -> Array2<f32> {
     let (simd, columns) = (Simd::chosen(), radar.elements);
     let fft = simd.forward_fft::<f64>(columns);
     let scale = (columns as f64).sqrt().recip();
     let window: Vec<f64> = radar.window.weights(columns).into_iter().map(|w| w * scale).collect();
-    let loudest = profiles.profiles.iter().map(Complex64::norm_sqr).fold(0.0, f64::max).sqrt();
-    // Upper bound of a cell: all profiles as strong as the strongest, and in phase.
-    let log = LogScale::new(loudest * window.iter().sum::<f64>());
+    let strongest = profiles.profiles.iter().map(Complex64::norm_sqr).fold(0.0, f64::max).sqrt();
+    // Upper bound of a cell: all profiles have the strongest amplitude, in phase.
+    let log = LogScale::new(strongest * window.iter().sum::<f64>());
     let mut map = Array2::zeros((radar.samples, columns));
-    map.axis_chunks_iter_mut(Axis(0), ROWS).into_par_iter().enumerate().for_each_init(
-        || (vec![Complex64::default(); ROWS * columns], vec![Complex64::default(); fft.get_inplace_scratch_len()]),
-        |(rows, scratch), (group, mut map)| {
-            let first = group * ROWS;
-            let heard = profiles.profiles.slice(s![.., first..first + map.nrows()]);
+    map.axis_chunks_iter_mut(Axis(0), GROUP_ROWS).into_par_iter().enumerate().for_each_init(
+        || [GROUP_ROWS * columns, fft.get_inplace_scratch_len()].map(|len| vec![Complex64::default(); len]),
+        |[rows, scratch], (group, mut map)| {
+            let first = group * GROUP_ROWS;
+            let profiles_of_rows = profiles.profiles.slice(s![.., first..first + map.nrows()]);
             // Neighbouring bins of an element lie side by side.
-            for ((element, bins), w) in heard.outer_iter().enumerate().zip(&window) {
+            for ((element, bins), w) in profiles_of_rows.outer_iter().enumerate().zip(&window) {
                 bins.iter().enumerate().for_each(|(i, v)| rows[i * columns + element] = v * w);
             }
             for (row, mut out) in rows.chunks_mut(columns).zip(map.outer_iter_mut()) {

@@ -1,7 +1,6 @@
-//! The kernel of the networks: a direct convolution over channels-last data, vectorised over output channels.
+//! The kernel of the networks: a direct convolution of channels-last tensors, vectorised over output channels.
 //!
-//! The loop is written once over a small vector trait and compiled for AVX-512, for AVX2 with FMA, and without either; [`Simd::chosen`] decides
-//! which one runs, as for every other kernel.
+//! The loop is written once over [`Vector`] and compiled for AVX-512, for AVX2 with FMA, and without either. [`Simd::chosen`] selects the one that runs.
 
 use super::vector::{LANES, Loop, Vector, run};
 use crate::signal::simd::Simd;
@@ -13,8 +12,8 @@ pub const fn padded(channels: usize) -> usize {
     channels.div_ceil(LANES) * LANES
 }
 
-/// Weights of a convolution in the order the kernel reads them: blocks of one or two vectors of output channels, then kernel row,
-/// kernel column, input channel.
+/// Weights of a convolution in the order in which the kernel reads them: by blocks of one or two vectors of output channels, then by kernel row, kernel
+/// column and input channel.
 #[derive(Debug, Clone)]
 pub struct Packed {
     kernel: [usize; 2],
@@ -26,8 +25,8 @@ pub struct Packed {
 }
 
 impl Packed {
-    /// Packs weights `[output, input, rows, columns]` (PyTorch's order) of a kernel of so many rows and columns, and `bias` `[output]`. The
-    /// kernel reads `input_stride` channels a cell, of which the last `input_stride - input` are multiplied with zeros.
+    /// Packs weights `[output, input, rows, columns]` (PyTorch's order) of a kernel of `[rows, columns]`, and `bias` `[output]`. Cells have
+    /// `input_stride` channels, of which the last `input_stride - input` are multiplied by zeros.
     pub fn new(
         weights: &[f32],
         bias: &[f32],
@@ -55,17 +54,17 @@ impl Packed {
         Packed { kernel, stride, input: input_stride, output: lanes, weights: packed, bias: all_bias }
     }
 
-    /// Padded output channels.
+    /// Output channels, padded to whole vectors.
     pub fn output(&self) -> usize {
         self.output
     }
 
-    /// Convolves the receptive field of one line of `width` output cells, on this thread. `input` is stored in rows of `row_cells` cells.
+    /// Convolves one line of `width` output cells on this thread. `input` begins with the line's receptive field, and has rows of `row_cells` cells.
     pub fn line(&self, simd: Simd, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
         self.line_beside(simd, input, row_cells, width, [self.output, 0], out);
     }
 
-    /// [`Packed::line`] into cells of `channels` channels, from channel `first` on; other channels of `out` are kept.
+    /// As [`Packed::line`], into cells of `channels` channels, from channel `first` on. Other channels of `out` are unchanged.
     pub fn line_beside(
         &self,
         simd: Simd,
@@ -76,14 +75,14 @@ impl Packed {
         out: &mut [f32],
     ) {
         let [rows, columns] = self.kernel;
-        // The channels of the kernel's columns are contiguous.
-        let many = columns * self.input;
+        // In a row of the input, the channels of a kernel's columns are contiguous.
+        let count = columns * self.input;
         let runs: Vec<Run> =
-            (0..rows).map(|ky| Run { value: ky * row_cells * self.input, row: ky * many, many }).collect();
-        let job = Job { input, step: self.stride * self.input, runs: &runs, width };
+            (0..rows).map(|ky| Run { value: ky * row_cells * self.input, row: ky * count, count }).collect();
+        let job = LineJob { input, step: self.stride * self.input, runs: &runs, width };
         let mut at = 0;
         for (start, lanes) in blocks(self.output) {
-            let size = rows * many * lanes;
+            let size = rows * count * lanes;
             let (weights, bias) = (&self.weights[at..at + size], &self.bias[start..start + lanes]);
             dispatch(simd, &job, Block { weights, bias, start: first + start, lanes: channels }, out);
             at += size;
@@ -94,14 +93,14 @@ impl Packed {
 /// Columns of a [`product`].
 pub const PRODUCT_COLUMNS: usize = 2 * LANES;
 
-/// The matrix product of `left` `[rows, inner]` and `right` `[inner, 32]` into `out` `[rows, 32]`, on this thread, summed over the inner indices
-/// in `runs` only.
+/// The matrix product `out` `[rows, 32]` of `left` `[rows, inner]` and `right` `[inner, 32]`, on this thread, summed over the inner indices in `runs`
+/// alone.
 pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: impl Iterator<Item = Range<usize>>, out: &mut [f32]) {
     let (inner, width) = (right.len() / PRODUCT_COLUMNS, out.len() / PRODUCT_COLUMNS);
     assert!(left.len() == width * inner, "matrices disagree");
-    // Neighbouring rows take the place of a line's cells, so that the kernel shares each load of `right` between them.
-    let runs: Vec<Run> = runs.map(|run| Run { value: run.start, row: run.start, many: run.len() }).collect();
-    let job = Job { input: left, step: inner, runs: &runs, width };
+    // Rows are the cells of a line to the kernel, which loads each value of `right` once for several of them.
+    let runs: Vec<Run> = runs.map(|run| Run { value: run.start, row: run.start, count: run.len() }).collect();
+    let job = LineJob { input: left, step: inner, runs: &runs, width };
     dispatch(
         simd,
         &job,
@@ -110,7 +109,7 @@ pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: impl Iterator<Item
     );
 }
 
-/// Convolves `input`, stored in rows of `row_cells` cells, into `out` `[height, width, output]`.
+/// Convolves `input`, with rows of `row_cells` cells, into `out` `[height, width, output]`, in parallel.
 pub fn convolve(weights: &Packed, input: &[f32], row_cells: usize, width: usize, out: &mut [f32]) {
     convolve_with(Simd::chosen(), weights, input, row_cells, width, out);
 }
@@ -126,8 +125,9 @@ fn blocks(lanes: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..lanes).step_by(2 * LANES).map(move |start| (start, (lanes - start).min(2 * LANES)))
 }
 
+/// One line of a convolution.
 #[derive(Clone, Copy)]
-struct Job<'a> {
+struct LineJob<'a> {
     input: &'a [f32],
     /// Distance in `input` between the first values of two neighbouring output cells.
     step: usize,
@@ -135,16 +135,16 @@ struct Job<'a> {
     width: usize,
 }
 
-/// Contiguous values of the input, and the rows of weights that they are multiplied with.
+/// Contiguous values of the input, and the rows of weights that they are multiplied by.
 struct Run {
     /// Index of the first value, for the line's first cell.
     value: usize,
     /// Index of the first row of weights.
     row: usize,
-    many: usize,
+    count: usize,
 }
 
-/// A block of output channels: its weights, and its place in the output's cells.
+/// A block of output channels: its weights, its first channel, and the number of channels of an output cell.
 #[derive(Clone, Copy)]
 struct Block<'a> {
     weights: &'a [f32],
@@ -154,7 +154,7 @@ struct Block<'a> {
 }
 
 struct Line<'a, 'b> {
-    job: &'a Job<'b>,
+    job: &'a LineJob<'b>,
     block: Block<'a>,
     out: &'a mut [f32],
 }
@@ -174,30 +174,30 @@ impl Loop for Line<'_, '_> {
     }
 }
 
-fn dispatch(simd: Simd, job: &Job, block: Block, out: &mut [f32]) {
+fn dispatch(simd: Simd, job: &LineJob, block: Block, out: &mut [f32]) {
     job.check(&block, out);
     run(simd, Line { job, block, out });
 }
 
-impl Job<'_> {
+impl LineJob<'_> {
     /// Checks the lengths and offsets that the unchecked loops rely on.
     fn check(&self, block: &Block, out: &[f32]) {
         let lanes = block.bias.len();
         assert!(lanes == LANES || lanes == 2 * LANES, "a block is one or two vectors");
-        for Run { value, row, many } in self.runs {
-            let last = (self.width - 1) * self.step + value + many;
+        for Run { value, row, count } in self.runs {
+            let last = (self.width - 1) * self.step + value + count;
             assert!(self.width > 0 && self.input.len() >= last, "the input ends inside the line");
-            assert!(block.weights.len() >= (row + many) * lanes, "too few weights");
+            assert!(block.weights.len() >= (row + count) * lanes, "too few weights");
         }
         assert!(block.start + lanes <= block.lanes && out.len() >= self.width * block.lanes, "the output is too short");
     }
 }
 
-/// A line in tiles of `CELLS` cells times `VECTORS` vectors, [`Vector::TILE`].
+/// Computes a line in tiles of `CELLS` cells times `VECTORS` vectors, [`Vector::TILE`].
 /// # Safety
-/// [`Job::check`] must have passed, and the CPU must have the vector's features.
+/// [`LineJob::check`] must have passed, and the CPU must have the vector's features.
 #[inline(always)]
-unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &Job, block: Block, out: &mut [f32]) {
+unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &LineJob, block: Block, out: &mut [f32]) {
     let vectors = block.bias.len() / LANES;
     let whole = job.width >= CELLS;
     let cells = if whole { CELLS } else { 1 };
@@ -206,33 +206,33 @@ unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &Job, b
         let x = x.min(job.width - cells);
         let mut first = 0;
         while first < vectors {
-            let many = vectors - first >= VECTORS;
+            let is_full = vectors - first >= VECTORS;
             // SAFETY: the caller checked the slices; a tile stays inside the line and the block.
             unsafe {
-                match (whole, many) {
+                match (whole, is_full) {
                     (true, true) => tile::<V, CELLS, VECTORS>(job, x, block, first, out),
                     (true, false) => tile::<V, CELLS, 1>(job, x, block, first, out),
                     (false, true) => tile::<V, 1, VECTORS>(job, x, block, first, out),
                     (false, false) => tile::<V, 1, 1>(job, x, block, first, out),
                 }
             }
-            first += if many { VECTORS } else { 1 };
+            first += if is_full { VECTORS } else { 1 };
         }
     }
 }
 
-/// `CELLS` neighbouring cells times `VECTORS` vectors of output channels from vector `first` of the block, all held in registers.
+/// Computes `CELLS` neighbouring cells times `VECTORS` vectors of output channels, from vector `first` of the block on, in registers.
 /// # Safety
-/// [`Job::check`] must have passed, `x + CELLS` be at most the line's width and `first + VECTORS` at most the block's vectors.
+/// [`LineJob::check`] must have passed, `x + CELLS` be at most the line's width and `first + VECTORS` at most the block's vectors.
 #[inline(always)]
 unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
-    job: &Job,
+    job: &LineJob,
     x: usize,
     block: Block,
     first: usize,
     out: &mut [f32],
 ) {
-    // SAFETY: all offsets lie within the slices that `Job::check` has checked.
+    // SAFETY: all offsets lie within the slices that `LineJob::check` has checked.
     unsafe {
         let from = first * LANES;
         let bias: [V; VECTORS] = std::array::from_fn(|v| V::load(block.bias.as_ptr().add(from + v * LANES)));
@@ -240,7 +240,7 @@ unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
         for run in job.runs {
             let mut w = block.weights.as_ptr().add(run.row * block.bias.len() + from);
             let mut value = job.input.as_ptr().add(run.value + x * job.step);
-            for _ in 0..run.many {
+            for _ in 0..run.count {
                 let weight: [V; VECTORS] = std::array::from_fn(|v| V::load(w.add(v * LANES)));
                 for (p, sums) in sums.iter_mut().enumerate() {
                     let value = *value.add(p * job.step);

@@ -1,13 +1,13 @@
-//! Vectors of sixteen numbers, for processors with AVX-512, with AVX2 and without either.
+//! Vectors of sixteen `f32`, for processors with AVX-512, with AVX2 and without either.
 
 use crate::signal::simd::Simd;
 
-/// Output channels of a vector; every tensor's channels are padded to a multiple of it.
+/// Numbers in a vector. The channels of every tensor are padded to a multiple of it.
 pub const LANES: usize = 16;
 
 /// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
 pub trait Vector: Copy {
-    /// Cells and vectors of a tile whose sums fit into the registers beside the weights and one value.
+    /// Cells and vectors of a tile: its sums fit into the registers together with the weights and one value.
     const TILE: [usize; 2];
     /// # Safety
     /// `from` must hold 16 values, and the CPU must have the features.
@@ -25,14 +25,14 @@ pub trait Vector: Copy {
     /// # Safety
     /// The CPU must have the features.
     unsafe fn minus(self, other: Self) -> Self;
-    /// The larger of each two; `other` where one is NaN.
+    /// The larger of each pair of numbers; that of `other` where one is NaN.
     /// # Safety
     /// The CPU must have the features.
     #[cfg(feature = "network")]
     unsafe fn larger(self, other: Self) -> Self;
 }
 
-/// A loop over vectors, compiled for each of them.
+/// A loop over vectors, compiled for each instruction set.
 pub trait Loop {
     /// Runs the loop. Must be inlined.
     /// # Safety
@@ -56,7 +56,7 @@ pub fn run<L: Loop>(simd: Simd, of: L) {
     unsafe { of.run::<Portable>() };
 }
 
-/// Vectors without special instructions; multiplies and adds separately.
+/// Vectors without special instructions, and without fused multiplication and addition.
 #[derive(Clone, Copy)]
 pub struct Portable([f32; LANES]);
 

@@ -1,4 +1,4 @@
-//! Arrays of training scenes: exact ones, or with elements that are off.
+//! Arrays of training scenes: exact ones, or with errors of the elements.
 
 use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
 use rand::{RngExt, SeedableRng};
@@ -7,14 +7,14 @@ use rand_chacha::ChaCha8Rng;
 /// The arrays of the training scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arrays {
-    /// Part of the scenes whose elements are off, 0 to 1.
+    /// Part of the scenes with errors of the elements, 0 to 1.
     pub share: f64,
-    /// Largest tolerances: each scene draws a part of each, uniform from none to all.
+    /// Largest tolerances. Each scene has a part of each, uniform from 0 to 1.
     pub tolerances: Tolerances,
 }
 
-/// Random stream of arrays, separate from that of floors, which begins from the same seed.
-const STREAM: u64 = 1;
+/// Number of the random stream of arrays: not that of floors, which have the same seed.
+const ARRAY_STREAM: u64 = 1;
 
 impl Arrays {
     /// Exact arrays.
@@ -23,24 +23,25 @@ impl Arrays {
         tolerances: Tolerances { gain: Decibels(0.0), phase_degrees: 0.0, position_millimetres: 0.0 },
     };
 
-    /// The array of the scene with this seed of noise. Unless the `whole` array's samples are used, only elements of the two ends are off.
-    pub fn of(&self, noise_seed: u64, radar: &Radar, whole: bool) -> BuiltArray {
+    /// The array of the scene with this seed of noise. Without `is_whole`, only elements of the two ends have errors.
+    pub fn of(&self, noise_seed: u64, radar: &Radar, is_whole: bool) -> BuiltArray {
         let mut rng = ChaCha8Rng::seed_from_u64(noise_seed);
-        rng.set_stream(STREAM);
+        rng.set_stream(ARRAY_STREAM);
         if rng.random::<f64>() >= self.share {
             return BuiltArray::default();
         }
         let Tolerances { gain, phase_degrees, position_millimetres } = self.tolerances;
-        let [of_gain, of_phase, of_position]: [f64; 3] = rng.random();
+        let [gain_part, phase_part, position_part]: [f64; 3] = rng.random();
         let tolerances = Tolerances {
-            gain: Decibels(of_gain * gain.0),
-            phase_degrees: of_phase * phase_degrees,
-            position_millimetres: of_position * position_millimetres,
+            gain: Decibels(gain_part * gain.0),
+            phase_degrees: phase_part * phase_degrees,
+            position_millimetres: position_part * position_millimetres,
         };
         let mut array = tolerances.build(radar, rng.random());
-        if !whole {
-            let between = array.elements.iter_mut().take(radar.elements - radar.end_elements).skip(radar.end_elements);
-            between.for_each(|element| *element = ElementError::default());
+        if !is_whole {
+            let middle_elements =
+                array.elements.iter_mut().take(radar.elements - radar.end_elements).skip(radar.end_elements);
+            middle_elements.for_each(|element| *element = ElementError::default());
         }
         array
     }
@@ -51,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn drawn_elements_are_off_within_their_tolerances() {
+    fn element_errors_have_their_tolerances() {
         let radar = Radar::default();
         let tolerances = Tolerances { gain: Decibels(1.0), phase_degrees: 20.0, position_millimetres: 0.1 };
         let arrays = Arrays { share: 0.3, tolerances };

@@ -1,4 +1,4 @@
-//! The coarse features: each end's beams, the same registered on the grid of the array's centre, and their phases.
+//! The coarse features: each end's beams, the same registered on the polar grid around the array's centre, and their phases.
 
 use super::grid::{COARSE_CHANNELS, COARSE_COLUMNS, MIN_ROWS, cosine};
 use super::registration::Registration;
@@ -10,34 +10,36 @@ use num_complex::{Complex32, Complex64};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
+/// Tables of the coarse features of one radar.
 #[derive(Debug)]
 pub(super) struct Coarse {
     rows: usize,
     centre: [Registration<COARSE_COLUMNS>; 2],
-    /// `[rows, 64]`: factors that give all cells of one reflector the same phase, see [`even_phases`].
-    even: Vec<Complex64>,
-    /// `[elements, 64]`: windowed steering vectors.
+    /// Factors that give all cells of one reflector the same phase, `[rows, 64]`: see [`phase_references`].
+    references: Vec<Complex64>,
+    /// Windowed steering vectors, `[elements, 64]`.
     beams: Array2<Complex64>,
 }
 
+/// The beams of one end, `[rows, 64]`.
 #[derive(Debug)]
 struct BeamMap {
-    /// `[rows, 64]` log10 amplitude.
+    /// log10 amplitude.
     magnitude: Vec<f32>,
-    /// `[rows, 64]` of amplitude 1.
+    /// Phase, as numbers of amplitude 1.
     phase: Vec<Complex32>,
-    /// `[rows, 64]` times the factors of [`Coarse::even`], the strongest of amplitude 1.
-    even: Vec<Complex32>,
+    /// Values times [`Coarse::references`], relative to the strongest amplitude.
+    centred: Vec<Complex32>,
 }
 
 impl Coarse {
     pub(super) fn new(radar: &Radar) -> Self {
         let centre = End::BOTH.map(|end| Registration::new(radar, 0.0, radar.end_centre_metres(end)));
-        Coarse { rows: radar.samples, centre, even: even_phases(radar), beams: beams(radar) }
+        Coarse { rows: radar.samples, centre, references: phase_references(radar), beams: beams(radar) }
     }
 
-    /// `[COARSE_CHANNELS, rows, 64]`: both ends' magnitudes, the same on the centre's grid, cosines and sines of each end's phase step from
-    /// row to row, and those of the phase between the ends.
+    /// The channels `[COARSE_CHANNELS, rows, 64]` of the range profiles of both ends, `[rows, elements]`: both ends' magnitudes, the same on the centre's
+    /// grid, cosine and sine of each end's phase step from row to row, and those of twice the phase between the ends.
     pub(super) fn features(&self, profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
         let [first, last] = profiles;
         let (first, last) = rayon::join(|| self.beam_map(first), || self.beam_map(last));
@@ -71,20 +73,20 @@ impl Coarse {
 
     fn beam_map(&self, profiles: &Array2<Complex64>) -> BeamMap {
         let beams = profiles.dot(&self.beams).into_raw_vec_and_offset().0;
-        let per_strongest = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
+        let scale = beams.iter().map(|v| v.norm_sqr()).fold(1e-300, f64::max).sqrt().recip();
         let plane = self.rows * COARSE_COLUMNS;
         let zeros = || vec![Complex32::default(); plane];
-        let mut map = BeamMap { magnitude: vec![0.0; plane], phase: zeros(), even: zeros() };
-        Simd::chosen().run(SplitBeams { beams: &beams, even: &self.even, per_strongest, map: &mut map });
+        let mut map = BeamMap { magnitude: vec![0.0; plane], phase: zeros(), centred: zeros() };
+        Simd::chosen().run(SplitBeams { beams: &beams, references: &self.references, scale, map: &mut map });
         map
     }
 
-    /// Fills `planes` with cosine and sine of twice the phase between the two ends' maps, both registered on the centre's grid: one value for
-    /// all cells of a reflector, another for the next reflector. The phase is doubled because side lobes change their sign.
+    /// Fills `planes` with cosine and sine of twice the phase between the two ends' maps, both registered on the centre's grid. All cells of a reflector
+    /// have the same value. The phase is doubled because side lobes change their sign.
     fn fill_phase_between(&self, both: &[BeamMap; 2], planes: &mut [f32]) {
         let (cosines, sines) = planes.split_at_mut(self.rows * COARSE_COLUMNS);
         rows_of(cosines).zip(rows_of(sines)).for_each(|((row, cosines), (_, sines))| {
-            let [first, last] = [0, 1].map(|e| self.centre[e].row(&both[e].even, row));
+            let [first, last] = [0, 1].map(|e| self.centre[e].row(&both[e].centred, row));
             for ((cos, sin), (a, b)) in cosines.iter_mut().zip(sines).zip(first.zip(last)) {
                 let wide = |v: Complex32| Complex64::new(v.re.into(), v.im.into());
                 let cross = wide(a) * wide(b).conj();
@@ -96,14 +98,16 @@ impl Coarse {
     }
 }
 
+/// The rows of a plane `[rows, 64]`, in parallel.
 fn rows_of(plane: &mut [f32]) -> impl IndexedParallelIterator<Item = (usize, &mut [f32])> {
     plane.par_chunks_mut(COARSE_COLUMNS).with_min_len(MIN_ROWS).enumerate()
 }
 
+/// Kernel that fills a [`BeamMap`] from the beams' values.
 struct SplitBeams<'a> {
     beams: &'a [Complex64],
-    even: &'a [Complex64],
-    per_strongest: f64,
+    references: &'a [Complex64],
+    scale: f64,
     map: &'a mut BeamMap,
 }
 
@@ -113,23 +117,23 @@ impl Kernel for SplitBeams<'_> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let narrow = |v: Complex64| Complex32::new(v.re as f32, v.im as f32);
-        let BeamMap { magnitude, phase, even } = self.map;
-        let cells = self.beams.iter().zip(self.even);
-        for (((v, factor), magnitude), (phase, even)) in cells.zip(magnitude).zip(phase.iter_mut().zip(even)) {
+        let BeamMap { magnitude, phase, centred } = self.map;
+        let cells = self.beams.iter().zip(self.references);
+        for (((v, factor), magnitude), (phase, centred)) in cells.zip(magnitude).zip(phase.iter_mut().zip(centred)) {
             let power = v.norm_sqr();
             *magnitude = 0.5 * logarithm((power as f32).max(MIN_POWER));
             *phase = narrow(v * (power.sqrt() + 1e-300).recip());
-            *even = narrow(v * factor * self.per_strongest);
+            *centred = narrow(v * factor * self.scale);
         }
     }
 }
 
-/// A power below that of any sample's rounding and above the smallest f32.
+/// A power below that of the samples' rounding and above the smallest f32.
 const MIN_POWER: f32 = 1e-36;
 
-/// `[rows, 64]` factors that refer a map's phases to mid-chirp and to the end's middle, so that the phase is constant over one reflector's
-/// blob. The middle is half an element off, which makes the phase the same at cos(theta) = -1 and 1, where the columns wrap around.
-fn even_phases(radar: &Radar) -> Vec<Complex64> {
+/// Factors `[rows, 64]` that refer a map's phases to the middle of the chirp and of the end: then the phase is constant over one reflector's
+/// main lobe. The middle is half an element off, for which the phase is the same at cos(theta) = -1 and 1, where the columns wrap around.
+fn phase_references(radar: &Radar) -> Vec<Complex64> {
     let (rows, elements) = (radar.samples, radar.end_elements);
     let row = |r: usize| PI * (rows - 1) as f64 / rows as f64 * r as f64;
     let column = |k: usize| PI * (elements / 2) as f64 * cosine(k, COARSE_COLUMNS);
@@ -138,7 +142,7 @@ fn even_phases(radar: &Radar) -> Vec<Complex64> {
         .collect()
 }
 
-/// Hann-windowed steering vectors of 64 beams over the elements of an end, scaled as the transform of the whole array.
+/// Steering vectors of 64 beams under a Hann window, `[end elements, 64]`, scaled as the transform of the whole array.
 fn beams(radar: &Radar) -> Array2<Complex64> {
     let window = hann(radar.end_elements);
     let scale = (radar.elements as f64).sqrt();

@@ -3,7 +3,7 @@
 use super::grid::COLUMNS;
 use rayon::prelude::*;
 
-/// Place of each column of an array between two columns of the network; cos(theta) rises with both.
+/// The two columns of the network around each column of an array's map. cos(theta) rises with both.
 #[derive(Debug)]
 pub(super) struct ColumnTaps {
     taps: Vec<Tap>,
@@ -12,7 +12,7 @@ pub(super) struct ColumnTaps {
 #[derive(Debug, Clone, Copy)]
 struct Tap {
     pair: [usize; 2],
-    /// Distance to the second of the pair, 0 to 1.
+    /// Weight of the second of the pair, 0 to 1.
     part: f32,
 }
 
@@ -28,17 +28,18 @@ impl ColumnTaps {
         (elements != COLUMNS).then(|| ColumnTaps { taps: (0..elements).map(tap).collect() })
     }
 
-    pub(super) fn fill(&self, wide: &[f32; COLUMNS], row: &mut [f32]) {
+    /// Interpolates one row.
+    pub(super) fn fill(&self, source: &[f32; COLUMNS], row: &mut [f32]) {
         for (to, Tap { pair: [low, high], part }) in row.iter_mut().zip(&self.taps) {
-            *to = wide[*low] * (1.0 - part) + wide[*high] * part;
+            *to = source[*low] * (1.0 - part) + source[*high] * part;
         }
     }
 
     /// Interpolates all rows, from `[rows, 1024]` to `[rows, elements]`.
-    pub(super) fn rows_of(&self, wide: &[f32]) -> Vec<f32> {
-        let (wide, elements) = (wide.as_chunks::<COLUMNS>().0, self.taps.len());
-        let mut rows = vec![0.0; wide.len() * elements];
-        rows.par_chunks_mut(elements).zip(wide).for_each(|(row, wide)| self.fill(wide, row));
+    pub(super) fn rows_of(&self, source: &[f32]) -> Vec<f32> {
+        let (source, elements) = (source.as_chunks::<COLUMNS>().0, self.taps.len());
+        let mut rows = vec![0.0; source.len() * elements];
+        rows.par_chunks_mut(elements).zip(source).for_each(|(row, source)| self.fill(source, row));
         rows
     }
 }
@@ -48,15 +49,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_column_keeps_its_direction_in_an_array_of_any_size() {
+    fn columns_keep_their_direction_for_any_number_of_elements() {
         let cos = |column: usize, columns: usize| (column as f32 - (columns / 2) as f32) / (columns as f32 / 2.0);
-        let wide: Vec<f32> = (0..COLUMNS).map(|column| cos(column, COLUMNS)).collect();
+        let source: Vec<f32> = (0..COLUMNS).map(|column| cos(column, COLUMNS)).collect();
         for elements in [2, 85, 86, 192, 1000, 1500] {
-            let found = ColumnTaps::new(elements).unwrap().rows_of(&wide);
+            let found = ColumnTaps::new(elements).unwrap().rows_of(&source);
             for (column, found) in found.iter().enumerate() {
                 let expected = cos(column, elements);
                 // Beyond the network's last column the directions wrap around.
-                let is_inside = expected <= wide[COLUMNS - 1];
+                let is_inside = expected <= source[COLUMNS - 1];
                 let holds = !is_inside || (found - expected).abs() < 1e-6;
                 assert!(holds, "{column} of {elements}: {found} for {expected}");
             }

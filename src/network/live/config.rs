@@ -1,11 +1,13 @@
-//! Sizes that every live network has.
+//! Sizes that are the same in every live network.
 
 use super::grid::{COARSE_CHANNELS, COARSE_COLUMNS, CONSTANTS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS, SCALARS};
 
-/// Channels of the network's first convolution: fine features folded by 4, coarse, rows, scalars, four of the grid itself, and the
+/// Input channels of the first convolution: fine features of [`FOLD`] neighbouring columns, coarse features, rows, scalars, four of the grid, and the
 /// radar's constants.
 pub const INPUT_CHANNELS: usize = FINE_CHANNELS * FOLD + COARSE_CHANNELS + ROW_CHANNELS + SCALARS + 4 + CONSTANTS;
+/// Fine columns in a coarse one.
 pub(super) const FOLD: usize = FINE_COLUMNS / COARSE_COLUMNS;
-/// Columns of the coarse head's side-lobe sources.
+/// Columns of the sources of side lobes in angle.
 pub(super) const WIDE_COLUMNS: usize = 128;
+/// Channels of the decoder's output on the fine grid.
 pub(super) const DECODER_CHANNELS: usize = 8;

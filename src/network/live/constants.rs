@@ -11,38 +11,39 @@ use ndarray::{Array2, ArrayViewMut2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Cosine of 60 degrees off broadside, the angle at which the pattern of an element enters the constants.
+/// Cosine of the angle off broadside at which the constants have the element's pattern: 60 degrees.
 const PATTERN_COS: f64 = 0.5;
 /// Index of the spacing among the constants, and of the first window after Hann's.
-pub(super) const SPACING_AT: usize = 1;
-pub(super) const WINDOWS_AT: usize = 2;
-pub(super) const WINDOWS: usize = WindowFunction::ALL.len();
+pub(super) const SPACING_INDEX: usize = 1;
+pub(super) const WINDOWS_INDEX: usize = 2;
+pub(super) const WINDOW_COUNT: usize = WindowFunction::ALL.len();
 
-/// The constants: migration and spacing relative to table 3.1's, a one for the window unless it is Hann's, and the pattern. All are 0 for the
-/// radar of table 3.1.
+/// The constants: migration and spacing relative to table 3.1's, a 1 for the window unless it is Hann's, and the element's pattern. All are 0 for
+/// the radar of table 3.1.
 pub(super) fn constants(radar: &Radar) -> [f32; CONSTANTS] {
     let mut constants = [0.0; CONSTANTS];
     constants[0] = (0.25 * (migration_bins(radar) / migration_bins(&Radar::default())).log2()) as f32;
-    constants[SPACING_AT] = (cosine_scale(radar).recip() - 1.0) as f32;
+    constants[SPACING_INDEX] = (cosine_scale(radar).recip() - 1.0) as f32;
     if let Some(window) = WindowFunction::ALL.iter().skip(1).position(|window| *window == radar.window) {
-        constants[WINDOWS_AT + window] = 1.0;
+        constants[WINDOWS_INDEX + window] = 1.0;
     }
-    // The pattern's loss both ways, in decades.
+    // Loss of the two-way pattern, decades.
     constants[CONSTANTS - 1] = radar.pattern().map_or(0.0, |p| -2.0 * p.amplitude(PATTERN_COS).log10()) as f32;
     constants
 }
 
 /// Index in [`WindowFunction::ALL`] of the window in these constants.
 pub(super) fn window_of(constants: &[f32; CONSTANTS]) -> usize {
-    constants[WINDOWS_AT..][..WINDOWS - 1].iter().position(|v| *v == 1.0).map_or(0, |window| window + 1)
+    constants[WINDOWS_INDEX..][..WINDOW_COUNT - 1].iter().position(|v| *v == 1.0).map_or(0, |window| window + 1)
 }
 
-/// cos(theta) of the reflector whose blob stands in the first column, over that of table 3.1. The features of table 3.1 equate the blob's cosine
-/// with the reflector's, which makes it 2.6 % too small; the weights were trained so, and it stays for all radars.
+/// cos(theta) of a reflector with its main lobe in the first column, relative to that of table 3.1. The features of table 3.1 ignore the squint, by
+/// which the column's cosine is 2.6 % smaller than the reflector's. The weights were trained so, and it is the same for all radars.
 pub(super) fn cosine_scale(radar: &Radar) -> f64 {
     radar.cos_of_column(0.0).abs() * Radar::default().squint() / radar.squint()
 }
 
+/// The samples `[elements, samples]` in the thesis' convention.
 pub(super) fn in_thesis_convention(radar: &Radar, mut samples: Array2<Complex64>) -> Array2<Complex64> {
     if radar.carrier == Carrier::TwoWay {
         samples.invert_axis(Axis(1));
@@ -52,16 +53,17 @@ pub(super) fn in_thesis_convention(radar: &Radar, mut samples: Array2<Complex64>
     samples
 }
 
-/// Reverses the columns of a map of the array where cos(theta) falls with the column of `radar`'s maps: from the network's order to the map's, or back.
-pub fn turn_columns(radar: &Radar, map: &mut [f32]) {
+/// Reverses the columns of a map `[rows, elements]` where cos(theta) falls with the column of `radar`'s maps: from the network's order to the radar's,
+/// or back.
+pub fn reverse_columns(radar: &Radar, map: &mut [f32]) {
     if radar.cos_of_column(0.0) > 0.0 {
-        // Columns wrap around, so that the first column's direction maps to itself.
+        // Columns wrap around: the first column keeps its place.
         map.par_chunks_mut(radar.elements).for_each(|row| row[1..].reverse());
     }
 }
 
-/// [`turn_columns`] of a map of any width.
-pub fn turn_rows(radar: &Radar, map: &mut ArrayViewMut2<'_, f32>) {
+/// As [`reverse_columns`], for a map of any number of columns.
+pub fn reverse_rows(radar: &Radar, map: &mut ArrayViewMut2<'_, f32>) {
     if radar.cos_of_column(0.0) > 0.0 {
         map.outer_iter_mut().into_par_iter().for_each(|mut row| {
             if let Some(cells) = row.as_slice_mut() {
@@ -88,7 +90,7 @@ mod tests {
         let twice = constants(&Radar { bandwidth_hz: 4e9, ..Radar::default() });
         assert!((twice[0] - 0.25).abs() < 1e-6, "twice the bandwidth is an octave of migration: {twice:?}");
         let dense = constants(&Radar { element_spacing_metres: 1.6e-3, ..Radar::default() });
-        assert!((dense[SPACING_AT] - (1.6e-3 / Radar::default().element_spacing_metres - 1.0) as f32).abs() < 1e-6);
+        assert!((dense[SPACING_INDEX] - (1.6e-3 / Radar::default().element_spacing_metres - 1.0) as f32).abs() < 1e-6);
     }
 
     #[test]
@@ -108,15 +110,15 @@ mod tests {
     }
 
     #[test]
-    fn columns_turned_twice_are_as_before() {
+    fn columns_reversed_twice_are_as_before() {
         let physical = Radar::default().in_convention(Convention::Physical);
         let map: Vec<f32> = (0..3 * COLUMNS).map(|i| i as f32).collect();
         let mut turned = map.clone();
-        turn_columns(&Radar::default(), &mut turned);
+        reverse_columns(&Radar::default(), &mut turned);
         assert_eq!(turned, map);
-        turn_columns(&physical, &mut turned);
+        reverse_columns(&physical, &mut turned);
         assert_eq!((turned[0], turned[1], turned[COLUMNS - 1]), (0.0, (COLUMNS - 1) as f32, 1.0));
-        turn_columns(&physical, &mut turned);
+        reverse_columns(&physical, &mut turned);
         assert_eq!(turned, map);
     }
 }

@@ -1,11 +1,11 @@
-//! The live network's estimate of its map's error: a small head, trained on the network's errors, gives each cell's expected error in Lambda as
-//! a power of ten.
+//! The live network's estimate of its map's error. A small head, trained on the network's errors, gives the decimal exponent of each cell's expected
+//! error in Lambda.
 
 use super::columns::ColumnTaps;
 use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS};
 use super::planes::{Plane, rectified};
 use super::reading::LiveLayers;
-use super::winograd::{Conv3x3, Results};
+use super::winograd::{Conv3x3, ConvResults};
 use crate::maps::RangeAngleMap;
 use crate::network::kernels::convolution::{Packed, padded};
 use crate::network::weights::{WeightFile, WeightsError};
@@ -14,36 +14,37 @@ use crate::signal::simd::powers::{each, power_of_ten};
 use ndarray::Array2;
 use rayon::prelude::*;
 
-const PREFIX: &str = "doubt.";
-/// Exponents that the head gives for each coarse cell of the network's picture.
-const DOUBTS_PER_CELL: usize = FINE_COLUMNS / COARSE_COLUMNS;
-const COLUMNS_PER_DOUBT: usize = COLUMNS / FINE_COLUMNS;
+const TENSOR_PREFIX: &str = "doubt.";
+/// Exponents of the head for each cell of the coarse grid.
+const EXPONENTS_PER_CELL: usize = FINE_COLUMNS / COARSE_COLUMNS;
+const COLUMNS_PER_EXPONENT: usize = COLUMNS / FINE_COLUMNS;
 
 /// Limits of a cell's exponent.
-const CELL_DECADES: [f32; 2] = [-4.0, 0.0];
-/// The largest amount by which the scene's exponent, added to those of all its cells, raises or lowers them.
-const SCENE_DECADES: f64 = 0.5;
+const CELL_EXPONENT_LIMITS: [f32; 2] = [-4.0, 0.0];
+/// Largest magnitude of the scene's exponent, which is added to those of all cells.
+const MAX_SCENE_EXPONENT: f64 = 0.5;
 
 /// The head's weights.
 #[derive(Debug)]
 pub struct DoubtHead {
     conv1: Conv3x3,
-    /// The exponents of a coarse cell, and as the last output the coarse cell's part of the scene's exponent.
+    /// Outputs: the exponents of a coarse cell, and last its contribution to the scene's exponent.
     conv2: Packed,
 }
 
 impl DoubtHead {
-    /// The head of `file` on a picture of `channels` channels; `None` where the file has none.
+    /// The head of `file` on the decoder's finest level of `channels` channels; `None` where the file has none.
     /// # Errors
     /// [`WeightsError`] names the tensor that is missing or of another shape.
     pub fn new(file: &WeightFile, channels: usize) -> Result<Option<Self>, WeightsError> {
-        let name = format!("{PREFIX}conv1.conv");
+        let name = format!("{TENSOR_PREFIX}conv1.conv");
         let Some([hidden, ..]) = file.shape(&format!("{name}.weight")) else { return Ok(None) };
         let (hidden, layers) = (*hidden, LiveLayers { file });
-        let [mut weights, mut bias] = layers.tensors(&format!("{PREFIX}conv2"), &[DOUBTS_PER_CELL, hidden, 1, 1])?;
-        // The scene's exponent is linear in the mean over the cells, hence the mean of one output in each cell.
-        let [of_scene, constant] = layers.tensors(&format!("{PREFIX}scene"), &[1, hidden])?;
-        weights.extend(of_scene);
+        let [mut weights, mut bias] =
+            layers.tensors(&format!("{TENSOR_PREFIX}conv2"), &[EXPONENTS_PER_CELL, hidden, 1, 1])?;
+        // The scene's exponent is linear in the mean over the cells. So it is the mean of one more output of each cell.
+        let [scene_weights, constant] = layers.tensors(&format!("{TENSOR_PREFIX}scene"), &[1, hidden])?;
+        weights.extend(scene_weights);
         bias.extend(constant);
         Ok(Some(DoubtHead {
             conv1: layers.conv(&name, [channels, padded(channels)], hidden)?,
@@ -51,32 +52,32 @@ impl DoubtHead {
         }))
     }
 
-    /// The expected error of each cell of a map of `columns` columns, from the network's picture; `taps` interpolate where the map's columns
-    /// are not the network's.
+    /// The expected error of each cell of a map of `columns` columns, from the decoder's finest level `picture`. `taps` interpolate where the map's
+    /// columns are not the network's.
     pub(super) fn read(&self, picture: &Plane, taps: Option<&ColumnTaps>, columns: usize) -> RangeAngleMap {
         let (rows, lanes) = (picture.h, self.conv2.output());
         let mut exponents = vec![0.0; rows * COARSE_COLUMNS * lanes];
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&picture.data[row * line.len()..][..line.len()]);
         let simd = Simd::chosen();
-        let heads = |results: Results, out: &mut [f32]| {
+        let heads = |results: ConvResults, out: &mut [f32]| {
             let sums = results.sums();
             sums.iter_mut().for_each(|v| *v = rectified(*v));
             self.conv2.line(simd, sums, COARSE_COLUMNS, COARSE_COLUMNS, out);
         };
         self.conv1.run([rows, COARSE_COLUMNS], read, &mut exponents, heads);
-        let of_scene = mean(exponents.chunks_exact(lanes).map(|cell| cell[DOUBTS_PER_CELL]))
-            .clamp(-SCENE_DECADES, SCENE_DECADES) as f32;
-        let [least, most] = CELL_DECADES;
+        let scene_exponent = mean(exponents.chunks_exact(lanes).map(|cell| cell[EXPONENTS_PER_CELL]))
+            .clamp(-MAX_SCENE_EXPONENT, MAX_SCENE_EXPONENT) as f32;
+        let [min, max] = CELL_EXPONENT_LIMITS;
         let mut error = Array2::zeros((rows, columns));
         let lines = error.as_slice_mut().unwrap_or_default().par_chunks_mut(columns);
         lines.zip(exponents.par_chunks(COARSE_COLUMNS * lanes)).for_each(|(line, exponents)| {
             let mut fine = [0.0; FINE_COLUMNS];
-            for (to, cell) in fine.chunks_exact_mut(DOUBTS_PER_CELL).zip(exponents.chunks_exact(lanes)) {
-                to.copy_from_slice(&cell[..DOUBTS_PER_CELL]);
+            for (to, cell) in fine.chunks_exact_mut(EXPONENTS_PER_CELL).zip(exponents.chunks_exact(lanes)) {
+                to.copy_from_slice(&cell[..EXPONENTS_PER_CELL]);
             }
-            each(&mut fine, |v| power_of_ten(v.clamp(least, most) + of_scene).min(1.0));
+            each(&mut fine, |v| power_of_ten(v.clamp(min, max) + scene_exponent).min(1.0));
             let spread = |line: &mut [f32]| {
-                line.chunks_exact_mut(COLUMNS_PER_DOUBT).zip(fine).for_each(|(to, v)| to.fill(v));
+                line.chunks_exact_mut(COLUMNS_PER_EXPONENT).zip(fine).for_each(|(to, v)| to.fill(v));
             };
             let Some(taps) = taps else { return spread(line) };
             let mut wide = [0.0; COLUMNS];
@@ -116,9 +117,9 @@ mod tests {
         let found = doubt_of(WEIGHTS).unwrap().lambda;
         let expected = reference().tensor("doubt", &[ROWS / 16, FINE_COLUMNS / 4]).unwrap();
         for (i, expected) in expected.iter().enumerate() {
-            let [row, column] = [i / (FINE_COLUMNS / 4) * 16, i % (FINE_COLUMNS / 4) * 4 * COLUMNS_PER_DOUBT];
+            let [row, column] = [i / (FINE_COLUMNS / 4) * 16, i % (FINE_COLUMNS / 4) * 4 * COLUMNS_PER_EXPONENT];
             let gap = (found[[row, column]] - expected).abs();
-            let holds = gap < 1e-4 && found[[row, column]] == found[[row, column + COLUMNS_PER_DOUBT - 1]];
+            let holds = gap < 1e-4 && found[[row, column]] == found[[row, column + COLUMNS_PER_EXPONENT - 1]];
             assert!(holds, "{row}, {column}: {gap}");
         }
         let spread = expected.iter().fold(0.0f32, |a, v| a.max(*v)) - expected.iter().fold(1.0f32, |a, v| a.min(*v));
@@ -126,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn weights_without_the_head_say_nothing_of_errors() {
+    fn weights_without_the_head_have_no_doubt() {
         assert_eq!(doubt_of(WITHOUT), None);
     }
 }

@@ -1,9 +1,9 @@
-//! The live network's forward pass without a framework: channels-last, buffers kept. `python/apertura/live.py` has the same weights and is
-//! trained; tests compare this engine, which runs during a drag, with its results.
+//! The live network's forward pass without a framework, with channels-last tensors. `python/apertura/live.py` is the same network in PyTorch, for
+//! training; tests compare the results of both.
 
 use super::columns::ColumnTaps;
 use super::config::{DECODER_CHANNELS, FOLD, INPUT_CHANNELS, WIDE_COLUMNS};
-use super::constants::{SPACING_AT, window_of};
+use super::constants::{SPACING_INDEX, window_of};
 use super::doubt::DoubtHead;
 use super::features::LiveInput;
 use super::grid::{
@@ -13,7 +13,7 @@ use super::lobes::WindowLobes;
 use super::planes::{Plane, PlaneBlock, rectified};
 use super::reading::{CELLS, LiveLayers};
 use super::size::LiveSize;
-use super::winograd::{Conv3x3, Results};
+use super::winograd::{Conv3x3, ConvResults};
 use crate::maps::RangeAngleMap;
 use crate::network::kernels::convolution::{PRODUCT_COLUMNS, Packed, convolve, product};
 use crate::network::weights::{WeightFile, WeightsError};
@@ -25,14 +25,14 @@ use std::ops::Range;
 const _: () = assert!(FOLD == CELLS && COLUMNS_PER_FINE == CELLS, "layers that spread a cell do so over four");
 const COLUMNS_PER_FINE: usize = COLUMNS / FINE_COLUMNS;
 
-/// The network's estimate for one scene, in decades above the samples' gain.
+/// The network's estimate for one scene, in decades relative to the samples' gain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decades {
     /// log10 |Y| of the whole array, `[samples, elements]` row-major.
     pub map: Vec<f32>,
-    /// The smallest cell expected in the true map.
+    /// Estimate of the smallest cell of the true map.
     pub minimum: f32,
-    /// Part of the tiles of side lobes in range that were computed: the others don't show.
+    /// Part of the tiles of side lobes in range that were computed; the others are invisible.
     pub computed: f32,
 }
 
@@ -58,7 +58,7 @@ pub struct LiveEngine {
     taps: Option<ColumnTaps>,
 }
 
-/// Buffers of one forward pass; keep them between calls.
+/// Buffers of a forward pass, to be used again by the next.
 #[derive(Debug, Default)]
 pub struct LiveScratch {
     hidden: Plane,
@@ -114,30 +114,30 @@ impl LiveEngine {
         })
     }
 
-    /// Estimates the map of one scene; side lobes that don't show are skipped.
+    /// Estimates the map of one scene. Invisible side lobes are skipped.
     pub fn forward(&self, input: &LiveInput, s: &mut LiveScratch) -> Decades {
-        self.forward_over(input, self.lobes[0].columns.unseen(), s)
+        self.forward_over(input, self.lobes[0].columns.skipped_part(), s)
     }
 
-    /// [`LiveEngine::forward`] with all side lobes, to measure the error of skipping.
+    /// As [`LiveEngine::forward`], with all side lobes, to measure the error of skipping.
     pub fn forward_whole(&self, input: &LiveInput, s: &mut LiveScratch) -> Decades {
         self.forward_over(input, 0.0, s)
     }
 
-    /// The network's estimate of the error of Lambda, `[samples, elements]`: nine of ten cells have a smaller error, on scenes and over noise
-    /// like those of the training. Call it after [`LiveEngine::forward`] with the same buffers. `None` where the weights have no head for it.
+    /// The network's estimate of the error of Lambda, `[samples, elements]`, which nine of ten cells don't exceed on scenes and noise as in training.
+    /// Call it after [`LiveEngine::forward`], with the same buffers. `None` where the weights lack the head.
     pub fn doubt(&self, s: &LiveScratch) -> Option<RangeAngleMap> {
         Some(self.doubt.as_ref()?.read(&s.level[0], self.taps.as_ref(), self.columns))
     }
 
-    fn forward_over(&self, input: &LiveInput, unseen: f32, s: &mut LiveScratch) -> Decades {
+    fn forward_over(&self, input: &LiveInput, skipped_part: f32, s: &mut LiveScratch) -> Decades {
         let rows = self.rows;
         assert!(input.rows.len() == ROW_CHANNELS * rows, "an input of {} rows", input.rows.len() / ROW_CHANNELS);
         let scalars = input.scalars.map(|v| (v + 8.0) / 3.0);
         let LiveScratch { hidden, level, upward, .. } = s;
         level[0].reset(rows, COARSE_COLUMNS, self.stem.output());
         let read = |row: usize, line: &mut [f32]| read_input(input, &scalars, row, line);
-        self.stem.run([rows, COARSE_COLUMNS], read, &mut level[0].data, |results, out| results.put(out));
+        self.stem.run([rows, COARSE_COLUMNS], read, &mut level[0].data, |results, out| results.write_outputs(out));
         for k in 0..4 {
             if k > 0 {
                 let (above, below) = level.split_at_mut(k);
@@ -166,10 +166,10 @@ impl LiveEngine {
         convolve(&self.row_sources, &top.data, COARSE_COLUMNS, COARSE_COLUMNS, &mut s.sources.data);
         hidden.reset(rows, COARSE_COLUMNS, self.widen.output());
         let read = |row: usize, line: &mut [f32]| line.copy_from_slice(&top.data[row * line.len()..][..line.len()]);
-        self.widen.run([rows, COARSE_COLUMNS], read, &mut hidden.data, |results, out| results.put(out));
+        self.widen.run([rows, COARSE_COLUMNS], read, &mut hidden.data, |results, out| results.write_outputs(out));
         s.heads.reset(rows, FINE_COLUMNS, self.fine2.output());
         let simd = Simd::chosen();
-        let heads = |results: Results, out: &mut [f32]| {
+        let heads = |results: ConvResults, out: &mut [f32]| {
             let sums = results.sums();
             sums.iter_mut().for_each(|v| *v = rectified(*v));
             self.fine2.line(simd, sums, FINE_COLUMNS, FINE_COLUMNS, out);
@@ -177,9 +177,9 @@ impl LiveEngine {
         let read = |row: usize, line: &mut [f32]| read_fine(&input.fine, hidden, row, line);
         self.fine1.run([rows, FINE_COLUMNS], read, &mut s.heads.data, heads);
         let floor = input.scalars[0] + floor_shift;
-        // Weights without kernels for this window were not trained for it.
+        // Only weights that were trained for a window have kernels for it.
         let kernels = self.lobes.get(window_of(&input.constants)).unwrap_or(&self.lobes[0]);
-        let (map, computed) = decode(kernels, &s.heads, &s.sources, floor, unseen, &mut s.lobes);
+        let (map, computed) = decode(kernels, &s.heads, &s.sources, floor, skipped_part, &mut s.lobes);
         let map = match &self.taps {
             None => map,
             Some(taps) => taps.rows_of(&map),
@@ -204,18 +204,20 @@ impl LiveEngine {
         let mut hidden = vec![0.0; self.scalar1.output()];
         convolve(&self.scalar1, &pooled, 1, 1, &mut hidden);
         hidden.iter_mut().for_each(|v| *v = v.max(0.0));
-        let mut said = vec![0.0; self.scalar2.output()];
-        convolve(&self.scalar2, &hidden, 1, 1, &mut said);
-        (said[0], said[1])
+        let mut outputs = vec![0.0; self.scalar2.output()];
+        convolve(&self.scalar2, &hidden, 1, 1, &mut outputs);
+        (outputs[0], outputs[1])
     }
 }
 
+/// The map in decades, `[samples, 1024]`, of main lobes and sources of side lobes in range `heads`, and of sources in angle `sources`; and the part of
+/// tiles computed.
 fn decode(
     kernels: &WindowLobes,
     heads: &Plane,
     sources: &Plane,
     floor: f32,
-    unseen: f32,
+    skipped_part: f32,
     lobes: &mut Vec<f32>,
 ) -> (Vec<f32>, f32) {
     let floor = 10f32.powf(floor);
@@ -226,7 +228,7 @@ fn decode(
             spread_out(cells, COLUMNS_PER_FINE..2 * COLUMNS_PER_FINE, out);
         }
     };
-    let computed = kernels.columns.add_up(floor, unseen, read, lobes);
+    let computed = kernels.columns.convolve_into(floor, skipped_part, read, lobes);
     let mut map = vec![0.0; heads.h * COLUMNS];
     map.par_chunks_mut(ROWS_AT_ONCE * COLUMNS).enumerate().for_each(|(chunk, lines)| {
         let mut wide = [0.0; ROWS_AT_ONCE * WIDE_COLUMNS];
@@ -246,7 +248,7 @@ fn decode(
     (map, computed)
 }
 
-/// Adds to all cells of some lines the side lobes in angle of the sources `wide`, and the floor.
+/// Adds the side lobes in angle of the sources `wide` and the floor to all cells of `lines`.
 fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE_COLUMNS], lines: &mut [f32]) {
     let simd = Simd::chosen();
     for (block, kernel) in rows.chunks_exact(WIDE_COLUMNS * PRODUCT_COLUMNS).enumerate() {
@@ -261,11 +263,12 @@ fn add_lobes_in_angle(rows: &[f32], floor: f32, wide: &[f32; ROWS_AT_ONCE * WIDE
     }
 }
 
+/// Rows that are decoded together.
 const ROWS_AT_ONCE: usize = 8;
 
 const COLUMNS_PER_SOURCE: usize = COLUMNS / WIDE_COLUMNS;
 
-/// Contiguous amplitudes of these channels of neighbouring cells.
+/// Amplitudes of these channels of neighbouring cells, cell after cell.
 fn spread_out<'a>(cells: impl Iterator<Item = &'a [f32]>, channels: Range<usize>, out: &mut [f32]) {
     for (out, cell) in out.chunks_exact_mut(channels.len()).zip(cells) {
         out.copy_from_slice(&cell[channels.clone()]);
@@ -281,6 +284,7 @@ fn fill_line(heads: &Plane, lobes: &[f32], row: usize, line: &mut [f32]) {
     }
 }
 
+/// Scales decades to the network's input.
 fn decades_in(v: f32) -> f32 {
     ((v + 3.0) / 3.0).clamp(-4.0, 2.0)
 }
@@ -294,7 +298,7 @@ fn fine_in(fine: &[f32], row: usize) -> [[f32; FINE_COLUMNS]; FINE_CHANNELS] {
     })
 }
 
-/// A line of the first convolution's input; channels in the order of `Live.forward` in `python/apertura/live.py`.
+/// Writes a line of the first convolution's input, with channels in the order of `Live.forward` in `python/apertura/live.py`.
 fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mut [f32]) {
     const COARSE_AT: usize = FINE_CHANNELS * FOLD;
     const ROWS_AT: usize = COARSE_AT + COARSE_CHANNELS;
@@ -324,12 +328,12 @@ fn read_input(input: &LiveInput, scalars: &[f32; SCALARS], row: usize, line: &mu
             *to = if c < 4 { decades_in(plane[k]) } else { plane[k] };
         }
         cell[ROWS_AT..].copy_from_slice(&whole_row);
-        let u = (k as f32 - half) / half / (1.0 + input.constants[SPACING_AT]);
+        let u = (k as f32 - half) / half / (1.0 + input.constants[SPACING_INDEX]);
         cell[GRID_AT + 2..CONSTANTS_AT].copy_from_slice(&[u, (1.0 - u * u).max(0.0).sqrt()]);
     }
 }
 
-/// A line of the fine convolution's input: the widened picture spread over four times the columns, beside the fine features.
+/// Writes a line of the fine convolution's input: the decoder's channels and the fine features.
 fn read_fine(fine: &[f32], widened: &Plane, row: usize, line: &mut [f32]) {
     let fine = fine_in(fine, row);
     let cells = widened.data[row * COARSE_COLUMNS * widened.c..]
@@ -341,7 +345,7 @@ fn read_fine(fine: &[f32], widened: &Plane, row: usize, line: &mut [f32]) {
     }
 }
 
-/// Adds `from` `[h, w, 4 c]`, whose channels are those of four cells one after the other, to `to` `[2 h, 2 w, c]`.
+/// Adds `from` `[h, w, 4 c]`, whose channels are those of 2 x 2 cells one after another, to `to` `[2 h, 2 w, c]`.
 fn add_doubled(from: &Plane, to: &mut Plane, c: usize) {
     let (w, width, lanes) = (from.w, to.w, to.c);
     to.data.par_chunks_mut(width * lanes).with_min_len(8).enumerate().for_each(|(y, line)| {

@@ -1,7 +1,7 @@
-//! Training examples: example `i` is a function of the request and `i` alone, in any order of calls.
+//! Training examples. Example `i` depends on the request and `i` alone, in any order of calls.
 
 use super::arrays::Arrays;
-use super::constants::turn_rows;
+use super::constants::reverse_rows;
 use super::features::{FeatureExtractor, LiveInput};
 use super::radars::{DRAWN_LIMITS, Radars};
 use crate::evaluate::Target;
@@ -20,14 +20,13 @@ use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::fmt;
 
 /// The examples to make.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExamplesRequest {
     /// Kinds of the scenes.
     pub mixture: Mixture,
-    /// Purpose of the examples, which picks the streams of the scenes: those of different purposes never meet.
+    /// Purpose of the examples. The scenes of different purposes have different random streams.
     pub purpose: Purpose,
     /// Seed of the scenes.
     pub seed: u64,
@@ -37,22 +36,22 @@ pub struct ExamplesRequest {
     pub arrays: Arrays,
     /// Radars of the scenes.
     pub radars: Radars,
-    /// The maps to learn, each once.
+    /// The maps to learn, without repetition.
     pub targets: Vec<Target>,
-    /// Whether the live network's input is made.
+    /// Whether examples have the live network's input.
     pub features: Features,
-    /// Numbers of the elements whose samples replace those of the two ends.
+    /// Numbers of the elements with samples, in place of the two ends.
     pub layout: Option<Vec<usize>>,
 }
 
-/// Whether the live network's input is made.
+/// Whether examples have the live network's input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Features {
-    /// The input is made in the radar's shape; a radar without one is refused.
+    /// They have it; a radar that has none is refused.
     Needed,
-    /// The input is made where the radar has the shape of the shipped network.
+    /// They have it where the radar has the shape of the shipped network.
     WherePossible,
-    /// The input isn't made.
+    /// They don't have it.
     No,
 }
 
@@ -72,11 +71,11 @@ impl Default for ExamplesRequest {
     }
 }
 
-/// Makes examples.
+/// The examples of a request.
 #[derive(Debug)]
 pub struct Examples {
     request: ExamplesRequest,
-    /// Tables of the radar, where all scenes have the same.
+    /// Tables of the features, where all scenes have the same radar.
     extractor: Option<FeatureExtractor>,
 }
 
@@ -92,25 +91,24 @@ pub enum EndSamples {
 /// Input and targets of one scene.
 #[derive(Debug, Clone)]
 pub struct Example {
-    /// Kind of the scene; none where the caller made it.
+    /// Kind of the scene; `None` for a scene of the caller.
     pub kind: Option<Kind>,
     /// Floor of the scene.
     pub floor: Floor,
     /// Radar of the scene.
     pub radar: Radar,
-    /// The samples of the sparse array, whose elements may be off.
+    /// The samples of the sparse array, with errors of its elements.
     pub heard: EndSamples,
-    /// The live network's input, where it is made.
+    /// The live network's input.
     pub input: Option<LiveInput>,
     /// Half the log10 of the mean power of the samples.
     pub gain: f64,
-    /// Maps of the whole array, `[range bins, columns]`: decades of amplitude relative to `gain`. cos(theta) rises with the column in both
-    /// conventions.
+    /// Maps of the whole array, `[range bins, columns]`: amplitudes relative to `gain`, decades. cos(theta) rises with the column in both conventions.
     pub targets: Vec<(Target, Array2<f32>)>,
 }
 
 impl Example {
-    /// The samples of the two ends; `None` where a layout was asked for.
+    /// The samples of the two ends; `None` for a layout.
     pub fn ends(&self) -> Option<&TwoEnds> {
         match &self.heard {
             EndSamples::Ends(ends) => Some(ends),
@@ -118,7 +116,7 @@ impl Example {
         }
     }
 
-    /// The map of a target; `None` where it wasn't requested.
+    /// The map of a target; `None` where it is not in the request.
     pub fn target(&self, target: Target) -> Option<&Array2<f32>> {
         self.targets.iter().find(|(name, _)| *name == target).map(|(_, map)| map)
     }
@@ -133,22 +131,22 @@ pub struct ExampleError {
 }
 
 impl Examples {
-    /// The examples of a request.
+    /// The examples of `request`.
     /// # Errors
-    /// Where a kind, a radar or an element can't be used, a message that names it.
+    /// A message that names the kind, the radar or the element that can't be used.
     pub fn new(mut request: ExamplesRequest) -> Result<Self, String> {
         let kinds = || request.mixture.shares().iter().map(|(kind, _)| *kind);
         if request.purpose == Purpose::Test && kinds().any(|kind| kind == Kind::World) {
             let expected = "expected a purpose of training or validation";
-            return Err(refused(format!("{} makes no scenes for tests; {expected}", Kind::World)));
+            return Err(format!("{} makes no scenes for tests; {expected}", Kind::World));
         }
-        let found = request.radars.least_max_range_metres();
-        kinds().try_for_each(|kind| kind.check_room_within(found)).map_err(refused)?;
+        let found = request.radars.smallest_max_range_metres();
+        kinds().try_for_each(|kind| kind.check_room_within(found)).map_err(|e| e.to_string())?;
         if let Some(layout) = &request.layout {
-            check_layout(layout, request.radars.shape().elements).map_err(refused)?;
+            check_layout(layout, request.radars.shape().elements).map_err(|e| e.to_string())?;
             match request.features {
                 Features::Needed => {
-                    return Err(refused("the live network hears two ends; expected no layout, or no features"));
+                    return Err("the live network hears two ends; expected no layout, or no features".to_owned());
                 }
                 _ => request.features = Features::No,
             }
@@ -159,13 +157,13 @@ impl Examples {
                 request.features = Features::No;
             }
             if request.features != Features::No {
-                extractor = Some(FeatureExtractor::new(radar).map_err(refused)?);
+                extractor = Some(FeatureExtractor::new(radar).map_err(|e| e.to_string())?);
             }
         }
         Ok(Examples { request, extractor })
     }
 
-    /// The radars for which a network is trained by these examples.
+    /// The domain of a network that is trained on these examples.
     pub fn domain(&self) -> Domain {
         self.request.radars.domain()
     }
@@ -182,34 +180,34 @@ impl Examples {
 
     /// Example `index`.
     /// # Errors
-    /// [`ExampleError`], also soon after `task` was cancelled.
+    /// [`ExampleError`], also after a cancellation of `task`.
     pub fn example(&self, index: u32, task: &Task) -> Result<Example, ExampleError> {
         let ExamplesRequest { mixture, purpose, seed, .. } = &self.request;
         let (kind, radar) = (mixture.kind(*seed, index), self.radar(index));
         let scene = Generator::new(&radar, Reading::Program, *purpose, *seed).scene(kind, index);
-        self.made(Some(kind), radar, scene, index, task)
+        self.make(Some(kind), radar, scene, index, task)
     }
 
-    /// Example `index` of a given scene. Seed, purpose and `index` pick its noise.
+    /// Example `index` of the given scene, with noise by seed, purpose and `index`.
     ///
     /// # Errors
     /// As [`Examples::example`].
     pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {
         let noise_seed = self.noise_seed(index);
-        self.made(None, self.radar(index), Scene { noise_seed, ..scene }, index, task)
+        self.make(None, self.radar(index), Scene { noise_seed, ..scene }, index, task)
     }
 
     fn noise_seed(&self, index: u32) -> u64 {
         let mut key = [0u8; 32];
         key[..8].copy_from_slice(&self.request.seed.to_le_bytes());
-        // No stream of generated scenes, of kinds or of radars has the number 6.
+        // 6: no random stream of scenes, kinds or radars has this number.
         key[8..10].copy_from_slice(&[6, self.request.purpose.number()]);
         let mut rng = ChaCha8Rng::from_seed(key);
         rng.set_stream(index.into());
         rng.random::<u64>() >> 11
     }
 
-    fn made(
+    fn make(
         &self,
         kind: Option<Kind>,
         radar: Radar,
@@ -221,14 +219,14 @@ impl Examples {
         let floor = floors.of(scene.noise_seed);
         let floor = kind.map_or(floor, |kind| SceneSet::Generated(kind).floor(floor));
         let failed = |why: String| ExampleError { index, why };
-        let simulated = |scene: &Scene, floor: Floor| {
+        let simulate = |scene: &Scene, floor: Floor| {
             simulate_for(task, &radar, scene, floor, scene.noise_seed).map_err(|e| failed(e.to_string()))
         };
         let drawn = arrays.of(scene.noise_seed, &radar, targets.contains(&Target::Measured));
         if !drawn.is_ideal() {
             scene.disturbances.elements = drawn;
         }
-        let measured = simulated(&scene, floor)?;
+        let measured = simulate(&scene, floor)?;
         let heard = match layout {
             None => EndSamples::Ends(measured.two_ends(&radar)),
             Some(layout) => EndSamples::Elements(measured.samples.select(Axis(0), layout)),
@@ -239,16 +237,16 @@ impl Examples {
         let elements = &scene.disturbances.elements;
         let is_measured =
             |target: &Target| *target == Target::Measured || (*target == Target::Calibrated && elements.is_ideal());
-        let of_measured = targets.iter().any(is_measured).then(|| map(&radar, elements, measured, gain));
-        let of_other = |target: Target| {
+        let measured_map = targets.iter().any(is_measured).then(|| target_map(&radar, elements, measured, gain));
+        let other_map = |target: Target| {
             let disturbances = Disturbances { elements: BuiltArray::default(), ..scene.disturbances.clone() };
             let floor = if target == Target::Ideal { Floor::Exact } else { floor };
-            let signal = simulated(&Scene { disturbances, ..scene.clone() }, floor)?;
-            Ok(map(&radar, &BuiltArray::default(), signal, gain))
+            let signal = simulate(&Scene { disturbances, ..scene.clone() }, floor)?;
+            Ok(target_map(&radar, &BuiltArray::default(), signal, gain))
         };
-        let of = |target: &Target| match &of_measured {
+        let of = |target: &Target| match &measured_map {
             Some(map) if is_measured(target) => Ok((*target, map.clone())),
-            _ => of_other(*target).map(|map| (*target, map)),
+            _ => other_map(*target).map(|map| (*target, map)),
         };
         let maps = targets.iter().map(of).collect::<Result<_, _>>()?;
         Ok(Example { kind, floor, heard, input, gain, targets: maps, radar })
@@ -264,16 +262,12 @@ impl Examples {
     }
 }
 
-fn refused(why: impl fmt::Display) -> String {
-    why.to_string()
-}
-
 impl EndSamples {
     /// Half the log10 of the samples' mean power; `None` of silence.
     fn gain(&self) -> Option<f64> {
         let mean = |power: f64, samples: usize| (power > 0.0).then(|| 0.5 * (power / samples as f64).log10());
         match self {
-            // The sum of [`FeatureExtractor::extract`], to the bit.
+            // The same bits as in [`FeatureExtractor::extract`].
             EndSamples::Ends(ends) => {
                 let power = ends.first.iter().chain(&ends.last).map(|v| v.norm_sqr()).sum::<f64>();
                 mean(power, ends.first.len() + ends.last.len())
@@ -283,14 +277,14 @@ impl EndSamples {
     }
 }
 
-/// The whole array's map, decades over `gain`; cos(theta) rises with the column.
-fn map(radar: &Radar, elements: &BuiltArray, signal: BeatSignal, gain: f64) -> Array2<f32> {
+/// The whole array's map, decades relative to `gain`. cos(theta) rises with the column.
+fn target_map(radar: &Radar, elements: &BuiltArray, signal: BeatSignal, gain: f64) -> Array2<f32> {
     let mut decades = match radar.focus_off_line {
         true => map_of(radar, elements, &signal, Aperture::Full).log_magnitude().decades().mapv(|v| v as f32),
         false => whole_map(radar, &range_transform_in_place(radar, signal)),
     };
     decades.mapv_inplace(|v| (f64::from(v) - gain) as f32);
-    turn_rows(radar, &mut decades.view_mut());
+    reverse_rows(radar, &mut decades.view_mut());
     decades
 }
 

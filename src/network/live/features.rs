@@ -1,14 +1,14 @@
-//! The input of the live network: tensors made of the samples of the two ends.
+//! The input of the live network: tensors from the samples of the two ends.
 //!
-//! Twelve elements resolve about twelve angles, so no feature is finer than 256 columns. A radar's samples are the rows of every picture. Each
-//! end's picture is centred on that end; the same reflector lies up to 27 range bins apart in the two, so both are also *registered*:
-//! interpolated on the polar grid around the array's centre. On the fine grid an end is represented by its Capon spectrum, row by row: with next
-//! to no noise it separates reflectors that the end's own beam doesn't.
+//! Twelve elements resolve about twelve angles, so no feature has more than 256 columns. The rows are range bins, as many as a chirp has samples. The
+//! polar grid of each end is centred on it. The ranges of a reflector differ by up to 27 bins between the two. So both ends are also *registered*:
+//! interpolated on the polar grid around the array's centre. On the fine grid an end has its Capon spectrum, row by row. At low noise it separates
+//! reflectors within the end's beam width.
 //!
-//! In columns and range bins the beams of an end are the same for every radar. The place of a reflector in the other end's picture depends on
-//! the radar's constants. All pictures are made under a window of Hann, independent of the radar's own.
+//! In columns and range bins the beams of an end are the same for every radar. The place of a reflector in the other end's grid depends on the radar's
+//! constants. All features have a Hann window, whichever window the radar has.
 //!
-//! All tensors are relative to the mean power of the samples (the *gain*): a louder receiver gives the same tensors.
+//! All tensors are relative to the mean power of the samples (the *gain*), so that they don't depend on the receiver's gain.
 
 use super::capon::Capon;
 use super::coarse::Coarse;
@@ -24,14 +24,14 @@ use ndarray::{Array2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-/// Fewest samples of a chirp whose pictures can be registered.
+/// Least samples of a chirp whose features can be registered.
 pub const MIN_CHIRP_SAMPLES: usize = 8;
 
 /// The tensors of one scene, row-major.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveInput {
-    /// `[4, samples, 256]` decades: minimum and maximum of both ends' Capon spectra on the centre's grid, and their minimum on the grid of the
-    /// first end and on that of the last end.
+    /// `[4, samples, 256]`, decades: minimum and maximum of both ends' Capon spectra on the centre's grid, and their minimum on the grid of the
+    /// first end and on that of the last.
     pub fine: Vec<f32>,
     /// `[10, samples, 64]`: log-magnitude of each end's beams, the same registered, for each end cosine and sine of the phase step
     /// from the row before, and cosine and sine of twice the phase between the registered ends.
@@ -40,21 +40,20 @@ pub struct LiveInput {
     pub rows: Vec<f32>,
     /// Two estimates of the noise floor in decades: from the rounding of the thesis' samples, and as measured.
     pub scalars: [f32; SCALARS],
-    /// The radar's constants that the pictures don't show, 0 for those of table 3.1: a quarter of the octaves of its migration in range bins
-    /// from end to end, its spacing, a one for the window if it is Hamming's, Blackman's or the rectangular one, and the decades that an echo 60
-    /// degrees off broadside loses by the elements' pattern.
+    /// The radar's constants, all 0 for table 3.1: a quarter of the octaves of its migration in range bins from end to end, its spacing, a 1 for a
+    /// Hamming, Blackman or rectangular window, and the loss by the elements' pattern at 60 degrees off broadside, decades.
     pub constants: [f32; CONSTANTS],
-    /// Half the log10 of the samples' mean power, the reference of the decades above.
+    /// Half the log10 of the samples' mean power: the reference of all decades.
     pub gain: f64,
 }
 
-/// Makes [`LiveInput`]s; holds the tables that depend on the radar alone.
+/// Computes [`LiveInput`]s by tables of one radar.
 #[derive(Debug)]
 pub struct FeatureExtractor {
     radar: Radar,
     constants: [f32; CONSTANTS],
     window: Vec<f64>,
-    /// Registrations of the fine grid: centre from either end, first from last, last from first.
+    /// Registrations of the fine grid: of each end on the centre's grid; of the last end on the first's, and of the first on the last's.
     fine_centre: [Registration<FINE_COLUMNS>; 2],
     fine_other: [Registration<FINE_COLUMNS>; 2],
     coarse: Coarse,
@@ -93,7 +92,7 @@ impl FeatureExtractor {
 
     /// The tensors of the samples of two ends.
     /// # Errors
-    /// [`ReconstructError`] on samples of the wrong shape or not finite, and on silence.
+    /// [`ReconstructError`] for samples of the wrong shape, non-finite samples, and zeros alone.
     pub fn extract(&self, ends: &TwoEnds) -> Result<LiveInput, ReconstructError> {
         check_ends(&self.radar, ends)?;
         let samples = (2 * self.radar.end_elements * self.radar.samples) as f64;
@@ -125,19 +124,19 @@ impl FeatureExtractor {
 
     fn fill_fine(&self, capon: &[Vec<f32>; 2], fine: &mut [f32]) {
         let plane = self.radar.samples * FINE_COLUMNS;
-        let (agree, rest) = fine.split_at_mut(plane);
-        let (either, rest) = rest.split_at_mut(plane);
+        let (minima, rest) = fine.split_at_mut(plane);
+        let (maxima, rest) = rest.split_at_mut(plane);
         let (first, last) = rest.split_at_mut(plane);
         let rows = |plane| <[f32]>::par_chunks_mut(plane, FINE_COLUMNS);
-        rows(agree).zip(rows(either)).zip(rows(first).zip(rows(last))).enumerate().for_each(
-            |(row, ((agree, either), (first, last)))| {
+        rows(minima).zip(rows(maxima)).zip(rows(first).zip(rows(last))).enumerate().for_each(
+            |(row, ((minima, maxima), (first, last)))| {
                 let [centre_first, centre_last] = [0, 1].map(|e| self.fine_centre[e].row(&capon[e], row));
                 let both = centre_first.zip(centre_last);
-                agree
+                minima
                     .iter_mut()
-                    .zip(either)
+                    .zip(maxima)
                     .zip(both)
-                    .for_each(|((agree, either), (a, b))| (*agree, *either) = (a.min(b), a.max(b)));
+                    .for_each(|((minima, maxima), (a, b))| (*minima, *maxima) = (a.min(b), a.max(b)));
                 for (e, to) in [first, last].into_iter().enumerate() {
                     let own = &capon[e][row * FINE_COLUMNS..];
                     let other = self.fine_other[e].row(&capon[1 - e], row);
@@ -148,6 +147,7 @@ impl FeatureExtractor {
     }
 }
 
+/// The features of rows, `[6, samples]` of [`LiveInput::rows`].
 fn row_features(profiles: &[Array2<Complex64>; 2]) -> Vec<f32> {
     let (rows, elements) = profiles[0].dim();
     let mut out = vec![0.0; ROW_CHANNELS * rows];
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reflector_is_seen_by_radars_of_other_shapes() {
+    fn radars_of_other_shapes_have_a_reflector_at_its_range() {
         for (elements, end_elements, samples) in [(86, 8, 128), (192, 16, 100), (64, 2, 64), (256, 30, 256)] {
             let radar = Radar { elements, end_elements, samples, ..Radar::default() };
             let range = 0.6 * radar.max_range_metres();
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn radars_of_next_to_nothing_are_refused() {
+    fn radars_with_too_few_elements_or_samples_are_refused() {
         for radar in [Radar { samples: 4, ..Radar::default() }, Radar { end_elements: 1, ..Radar::default() }] {
             let error = FeatureExtractor::new(&radar).unwrap_err().to_string();
             assert!(error.contains("2 elements or more and 8 samples or more"), "{error}");

@@ -1,14 +1,15 @@
-//! The transforms of Winograd's minimal filtering F(4, 3) (Lavin and Gray 2016): four neighbouring outputs of a filter with three taps cost
-//! six products.
+//! The transforms of Winograd's minimal filtering F(4, 3) (Lavin and Gray 2016): four neighbouring outputs of a filter with three taps from six
+//! products.
 
 use crate::network::kernels::vector::{LANES, Loop, Vector};
 
+/// Neighbouring outputs that are computed together.
 pub(super) const OUTPUTS: usize = 4;
-/// Products for these outputs, and as many inputs.
+/// Products for these outputs, and inputs of them.
 pub(super) const PRODUCTS: usize = 6;
 
 /// The kernel's transform: a row for each product, a column for each tap.
-pub(super) const OF_TAPS: [[f32; 3]; PRODUCTS] = [
+pub(super) const TAP_TRANSFORM: [[f32; 3]; PRODUCTS] = [
     [1.0 / 4.0, 0.0, 0.0],
     [-1.0 / 6.0, -1.0 / 6.0, -1.0 / 6.0],
     [-1.0 / 6.0, 1.0 / 6.0, -1.0 / 6.0],
@@ -17,27 +18,28 @@ pub(super) const OF_TAPS: [[f32; 3]; PRODUCTS] = [
     [0.0, 0.0, 1.0],
 ];
 
-/// The product that enters each output with factor 1, so that a bias added there reaches all four.
-pub(super) const OF_BIAS: usize = 1;
+/// Index of the product that all four outputs have with factor 1: the bias is added to it.
+pub(super) const BIAS_PRODUCT: usize = 1;
 
-/// Groups of contiguous vectors, as many in the source as in the destination.
+/// Groups of contiguous vectors in a source and in a destination.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Groups {
-    pub many: usize,
+    pub count: usize,
     pub vectors: usize,
-    /// Distance from one group to the next in the source, and in the destination.
+    /// Distance from one group to the next in the source and in the destination, values.
     pub steps: [usize; 2],
 }
 
 impl Groups {
-    /// Values that source and destination must hold.
-    fn reach(&self) -> [usize; 2] {
-        self.steps.map(|step| if self.many == 0 { 0 } else { (self.many - 1) * step + self.vectors * LANES })
+    /// Least lengths of source and destination, values.
+    fn lengths(&self) -> [usize; 2] {
+        self.steps.map(|step| if self.count == 0 { 0 } else { (self.count - 1) * step + self.vectors * LANES })
     }
 
+    /// Calls `of` with the offsets of each vector in source and destination.
     #[inline(always)]
     fn each(&self, mut of: impl FnMut([usize; 2])) {
-        for group in 0..self.many {
+        for group in 0..self.count {
             for at in 0..self.vectors {
                 of(self.steps.map(|step| group * step + at * LANES));
             }
@@ -45,18 +47,18 @@ impl Groups {
     }
 }
 
-/// The input's transform, from six neighbouring inputs to the factors of the six products.
-pub(super) struct Spread<'a> {
+/// The transform from six neighbouring inputs to the factors of the six products.
+pub(super) struct InputTransform<'a> {
     pub groups: Groups,
     pub from: [&'a [f32]; PRODUCTS],
     pub to: [&'a mut [f32]; PRODUCTS],
 }
 
-impl Loop for Spread<'_> {
+impl Loop for InputTransform<'_> {
     #[inline(always)]
     unsafe fn run<V: Vector>(self) {
-        let Spread { groups, from, mut to } = self;
-        let [read, written] = groups.reach();
+        let InputTransform { groups, from, mut to } = self;
+        let [read, written] = groups.lengths();
         assert!(
             from.iter().all(|from| from.len() >= read) && to.iter().all(|to| to.len() >= written),
             "lines end early"
@@ -81,21 +83,21 @@ impl Loop for Spread<'_> {
     }
 }
 
-/// The output's transform, from six products to four outputs that lie `apart` values from each other.
-pub(super) struct Gather<'a> {
+/// The transform from six products to four outputs, `output_step` values from each other.
+pub(super) struct OutputTransform<'a> {
     pub groups: Groups,
     pub from: [&'a [f32]; PRODUCTS],
-    pub apart: usize,
+    pub output_step: usize,
     pub to: &'a mut [f32],
 }
 
-impl Loop for Gather<'_> {
+impl Loop for OutputTransform<'_> {
     #[inline(always)]
     unsafe fn run<V: Vector>(self) {
-        let Gather { groups, from, apart, to } = self;
-        let [read, written] = groups.reach();
+        let OutputTransform { groups, from, output_step, to } = self;
+        let [read, written] = groups.lengths();
         assert!(from.iter().all(|from| from.len() >= read), "products end early");
-        assert!(to.len() >= written + (OUTPUTS - 1) * apart, "the output is too short");
+        assert!(to.len() >= written + (OUTPUTS - 1) * output_step, "the output is too short");
         let [from0, from1, from2, from3, from4, from5] = from.map(|from| from.as_ptr());
         let to = to.as_mut_ptr();
         groups.each(|[read, write]| {
@@ -106,9 +108,9 @@ impl Loop for Gather<'_> {
                 let (sum, gap) = (m1.plus(m2), m1.minus(m2));
                 let (wide_sum, wide_gap) = (m3.plus(m4), m3.minus(m4));
                 m(from0).plus(sum).plus(wide_sum).store(to.add(write));
-                gap.add_product(2.0, wide_gap).store(to.add(write + apart));
-                sum.add_product(4.0, wide_sum).store(to.add(write + 2 * apart));
-                gap.plus(m(from5)).add_product(8.0, wide_gap).store(to.add(write + 3 * apart));
+                gap.add_product(2.0, wide_gap).store(to.add(write + output_step));
+                sum.add_product(4.0, wide_sum).store(to.add(write + 2 * output_step));
+                gap.plus(m(from5)).add_product(8.0, wide_gap).store(to.add(write + 3 * output_step));
             }
         });
     }

@@ -5,8 +5,8 @@ use crate::radar::Radar;
 use ndarray::{Array2, s};
 use num_complex::Complex64;
 
-/// Decades of the rounding noise of the thesis' evaluation in samples of this range profile: each range's power times the squared ulp of its
-/// carrier phase (see [`crate::signal::floor::thesis_noise_variance`]).
+/// The amplitude of the rounding noise of the thesis' program in samples with these range profiles, decades: each range's power times the squared ulp
+/// of its carrier phase ([`crate::signal::floor::thesis_noise_variance`]).
 pub(super) fn rounding_floor(radar: &Radar, profiles: &[Array2<Complex64>; 2]) -> f32 {
     let (mut weighted, mut total) = (0.0, 0.0);
     let radians_per_metre = radar.carrier_radians_per_metre().abs();
@@ -20,7 +20,7 @@ pub(super) fn rounding_floor(radar: &Radar, profiles: &[Array2<Complex64>; 2]) -
     (0.5 * (weighted / total / 8.0).log10()) as f32
 }
 
-/// Decades of the quietest range bin under a Blackman-Harris window, whose side lobes are 92 dB down.
+/// The amplitude of the weakest range bin under a Blackman-Harris window, whose side lobes are at -92 dB, decades.
 pub(super) fn measured_floor(radar: &Radar, ends: &[Array2<Complex64>; 2]) -> f32 {
     let window: Vec<f64> = (0..radar.samples)
         .map(|n| {
@@ -35,6 +35,6 @@ pub(super) fn measured_floor(radar: &Radar, ends: &[Array2<Complex64>; 2]) -> f3
             power.iter_mut().zip(channel).for_each(|(p, v)| *p += v.norm_sqr());
         }
     }
-    let quietest = power.into_iter().fold(f64::INFINITY, f64::min) / (2 * radar.end_elements) as f64 / mean_square;
-    (0.5 * (quietest + 1e-300).log10()) as f32
+    let weakest = power.into_iter().fold(f64::INFINITY, f64::min) / (2 * radar.end_elements) as f64 / mean_square;
+    (0.5 * (weakest + 1e-300).log10()) as f32
 }

@@ -1,6 +1,6 @@
 //! Sizes of the live network's input and output.
 
-/// Samples of the shipped network's radars, and range rows of its tensors.
+/// Samples of a chirp of the shipped network's radars, and range rows of its tensors.
 pub const ROWS: usize = 512;
 /// Columns of the network's map for any radar, and elements of the shipped network's radars.
 pub const COLUMNS: usize = 1024;
@@ -14,12 +14,14 @@ pub const FINE_CHANNELS: usize = 4;
 pub const COARSE_CHANNELS: usize = 10;
 /// Channels of the row features.
 pub const ROW_CHANNELS: usize = 6;
-/// Scalars beside the pictures.
+/// Scalar features.
 pub const SCALARS: usize = 2;
-/// Constants of the radar beside the pictures.
+/// Constants of the radar among the features.
 pub const CONSTANTS: usize = 6;
 
-pub(super) const ELEMENTS: usize = 12;
+/// Elements of an end of the shipped network's radars.
+pub(super) const END_ELEMENTS: usize = 12;
+/// Least number of rows of a parallel task.
 pub(super) const MIN_ROWS: usize = 32;
 
 /// cos(theta) of column `k` of a grid of `columns`.

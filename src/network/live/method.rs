@@ -1,6 +1,6 @@
 //! The live network as a reconstruction method.
 
-use super::constants::turn_columns;
+use super::constants::reverse_columns;
 use super::engine::{Decades, LiveEngine, LiveScratch};
 use super::features::FeatureExtractor;
 use super::size::LiveSize;
@@ -24,7 +24,7 @@ const TRAINED_ON: &str = "for the radar of table 3.1: scenes drawn as the genera
     at signal-to-noise ratios of 10 to 60 dB, the others over the rounding of the thesis' program; for others of 1024 elements, weights that went \
     on from those, on one procedural world before radars drawn at random; for the cascade of 12 x 16 pairs, weights of the same world";
 
-/// Buffers kept for later passes; each takes some 30 MB.
+/// Most idle buffers that are kept for later passes, about 30 MB each.
 const MAX_IDLE_BUFFERS: usize = 2;
 
 /// The live network with its weights.
@@ -33,13 +33,13 @@ pub struct LiveMethod {
     name: &'static str,
     engine: LiveEngine,
     extractor: Mutex<Option<Arc<FeatureExtractor>>>,
-    /// Idle buffers. A pass takes one out and holds no lock while it runs: other threads, and the same thread where rayon gives it another
-    /// caller's work, take others.
+    /// Idle buffers. A pass removes one and has no lock while it runs. Other threads then use others, and so does the same thread where rayon gives it
+    /// work of another caller.
     idle: Mutex<Vec<LiveScratch>>,
     eta: f32,
     weights: Weights,
     trained: Domain,
-    /// Networks for radars for which this one wasn't trained; where none fits a radar, the error is the first one's.
+    /// Networks for radars for which this one was not trained. The first one refuses radars that none was trained for.
     other_radars: Vec<LiveMethod>,
 }
 
@@ -52,7 +52,7 @@ impl LiveMethod {
         LiveMethod::named(file, NAME)
     }
 
-    /// The network under a name of its own, beside the shipped weights. The name is never freed.
+    /// The network under another name than that of the shipped weights. The memory of the name is never freed.
     ///
     /// # Errors
     /// As [`LiveMethod::new`].
@@ -75,12 +75,12 @@ impl LiveMethod {
         })
     }
 
-    /// The network with `others`, the first of which that was trained for a radar answers where this one wasn't.
+    /// The network with `others` for radars for which it was not trained. The first that was trained for a radar is used.
     pub fn with_other_radars(self, others: Vec<LiveMethod>) -> Self {
         LiveMethod { other_radars: others, ..self }
     }
 
-    fn on(&self, radar: &Radar) -> &LiveMethod {
+    fn network_for(&self, radar: &Radar) -> &LiveMethod {
         if self.trained.holds(radar) {
             return self;
         }
@@ -93,29 +93,31 @@ impl LiveMethod {
         &self.engine
     }
 
+    /// The tables for `radar`, from the last call where it had an equivalent radar.
     fn extractor(&self, radar: &Radar) -> Result<Arc<FeatureExtractor>, ReconstructError> {
-        // A panic elsewhere leaves the tables whole or absent.
-        let kept = || self.extractor.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(extractor) = kept().as_ref().filter(|extractor| is_alike(extractor.radar(), radar)) {
+        // A panic of another thread leaves the tables complete or `None`.
+        let cache = || self.extractor.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(extractor) = cache().as_ref().filter(|extractor| is_alike(extractor.radar(), radar)) {
             return Ok(Arc::clone(extractor));
         }
         self.trained.check(self.name, radar)?;
-        let made = Arc::new(FeatureExtractor::new(radar)?);
-        *kept() = Some(Arc::clone(&made));
-        Ok(made)
+        let extractor = Arc::new(FeatureExtractor::new(radar)?);
+        *cache() = Some(Arc::clone(&extractor));
+        Ok(extractor)
     }
 
-    fn with_doubt(&self, radar: &Radar, ends: &TwoEnds) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
+    /// The map in decades, and its doubt, in the radar's order of columns.
+    fn run(&self, radar: &Radar, ends: &TwoEnds) -> Result<(Decades, Option<RangeAngleMap>), ReconstructError> {
         let input = self.extractor(radar)?.extract(ends)?;
-        // A panic elsewhere can't spoil the buffers: every pass overwrites them.
+        // A panic of another thread does no harm: every pass overwrites the buffers.
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = idle().pop();
         let mut scratch = taken.unwrap_or_default();
         let mut decades = self.engine.forward(&input, &mut scratch);
         let mut doubt = self.engine.doubt(&scratch);
-        turn_columns(radar, &mut decades.map);
+        reverse_columns(radar, &mut decades.map);
         if let Some(cells) = doubt.as_mut().and_then(|doubt| doubt.lambda.as_slice_mut()) {
-            turn_columns(radar, cells);
+            reverse_columns(radar, cells);
         }
         let mut idle = idle();
         if idle.len() < MAX_IDLE_BUFFERS {
@@ -129,28 +131,29 @@ impl LiveMethod {
     }
 }
 
-/// Signal-to-noise ratios of the third of the training scenes that had thermal noise (`--snr` of `training/train_live.py`).
-const TRAINED_DECIBELS: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
+/// Range of signal-to-noise ratios of the training scenes with thermal noise, a third of all (`--snr` of `training/train_live.py`).
+const TRAINED_SNR: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
-const CELLS_A_LOOK: usize = 17;
+/// Every cell of this number is used for the median.
+const MEDIAN_CELL_STEP: usize = 17;
 
-/// A level that no noise cell exceeds, decades of the network's own map. It lies above the median cell, which is the network's mean of noise
-/// where most cells hold noise; over the rounding floor it lies far below every echo.
+/// A level that no noise cell exceeds, decades of the network's map. It is above the median cell, which is the mean of noise by the network where most
+/// cells are noise. Over the rounding floor it is far below every echo.
 fn noise_level_decades(map: &[f32]) -> f64 {
-    let mut cells: Vec<f32> = map.iter().copied().step_by(CELLS_A_LOOK).collect();
+    let mut cells: Vec<f32> = map.iter().copied().step_by(MEDIAN_CELL_STEP).collect();
     if cells.is_empty() {
         return f64::NEG_INFINITY;
     }
-    let middle = cells.len() / 2;
-    let median = *cells.select_nth_unstable_by(middle, f32::total_cmp).1;
+    let half = cells.len() / 2;
+    let median = *cells.select_nth_unstable_by(half, f32::total_cmp).1;
     f64::from(median) + level_above_mean_decades(map.len())
 }
 
 /// The `doubt` of Lambda normalised from the smallest to the largest cell, converted to `scale`.
-fn on_scale(mut doubt: RangeAngleMap, [minimum, peak]: [f32; 2], scale: LambdaScale) -> RangeAngleMap {
-    let wider = (f64::from(peak - minimum) / (scale.peak - scale.floor)) as f32;
-    if wider != 1.0 && wider.is_finite() {
-        doubt.lambda.par_mapv_inplace(|v| (v * wider).min(1.0));
+fn doubt_on_scale(mut doubt: RangeAngleMap, [minimum, peak]: [f32; 2], scale: LambdaScale) -> RangeAngleMap {
+    let factor = (f64::from(peak - minimum) / (scale.peak - scale.floor)) as f32;
+    if factor != 1.0 && factor.is_finite() {
+        doubt.lambda.par_mapv_inplace(|v| (v * factor).min(1.0));
     }
     doubt
 }
@@ -175,15 +178,15 @@ impl Reconstructor for LiveMethod {
     }
 
     fn weights(&self, radar: &Radar) -> Option<Weights> {
-        Some(self.on(radar).weights.clone())
+        Some(self.network_for(radar).weights.clone())
     }
 
     fn trained_noise(&self) -> Option<TrainedNoise> {
-        Some(TrainedNoise::RoundingAndSnr(TRAINED_DECIBELS[0], TRAINED_DECIBELS[1]))
+        Some(TrainedNoise::RoundingAndSnr(TRAINED_SNR[0], TRAINED_SNR[1]))
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
-        self.on(radar).trained.check(self.name, radar)
+        self.network_for(radar).trained.check(self.name, radar)
     }
 
     fn knows_pairs(&self) -> bool {
@@ -191,11 +194,11 @@ impl Reconstructor for LiveMethod {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
-        let (Decades { mut map, minimum, .. }, doubt) = self.on(radar).with_doubt(radar, ends)?;
+        let (Decades { mut map, minimum, .. }, doubt) = self.network_for(radar).run(radar, ends)?;
         let peak = map.par_iter().copied().reduce(|| f32::NEG_INFINITY, f32::max);
         let scale = LambdaScale::new(minimum.into(), peak.into(), request.normalisation);
         let least_eta = scale.lambda(noise_level_decades(&map)) as f32;
-        let doubt = doubt.map(|doubt| on_scale(doubt, [minimum, peak], scale));
+        let doubt = doubt.map(|doubt| doubt_on_scale(doubt, [minimum, peak], scale));
         map.par_chunks_mut(radar.elements).for_each(|line| each(line, |v| scale.lambda(v.into()) as f32));
         let lambda = Array2::from_shape_vec((radar.samples, radar.elements), map)
             .map_err(|e| ReconstructError::Unusable { method: self.name, reason: e.to_string() })?;

@@ -1,11 +1,12 @@
 //! The live network, which estimates the whole array's log-magnitude from 24 elements in milliseconds.
 //!
-//! A U-Net on 512 x 64 cells whose decoder models a reflector's picture. Its two fine heads give the strength of each of the 512 x 1024 cells by
-//! itself and its strength as a *source of side lobes in range*; a coarse head gives the sources of side lobes in angle. Two learned circular
-//! kernels, started as the tails of a Hann window (1/k^3), spread those sources along the columns and the rows, so that the bright cross of
-//! every reflector through the whole map costs two matrix products. The parts add up as amplitudes together with the noise floor.
+//! A U-Net on 512 x 64 cells whose decoder models the point spread of a reflector. Two fine heads give the amplitude of the main lobe in each of the
+//! 512 x 1024 cells, and that of a *source of side lobes in range*. A coarse head gives the sources of side lobes in angle. Two learned circular
+//! kernels, initialised with the decay of a Hann window's side lobes (1/k^3), spread the sources along the columns and the rows by two matrix products.
+//! The map is the sum of these amplitudes and the noise floor.
 //!
-//! Angles wrap around (column 0 follows column 1023), ranges do not. Row and column means mix at the two coarsest levels.
+//! Convolutions are circular in angle (column 0 follows column 1023), and padded with zeros in range. At the two coarsest levels each cell also gets
+//! the means and maxima of its row and its column.
 //!
 //! `python/apertura/live.py` is the network in PyTorch, with the same names and shapes, for training.
 

@@ -1,11 +1,12 @@
-//! Channels-last pictures, and the operations of the live network's engine on them.
+//! Channels-last tensors, and the residual blocks of the live network's engine.
 
-use super::winograd::{Conv3x3, Results};
+use super::winograd::{Conv3x3, ConvResults};
 use crate::network::kernels::convolution::{Packed, convolve};
 use crate::network::kernels::vector::LANES;
 use crate::signal::simd::{Kernel, Lanes, Simd};
 use rayon::prelude::*;
 
+/// A tensor `[h, w, c]`.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Plane {
     pub(super) h: usize,
@@ -15,6 +16,7 @@ pub(super) struct Plane {
 }
 
 impl Plane {
+    /// Sets the shape. The values are those of earlier use.
     pub(super) fn reset(&mut self, h: usize, w: usize, c: usize) {
         (self.h, self.w, self.c) = (h, w, c);
         self.data.resize(h * w * c, 0.0);
@@ -35,12 +37,14 @@ pub(super) fn rectified(v: f32) -> f32 {
     if v > 0.0 { v } else { 0.0 }
 }
 
+/// 1x1 convolutions of the means and maxima of rows and of columns, whose ReLU is added to the cells of the row and the column.
 #[derive(Debug)]
 pub(super) struct PlaneContext {
     pub(super) row: Packed,
     pub(super) col: Packed,
 }
 
+/// A residual block: ReLU, 3x3 convolution, context, ReLU, 3x3 convolution.
 #[derive(Debug)]
 pub(super) struct PlaneBlock {
     pub(super) conv1: Conv3x3,
@@ -55,12 +59,13 @@ impl PlaneBlock {
             [x.h, x.w],
             |y, line| x.read_rectified(y, line),
             &mut hidden.data,
-            |results, out| results.put(out),
+            |results, out| results.write_outputs(out),
         );
         if let Some(context) = &self.context {
             context.forward(hidden, pool, mixed);
         }
-        let add = |results: Results, out: &mut [f32]| out.iter_mut().zip(results.sums()).for_each(|(a, b)| *a += *b);
+        let add =
+            |results: ConvResults, out: &mut [f32]| out.iter_mut().zip(results.sums()).for_each(|(a, b)| *a += *b);
         self.conv2.run([x.h, x.w], |y, line| hidden.read_rectified(y, line), &mut x.data, add);
     }
 }
@@ -89,7 +94,7 @@ impl PlaneContext {
 
 type Vector = Lanes<f32, LANES>;
 
-/// Means and maxima over rows and over columns; each cell of the results holds the means of all channels, then the maxima.
+/// Kernel of the means and maxima over rows and over columns, `[h, 2 c]` and `[w, 2 c]`: the means of all channels, then the maxima.
 struct Pool<'a> {
     x: &'a Plane,
     rows: &'a mut [f32],
@@ -102,16 +107,16 @@ impl Kernel for Pool<'_> {
     #[inline(always)]
     fn run<const FMA: bool>(self) {
         let &Plane { h, w, c, ref data } = self.x;
-        let pool = |pooled: &mut [f32], first: usize, step: usize, many: usize| {
+        let pool = |pooled: &mut [f32], first: usize, step: usize, count: usize| {
             for channel in (0..c).step_by(LANES) {
-                let (mut sum, mut most) = (Vector::splat(0.0), Vector::splat(f32::NEG_INFINITY));
-                for cell in 0..many {
+                let (mut sum, mut max) = (Vector::splat(0.0), Vector::splat(f32::NEG_INFINITY));
+                for cell in 0..count {
                     let v = Vector::load(&data[(first + cell * step) * c + channel..]);
                     sum = sum + v;
-                    most = most.zip(v, f32::max);
+                    max = max.zip(v, f32::max);
                 }
-                (sum * Vector::splat((many as f32).recip())).store(&mut pooled[channel..]);
-                most.store(&mut pooled[c + channel..]);
+                (sum * Vector::splat((count as f32).recip())).store(&mut pooled[channel..]);
+                max.store(&mut pooled[c + channel..]);
             }
         };
         self.rows.chunks_exact_mut(2 * c).enumerate().for_each(|(y, pooled)| pool(pooled, y * w, 1, w));

@@ -1,6 +1,6 @@
-//! Radars of training scenes: one, or one drawn for each scene.
+//! Radars of training scenes: the same for all, or a random one for each.
 
-use super::grid::{COLUMNS, ELEMENTS, ROWS};
+use super::grid::{COLUMNS, END_ELEMENTS, ROWS};
 use crate::network::domain::{Domain, RadarLimits, migration_bins};
 use crate::radar::{Convention, LinkBudget, Radar, WindowFunction};
 use crate::scene::generate::Purpose;
@@ -12,14 +12,14 @@ use rand_chacha::ChaCha8Rng;
 pub enum Radars {
     /// The same radar for all scenes.
     Fixed(Box<Radar>),
-    /// A radar drawn for each scene within [`DRAWN_LIMITS`].
+    /// A random radar for each scene, within [`DRAWN_LIMITS`].
     Random,
 }
 
 /// Radars that the live network can be trained for.
 pub const DRAWN_LIMITS: RadarLimits = RadarLimits {
     elements: COLUMNS,
-    end_elements: ELEMENTS,
+    end_elements: END_ELEMENTS,
     samples: ROWS,
     carrier_hz: [20e9, 100e9],
     bandwidth_hz: [0.1e9, 6e9],
@@ -30,14 +30,15 @@ pub const DRAWN_LIMITS: RadarLimits = RadarLimits {
     windows: Vec::new(),
 };
 
+/// Part of the random radars that are that of table 3.1.
 const THESIS_SHARE: f64 = 0.25;
-/// Parts of the drawn radars that have the filled spacing, a window of Hann, and a pattern.
+/// Parts of the other random radars with the spacing of a filled array, with a Hann window, and with an element's pattern.
 const FILLED_SHARE: f64 = 0.5;
 const HANN_SHARE: f64 = 0.5;
 const PATTERN_SHARE: f64 = 0.2;
-/// Part of the drawn radars whose migration is uniform between none and the most; the bandwidth of the others is uniform on a logarithmic scale,
-/// and 4 % of them migrate over more than 40 range bins.
-const EVEN_MIGRATION_SHARE: f64 = 0.5;
+/// Part of the other random radars with a uniform distribution of migration. The bandwidth of the rest is uniform on a logarithmic scale, by which 4 %
+/// migrate over more than 40 range bins.
+const UNIFORM_MIGRATION_SHARE: f64 = 0.5;
 
 impl Default for Radars {
     fn default() -> Self {
@@ -57,10 +58,10 @@ impl Radars {
         key[8..10].copy_from_slice(&[5, purpose.number()]);
         let mut rng = ChaCha8Rng::from_seed(key);
         rng.set_stream(index.into());
-        if rng.random::<f64>() < THESIS_SHARE { Radar::default() } else { drawn(&mut rng) }
+        if rng.random::<f64>() < THESIS_SHARE { Radar::default() } else { random_radar(&mut rng) }
     }
 
-    /// The radars for which a network is trained by these.
+    /// The domain of a network that is trained on these.
     pub fn domain(&self) -> Domain {
         match self {
             Radars::Fixed(radar) => Domain::Radar(radar.clone()),
@@ -68,7 +69,7 @@ impl Radars {
         }
     }
 
-    /// A radar with the number of elements and samples that all of them have.
+    /// A radar with the numbers of elements and samples of all of them.
     pub fn shape(&self) -> Radar {
         match self {
             Radars::Fixed(radar) => (**radar).clone(),
@@ -76,8 +77,8 @@ impl Radars {
         }
     }
 
-    /// Least maximum range of the radars, metres.
-    pub fn least_max_range_metres(&self) -> f64 {
+    /// Smallest of the radars' maximum ranges, metres.
+    pub fn smallest_max_range_metres(&self) -> f64 {
         match self {
             Radars::Fixed(radar) => radar.max_range_metres(),
             Radars::Random => {
@@ -88,21 +89,21 @@ impl Radars {
     }
 }
 
-fn drawn(rng: &mut ChaCha8Rng) -> Radar {
+fn random_radar(rng: &mut ChaCha8Rng) -> Radar {
     loop {
         let carrier_hz = log_uniform(DRAWN_LIMITS.carrier_hz, rng);
-        let [least, most] = DRAWN_LIMITS.bandwidth_hz;
-        let bandwidth_hz = log_uniform([least, most.min(DRAWN_LIMITS.max_relative_bandwidth * carrier_hz)], rng);
+        let [min, max] = DRAWN_LIMITS.bandwidth_hz;
+        let bandwidth_hz = log_uniform([min, max.min(DRAWN_LIMITS.max_relative_bandwidth * carrier_hz)], rng);
         let convention = Convention::ALL[rng.random_range(0..2)];
-        let [least, most] = DRAWN_LIMITS.relative_spacing;
-        let spacing = if rng.random::<f64>() < FILLED_SHARE { 1.0 } else { rng.random_range(least..most) };
+        let [min, max] = DRAWN_LIMITS.relative_spacing;
+        let spacing = if rng.random::<f64>() < FILLED_SHARE { 1.0 } else { rng.random_range(min..max) };
         let window = match rng.random::<f64>() < HANN_SHARE {
             true => WindowFunction::Hann,
             false => WindowFunction::ALL[rng.random_range(1..WindowFunction::ALL.len())],
         };
-        let [least, most] = DRAWN_LIMITS.half_power_width_degrees;
+        let [min, max] = DRAWN_LIMITS.half_power_width_degrees;
         let budget = (rng.random::<f64>() < PATTERN_SHARE).then(|| LinkBudget {
-            half_power_width_degrees: Some(rng.random_range(least..most)),
+            half_power_width_degrees: Some(rng.random_range(min..max)),
             ..LinkBudget::default()
         });
         let radar_of = |bandwidth_hz: f64| {
@@ -111,7 +112,7 @@ fn drawn(rng: &mut ChaCha8Rng) -> Radar {
             Radar { element_spacing_metres: spacing * filled.element_spacing_metres, ..filled }
         };
         let mut radar = radar_of(bandwidth_hz);
-        if rng.random::<f64>() < EVEN_MIGRATION_SHARE {
+        if rng.random::<f64>() < UNIFORM_MIGRATION_SHARE {
             let bins = rng.random_range(0.0..DRAWN_LIMITS.max_migration_bins);
             radar = radar_of(bins / migration_bins(&radar) * bandwidth_hz);
         }
@@ -121,8 +122,8 @@ fn drawn(rng: &mut ChaCha8Rng) -> Radar {
     }
 }
 
-fn log_uniform([least, most]: [f64; 2], rng: &mut ChaCha8Rng) -> f64 {
-    least * (most / least).powf(rng.random())
+fn log_uniform([min, max]: [f64; 2], rng: &mut ChaCha8Rng) -> f64 {
+    min * (max / min).powf(rng.random())
 }
 
 #[cfg(test)]
@@ -131,7 +132,7 @@ mod tests {
     use crate::scene::generate::{Generator, Kind, Reading};
 
     #[test]
-    fn drawn_radars_lie_within_their_limits_and_cover_them() {
+    fn random_radars_cover_their_limits() {
         let radars: Vec<Radar> = (0..2000).map(|i| Radars::Random.of(3, Purpose::Training, i)).collect();
         for radar in &radars {
             radar.validate().unwrap();
@@ -152,9 +153,9 @@ mod tests {
         ] {
             assert!((0.02..0.5).contains(&part), "{name}: {part}");
         }
-        let least = radars.iter().map(Radar::max_range_metres).fold(f64::INFINITY, f64::min);
+        let min = radars.iter().map(Radar::max_range_metres).fold(f64::INFINITY, f64::min);
         assert!(
-            least >= Radars::Random.least_max_range_metres() && least < 2.0 * Radars::Random.least_max_range_metres()
+            min >= Radars::Random.smallest_max_range_metres() && min < 2.0 * Radars::Random.smallest_max_range_metres()
         );
     }
 
@@ -176,8 +177,8 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_outside_of_limits_is_named() {
-        let drawn = Domain::Limits(DRAWN_LIMITS);
+    fn values_outside_of_limits_are_named() {
+        let random_radar = Domain::Limits(DRAWN_LIMITS);
         let of = |carrier_hz: f64, bandwidth_hz: f64, convention| {
             Radar { carrier_hz, bandwidth_hz, ..Radar::default() }.in_convention(convention)
         };
@@ -187,9 +188,9 @@ mod tests {
             of(24e9, 250e6, Convention::Thesis),
             of(77e9, 4e9, Convention::Physical),
         ] {
-            assert_eq!(drawn.check("live", &radar), Ok(()));
+            assert_eq!(random_radar.check("live", &radar), Ok(()));
         }
-        let told = |radar: Radar| drawn.check("live", &radar).unwrap_err().to_string();
+        let told = |radar: Radar| random_radar.check("live", &radar).unwrap_err().to_string();
         let low = told(of(10e9, 1.5e9, Convention::Thesis));
         assert!(low.contains("trained for 20 to 100 GHz of carrier, at most 8 % of the carrier as bandwidth"), "{low}");
         assert!(low.contains("this radar has 10.0000 GHz of carrier, 15.0000 % of the carrier"), "{low}");

@@ -1,7 +1,7 @@
-//! Side lobes in range: every column is convolved over the range rows with a learned kernel that wraps around.
+//! Side lobes in range: every column is circularly convolved with a learned kernel.
 //!
-//! As a dense matrix product this would be the most expensive layer of the network. Most of its terms lie far below the floor or below the
-//! side lobes of a stronger source. So the matrix is cut into tiles, and a tile whose upper bound is below that level is skipped.
+//! As a dense matrix product this would be the most expensive layer of the network. Most of its terms are far below the floor or the side lobes of a
+//! stronger source. So the matrix is divided into tiles, and a tile whose upper bound is below that level is skipped.
 
 use super::grid::COLUMNS;
 use super::reading::circulant;
@@ -18,12 +18,12 @@ const TILE_ROWS: usize = 16;
 
 const _: () = assert!(ROWS_STEP.is_multiple_of(TILE_SOURCE_ROWS), "whole tiles of sources");
 
-/// Upper bound of the sum of all skipped tiles in a cell, relative to a lower bound of the cell.
+/// Upper bound of the sum of all skipped tiles in a cell, relative to a lower bound of the cell's amplitude.
 const MAX_SKIPPED_PART: f32 = 0.0096;
 
-/// Words of a mask with a bit for each tile along the sources.
-const WORDS: usize = MAX_ROWS / TILE_SOURCE_ROWS / BITS;
-const BITS: usize = u64::BITS as usize;
+/// Words of a mask with one bit for each tile along the sources.
+const MASK_WORDS: usize = MAX_ROWS / TILE_SOURCE_ROWS / WORD_BITS;
+const WORD_BITS: usize = u64::BITS as usize;
 
 /// The kernel as a circulant matrix over range rows, and its extremes in each tile.
 #[derive(Debug)]
@@ -31,89 +31,90 @@ pub(super) struct RangeLobes {
     rows: usize,
     /// `[rows, rows]`
     kernel: Vec<f32>,
-    /// `[rows / TILE_ROWS, rows / TILE_SOURCE_ROWS]`, the first rounded up: the kernel's minimum and maximum in a tile.
+    /// Minimum and maximum of the kernel in each tile, `[rows / TILE_ROWS, rows / TILE_SOURCE_ROWS]`, the first rounded up.
     extremes: Vec<[f32; 2]>,
 }
 
+/// A thread's buffers.
 #[derive(Default)]
-struct Kept {
-    /// `[rows, BLOCK]`
+struct Buffers {
+    /// Amplitudes of the sources, `[rows, BLOCK]`.
     sources: Vec<f32>,
-    /// `[rows / TILE_SOURCE_ROWS, BLOCK]`
+    /// Sums of the sources of each tile, `[rows / TILE_SOURCE_ROWS, BLOCK]`.
     sums: Vec<f32>,
 }
 
 thread_local! {
-    static KEPT_LOBES: RefCell<Kept> = RefCell::default();
+    static LOBE_BUFFERS: RefCell<Buffers> = RefCell::default();
 }
 
 impl RangeLobes {
-    /// The side lobes of a kernel in decades over the distance in rows, `[rows / 2 + 1]`.
+    /// The side lobes of a kernel, decades for each circular distance in rows, `[rows / 2 + 1]`.
     pub(super) fn new(decades: &[f32]) -> Self {
         let rows = 2 * (decades.len() - 1);
         let kernel = circulant(decades, rows);
-        let of_tile = |tile: usize| {
+        let tile_extremes = |tile: usize| {
             let (to, from) =
                 (tile / (rows / TILE_SOURCE_ROWS) * TILE_ROWS, tile % (rows / TILE_SOURCE_ROWS) * TILE_SOURCE_ROWS);
             let cells =
                 (to..(to + TILE_ROWS).min(rows)).flat_map(|row| &kernel[row * rows + from..][..TILE_SOURCE_ROWS]);
-            cells.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], v| [least.min(*v), most.max(*v)])
+            cells.fold([f32::INFINITY, 0.0], |[min, max]: [f32; 2], v| [min.min(*v), max.max(*v)])
         };
-        let extremes = (0..rows.div_ceil(TILE_ROWS) * (rows / TILE_SOURCE_ROWS)).map(of_tile).collect();
+        let extremes = (0..rows.div_ceil(TILE_ROWS) * (rows / TILE_SOURCE_ROWS)).map(tile_extremes).collect();
         RangeLobes { rows, kernel, extremes }
     }
 
-    /// The part of a cell's lower bound below which a tile is skipped: all skipped tiles together stay below 1 %.
-    pub(super) fn unseen(&self) -> f32 {
+    /// The part of a cell's lower bound below which a tile is skipped: all skipped tiles together are below 1 %.
+    pub(super) fn skipped_part(&self) -> f32 {
         MAX_SKIPPED_PART / (self.rows / TILE_SOURCE_ROWS) as f32
     }
 
-    /// Side lobes `[1024 / BLOCK, rows, BLOCK]` of the sources that `read` writes for a block of columns. Tiles that add less than the part
-    /// `unseen` of a cell's lower bound are skipped; `floor` counts in that bound and is not added. Returns the fraction of tiles computed.
+    /// Computes the side lobes `out` `[1024 / BLOCK, rows, BLOCK]` of the sources that `read` writes for a block of columns. Tiles below the part
+    /// `skipped_part` of a cell's lower bound are skipped; `floor` is in that bound, but is not added. Returns the fraction of tiles computed.
     ///
-    /// `read` must not use rayon: the thread's buffers are borrowed meanwhile.
-    pub(super) fn add_up(
+    /// `read` must not use rayon, since the thread's buffers are borrowed.
+    pub(super) fn convolve_into(
         &self,
         floor: f32,
-        unseen: f32,
+        skipped_part: f32,
         read: impl Fn(usize, &mut [f32]) + Sync,
         out: &mut Vec<f32>,
     ) -> f32 {
         let (simd, rows) = (Simd::chosen(), self.rows);
         out.resize(rows * COLUMNS, 0.0);
-        let of_block = |(block, out): (usize, &mut [f32])| {
-            KEPT_LOBES.with_borrow_mut(|kept| {
-                kept.sources.resize(rows * BLOCK, 0.0);
-                read(block, &mut kept.sources);
-                simd.run(Sums { sources: &kept.sources, sums: &mut kept.sums });
+        let convolve_block = |(block, out): (usize, &mut [f32])| {
+            LOBE_BUFFERS.with_borrow_mut(|buffers| {
+                buffers.sources.resize(rows * BLOCK, 0.0);
+                read(block, &mut buffers.sources);
+                simd.run(SourceSums { sources: &buffers.sources, sums: &mut buffers.sums });
                 let parts = out.chunks_mut(TILE_ROWS * BLOCK).enumerate();
-                parts.map(|(to, out)| self.add_to(simd, floor, unseen, to, kept, out)).sum::<usize>()
+                parts.map(|(to, out)| self.fill(simd, floor, skipped_part, to, buffers, out)).sum::<usize>()
             })
         };
-        let tiles = out.par_chunks_mut(rows * BLOCK).enumerate().map(of_block).sum::<usize>();
+        let tiles = out.par_chunks_mut(rows * BLOCK).enumerate().map(convolve_block).sum::<usize>();
         tiles as f32 / (COLUMNS / BLOCK * self.extremes.len()) as f32
     }
 
-    /// Adds a block's side lobes to the output rows of tile row `to`; returns the number of tiles computed.
-    fn add_to(&self, simd: Simd, floor: f32, unseen: f32, to: usize, kept: &Kept, out: &mut [f32]) -> usize {
+    /// Computes a block's side lobes in the output rows of tile row `to`, and returns the number of tiles computed.
+    fn fill(&self, simd: Simd, floor: f32, skipped_part: f32, to: usize, buffers: &Buffers, out: &mut [f32]) -> usize {
         let (rows, tiles) = (self.rows, self.rows / TILE_SOURCE_ROWS);
         let extremes = &self.extremes[to * tiles..][..tiles];
-        let shows = simd.run(Shows { extremes, sums: &kept.sums, floor, unseen });
-        let tiles = (0..tiles).filter(|tile| shows[tile / BITS] >> (tile % BITS) & 1 == 1);
+        let visible = simd.run(VisibleTiles { extremes, sums: &buffers.sums, floor, skipped_part });
+        let tiles = (0..tiles).filter(|tile| visible[tile / WORD_BITS] >> (tile % WORD_BITS) & 1 == 1);
         let runs = tiles.map(|tile| tile * TILE_SOURCE_ROWS..(tile + 1) * TILE_SOURCE_ROWS);
-        product(simd, &self.kernel[to * TILE_ROWS * rows..][..out.len() / BLOCK * rows], &kept.sources, runs, out);
-        shows.iter().map(|word| word.count_ones() as usize).sum()
+        product(simd, &self.kernel[to * TILE_ROWS * rows..][..out.len() / BLOCK * rows], &buffers.sources, runs, out);
+        visible.iter().map(|word| word.count_ones() as usize).sum()
     }
 }
 
 type Vector = Lanes<f32, LANES_F32>;
 
-struct Sums<'a> {
+struct SourceSums<'a> {
     sources: &'a [f32],
     sums: &'a mut Vec<f32>,
 }
 
-impl Kernel for Sums<'_> {
+impl Kernel for SourceSums<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -128,37 +129,37 @@ impl Kernel for Sums<'_> {
     }
 }
 
-/// Kernel that finds the tiles to compute for one row of tiles, as a mask.
-struct Shows<'a> {
+/// Kernel that finds the tiles to compute in one row of tiles, as a mask.
+struct VisibleTiles<'a> {
     extremes: &'a [[f32; 2]],
     sums: &'a [f32],
     floor: f32,
-    unseen: f32,
+    skipped_part: f32,
 }
 
-impl Kernel for Shows<'_> {
-    type Output = [u64; WORDS];
+impl Kernel for VisibleTiles<'_> {
+    type Output = [u64; MASK_WORDS];
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) -> [u64; WORDS] {
-        let mut shows = [0; WORDS];
+    fn run<const FMA: bool>(self) -> [u64; MASK_WORDS] {
+        let mut visible = [0; MASK_WORDS];
         for at in (0..BLOCK).step_by(LANES) {
             let sum = |tile: usize| Vector::load(&self.sums[tile * BLOCK + at..]);
-            let mut least = Vector::splat(self.floor);
+            let mut lower_bound = Vector::splat(self.floor);
             for (tile, &[minimum, _]) in self.extremes.iter().enumerate() {
-                least = sum(tile).mul_add::<FMA>(Lanes::splat(minimum), least);
+                lower_bound = sum(tile).mul_add::<FMA>(Lanes::splat(minimum), lower_bound);
             }
-            least = least * Lanes::splat(self.unseen);
-            for (word, (shows, extremes)) in shows.iter_mut().zip(self.extremes.chunks(BITS)).enumerate() {
+            lower_bound = lower_bound * Lanes::splat(self.skipped_part);
+            for (word, (visible, extremes)) in visible.iter_mut().zip(self.extremes.chunks(WORD_BITS)).enumerate() {
                 let mut bits = 0;
                 for (bit, &[_, maximum]) in extremes.iter().enumerate() {
-                    let over = sum(word * BITS + bit).mul_add::<FMA>(Lanes::splat(maximum), -least);
+                    let over = sum(word * WORD_BITS + bit).mul_add::<FMA>(Lanes::splat(maximum), -lower_bound);
                     bits |= u64::from(over.0.iter().any(|v| *v > 0.0)) << bit;
                 }
-                *shows |= bits;
+                *visible |= bits;
             }
         }
-        shows
+        visible
     }
 }
 
@@ -167,11 +168,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_out_does_not_show() {
-        [512, 200, 1024].into_iter().for_each(check_what_is_left_out);
+    fn skipped_tiles_are_invisible() {
+        [512, 200, 1024].into_iter().for_each(check_skipped_tiles);
     }
 
-    fn check_what_is_left_out(rows: usize) {
+    fn check_skipped_tiles(rows: usize) {
         // Tails like those of a Hann window, and sources over fifteen decades, most of them weak.
         let decades: Vec<f32> = (0..=rows / 2).map(|k| -3.0 - 3.0 * (1.0 + k as f32).log10()).collect();
         let lobes = RangeLobes::new(&decades);
@@ -185,7 +186,7 @@ mod tests {
         };
         let floor = 1e-14;
         let mut found = Vec::new();
-        let part = lobes.add_up(floor, lobes.unseen(), read, &mut found);
+        let part = lobes.convolve_into(floor, lobes.skipped_part(), read, &mut found);
         assert!(part < 0.5, "{part} of all tiles");
         let mut worst: f32 = 0.0;
         for column in (0..COLUMNS).step_by(7) {

@@ -1,11 +1,12 @@
-//! Registration: one end's picture, interpolated on the polar grid around another place. The same reflector lies up to 27 range bins apart in the two.
+//! Registration: interpolation of one end's picture on the polar grid around another place. The ranges of one reflector differ by up to 27 bins between
+//! the two ends.
 
 use super::constants::cosine_scale;
 use super::grid::cosine;
 use crate::radar::Radar;
 use std::ops::{Add, Mul};
 
-/// Bilinear look-ups of each cell of a polar grid of so many columns in another polar grid.
+/// The bilinear interpolation of each cell of a polar grid with this number of columns from another polar grid.
 #[derive(Debug)]
 pub(super) struct Registration<const COLUMNS: usize> {
     taps: Vec<Tap>,
@@ -13,17 +14,17 @@ pub(super) struct Registration<const COLUMNS: usize> {
 
 #[derive(Debug, Clone, Copy)]
 struct Tap {
-    /// Index of the first of the four cells; the others are beside it and below. Angles wrap around, and so do ranges beyond the last.
+    /// Index of the first of the four cells; the others are in the next column and the next row. Columns and rows wrap around.
     cell: u32,
-    /// Distance to the next row and to the next column, in parts of [`WHOLE_PARTS`].
+    /// Distance from the first cell, rows and columns, in units of 1 / [`PARTS_PER_CELL`].
     part: [u16; 2],
 }
 
-const WHOLE_PARTS: f32 = u16::MAX as f32;
+const PARTS_PER_CELL: f32 = u16::MAX as f32;
 
 impl<const COLUMNS: usize> Registration<COLUMNS> {
-    /// The registration from the polar grid around x = `to` on that around x = `from`; metres. Columns beyond end-fire, where no reflector is,
-    /// are shifted like end-fire.
+    /// The interpolation from the polar grid around x = `to` on that around x = `from`, metres. Columns beyond end-fire, which have no reflectors,
+    /// are shifted as end-fire.
     pub(super) fn new(radar: &Radar, from: f64, to: f64) -> Self {
         const { assert!(COLUMNS.is_power_of_two()) };
         let bin = radar.range_resolution_metres();
@@ -35,17 +36,17 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
             let u = seen.clamp(-1.0, 1.0);
             let dx = r * u + from - to;
             let distance = (dx * dx + r * r * (1.0 - u * u)).sqrt();
-            let there = if distance > 0.0 { dx / distance } else { 0.0 };
-            let there = if u == seen { there } else { seen };
-            let (row, column) = (distance / bin, there / scale * half + half);
+            let cosine_there = if distance > 0.0 { dx / distance } else { 0.0 };
+            let cosine_there = if u == seen { cosine_there } else { seen };
+            let (row, column) = (distance / bin, cosine_there / scale * half + half);
             let (r0, c0) = (row.floor(), column.floor());
-            let part = [row - r0, column - c0].map(|part| (part as f32 * WHOLE_PARTS).round() as u16);
+            let part = [row - r0, column - c0].map(|part| (part as f32 * PARTS_PER_CELL).round() as u16);
             Tap { cell: (r0 as usize % rows * COLUMNS + c0.rem_euclid(COLUMNS as f64) as usize) as u32, part }
         };
         Registration { taps: (0..rows * COLUMNS).map(tap).collect() }
     }
 
-    /// Row `row` of the grid, interpolated from `plane` `[rows, COLUMNS]`.
+    /// Row `row`, interpolated from `plane` `[rows, COLUMNS]`.
     #[inline]
     pub(super) fn row<T>(&self, plane: &[T], row: usize) -> impl Iterator<Item = T>
     where
@@ -53,11 +54,12 @@ impl<const COLUMNS: usize> Registration<COLUMNS> {
     {
         self.taps[row * COLUMNS..(row + 1) * COLUMNS].iter().map(|tap| {
             let first = tap.cell as usize;
-            let beside = (first & !(COLUMNS - 1)) | ((first + 1) & (COLUMNS - 1));
-            let [down, right] = tap.part.map(|part| f32::from(part) * (1.0 / WHOLE_PARTS));
+            let next_column = (first & !(COLUMNS - 1)) | ((first + 1) & (COLUMNS - 1));
+            let [down, right] = tap.part.map(|part| f32::from(part) * (1.0 / PARTS_PER_CELL));
             let within = |cell: usize| if cell < plane.len() { cell } else { cell - plane.len() };
-            let line =
-                |below: usize| plane[within(first + below)] * (1.0 - right) + plane[within(beside + below)] * right;
+            let line = |below: usize| {
+                plane[within(first + below)] * (1.0 - right) + plane[within(next_column + below)] * right
+            };
             line(0) * (1.0 - down) + line(COLUMNS) * down
         })
     }

@@ -1,7 +1,7 @@
-//! The size of a live network: its widths, and the shape of its radar's maps.
+//! The size of a live network: its numbers of channels and blocks, and the shape of its radar's maps.
 
 use super::config::{DECODER_CHANNELS, INPUT_CHANNELS, WIDE_COLUMNS};
-use super::constants::WINDOWS;
+use super::constants::WINDOW_COUNT;
 use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS, ROWS};
 use crate::network::domain::Domain;
 use crate::network::kernels::convolution::padded;
@@ -10,26 +10,26 @@ use crate::radar::{Bytes, Radar};
 use serde::Deserialize;
 use std::ops::RangeInclusive;
 
-/// Entry of a weight file with the size of its network, as JSON; without it the network has the shipped size.
+/// Entry of a weight file with the size of its network, as JSON. Without the entry it is that of the shipped network.
 pub const SIZE_ENTRY: &str = "size";
 
-/// Most samples of a radar that a network can have.
+/// Most samples of a network's radar.
 pub const MAX_ROWS: usize = 4096;
-/// Divisor of the number of samples, which the network halves three times.
+/// Divisor of the number of samples: the network halves it three times.
 pub const ROWS_STEP: usize = 8;
 
-/// Most memory that a network may take for its weights and one pass, bytes.
+/// Most memory of a network for its weights and one pass, bytes.
 const MAX_BYTES: u64 = 1 << 30;
 /// Channels of networks for radars of at most half as many cells as table 3.1's.
 const SMALL_CHANNELS: [usize; 4] = [12, 24, 44, 60];
-/// Processor seconds of a map of 512 samples in training, with the shipped widths and with the small ones (training/README.md).
+/// Processor seconds of training for a map of 512 samples, with the shipped numbers of channels and with the small ones (training/README.md).
 const MAP_SECONDS: f64 = 0.52;
 const SMALL_MAP_SECONDS: f64 = 0.33;
-const CHANNELS: RangeInclusive<usize> = 1..=512;
-const BLOCKS: RangeInclusive<usize> = 1..=16;
-const ELEMENTS: RangeInclusive<usize> = 2..=65_536;
+const CHANNEL_RANGE: RangeInclusive<usize> = 1..=512;
+const BLOCK_RANGE: RangeInclusive<usize> = 1..=16;
+const ELEMENT_RANGE: RangeInclusive<usize> = 2..=65_536;
 
-/// Widths of a network, and the shape of its maps. `training/train_live.py` writes the same names into [`SIZE_ENTRY`].
+/// The size of a network. `training/train_live.py` writes the same names into [`SIZE_ENTRY`].
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LiveSize {
@@ -67,9 +67,9 @@ impl LiveSize {
         Ok(size)
     }
 
-    /// The size of the network that `training/train_live.py` makes for `radar`.
+    /// The size of the network that `training/train_live.py` trains for `radar`.
     /// # Errors
-    /// A sentence without its full stop, where no network fits the radar.
+    /// A sentence without its full stop, where the radar is too small or too large.
     pub fn for_radar(radar: &Radar) -> Result<Self, String> {
         if radar.end_elements < 2 {
             return Err("an end of one element sees no direction".to_owned());
@@ -103,10 +103,10 @@ impl LiveSize {
         if *rows == 0 || *rows > MAX_ROWS || !rows.is_multiple_of(ROWS_STEP) {
             return Err(format!("has rows of {rows}; expected a multiple of {ROWS_STEP} up to {MAX_ROWS}"));
         }
-        within("columns", *columns, &ELEMENTS)?;
-        within("fine", *fine, &CHANNELS)?;
-        channels.iter().try_for_each(|c| within("c", *c, &CHANNELS))?;
-        blocks.iter().try_for_each(|b| within("blocks", *b, &BLOCKS))?;
+        within("columns", *columns, &ELEMENT_RANGE)?;
+        within("fine", *fine, &CHANNEL_RANGE)?;
+        channels.iter().try_for_each(|c| within("c", *c, &CHANNEL_RANGE))?;
+        blocks.iter().try_for_each(|b| within("blocks", *b, &BLOCK_RANGE))?;
         let bytes = self.memory_bytes();
         if bytes > MAX_BYTES {
             let (bytes, most) = (Bytes(bytes), Bytes(MAX_BYTES));
@@ -115,31 +115,32 @@ impl LiveSize {
         Ok(())
     }
 
-    /// Processor seconds of a map in `training/train_live.py`: its pictures have as many rows as the radar has samples, and the same columns for any radar.
+    /// Processor seconds of training for a map in `training/train_live.py`, proportional to the radar's number of samples.
     pub fn training_seconds_a_map(&self) -> f64 {
         let seconds = if self.channels == SMALL_CHANNELS { SMALL_MAP_SECONDS } else { MAP_SECONDS };
         seconds * self.rows as f64 / ROWS as f64
     }
 
-    /// Upper bound on the bytes of the weights as they are packed, and of the tables, pictures and maps of one pass.
+    /// Upper bound of the bytes of the packed weights, and of the tables, tensors and maps of one pass.
     pub fn memory_bytes(&self) -> u64 {
         let LiveSize { channels, blocks, fine, .. } = self;
-        let wide = |count: usize| padded(count) as u64;
+        let padded_channels = |count: usize| padded(count) as u64;
         // A 3x3 convolution is packed as 36 products.
-        let conv = |input: usize, output: usize| 36 * wide(input) * wide(output);
+        let conv = |input: usize, output: usize| 36 * padded_channels(input) * padded_channels(output);
         let levels: u64 = channels
             .iter()
             .zip(blocks)
-            .map(|(c, blocks)| 2 * *blocks as u64 * (2 * conv(*c, *c) + 4 * wide(*c) * wide(*c)))
+            .map(|(c, blocks)| 2 * *blocks as u64 * (2 * conv(*c, *c) + 4 * padded_channels(*c) * padded_channels(*c)))
             .sum();
-        let steps: u64 = channels.windows(2).map(|pair| 8 * wide(pair[0]) * wide(pair[1])).sum();
+        let steps: u64 = channels.windows(2).map(|pair| 8 * padded_channels(pair[0]) * padded_channels(pair[1])).sum();
         let heads = conv(INPUT_CHANNELS, channels[0]) + conv(channels[0], 4 * DECODER_CHANNELS) + conv(12, *fine);
         let [rows, columns] = [self.rows, self.columns].map(|n| n as u64);
-        let kernels = WINDOWS as u64 * (rows * rows + (WIDE_COLUMNS * WIDE_COLUMNS) as u64);
-        // Memory of a row: a level, the input of its convolution and the result from below; heads and features; maps.
-        let of_levels: u64 = channels.iter().enumerate().map(|(level, c)| 3 * (wide(*c) >> (2 * level))).sum();
+        let kernels = WINDOW_COUNT as u64 * (rows * rows + (WIDE_COLUMNS * WIDE_COLUMNS) as u64);
+        // Values in a row: of a level, the input of its convolution and the result of the coarser level; of heads and features; of maps.
+        let level_values: u64 =
+            channels.iter().enumerate().map(|(level, c)| 3 * (padded_channels(*c) >> (2 * level))).sum();
         let pictures =
-            COARSE_COLUMNS as u64 * (of_levels + 64) + FINE_COLUMNS as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
+            COARSE_COLUMNS as u64 * (level_values + 64) + FINE_COLUMNS as u64 * 32 + 2 * COLUMNS as u64 + 3 * columns;
         4 * (levels + steps + heads + kernels + rows * pictures)
     }
 }

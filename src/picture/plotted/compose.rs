@@ -78,7 +78,7 @@ pub fn compose(
 ) -> Composed {
     let Style { floor, normalisation, .. } = *style;
     let elements = &scene.disturbances.elements;
-    let maps = LogMaps::heard_by(radar, elements, signal);
+    let maps = LogMaps::of_elements(radar, elements, signal);
     let (heard, inputs) =
         InputMap::of(radar, elements, Some(signal), [&maps.first, &maps.last], (style.layout.as_ref(), normalisation))?;
     let request = Request { noise: floor.into(), normalisation, heard, ..Request::default() };

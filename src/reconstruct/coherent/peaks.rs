@@ -86,7 +86,7 @@ pub(in crate::reconstruct) fn gains(
     let (samples, hears) = (ends.flat(), ends.hears());
     let echoes: Vec<ArrayEcho> = peaks
         .iter()
-        .map(|p| ArrayEcho::at(radar, p.range_metres, p.cos_theta).where_heard(&hears))
+        .map(|p| ArrayEcho::at(radar, p.range_metres, p.cos_theta).masked(&hears))
         .filter(|echo| echo.norm().is_finite() && echo.norm() > 0.0)
         .collect();
     let count = echoes.len();

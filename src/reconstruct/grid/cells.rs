@@ -64,7 +64,7 @@ impl<'a> GridCells<'a> {
         if range_metres <= 0.0 || cos_theta.abs() > 1.0 {
             return None;
         }
-        let echo = ArrayEcho::at(self.radar, range_metres, cos_theta).where_heard(&self.hears);
+        let echo = ArrayEcho::at(self.radar, range_metres, cos_theta).masked(&self.hears);
         (echo.norm().is_finite() && echo.norm() > 0.0).then_some(echo)
     }
 

@@ -26,11 +26,11 @@ fn axes_are_put_in_order() {
 #[test]
 fn chirps_are_picked_or_joined_but_never_guessed() {
     let of = |chirp| arrange(numbered(&[2, 2, 1]), &[AxisKind::Chirp, Element, Sample], chirp);
-    assert_eq!(reals(of(Some(Chirp::Number(1))).unwrap()), array![[2.0], [3.0]]);
-    assert_eq!(reals(of(Some(Chirp::Joined(Join::Mean))).unwrap()), array![[1.0], [2.0]]);
+    assert_eq!(reals(of(Some(ChirpChoice::Number(1))).unwrap()), array![[2.0], [3.0]]);
+    assert_eq!(reals(of(Some(ChirpChoice::Joined(Join::Mean))).unwrap()), array![[1.0], [2.0]]);
     assert!(of(None).unwrap_err().to_string().contains("recording.chirp = 0 to 1, \"mean\""));
-    assert!(of(Some(Chirp::Number(2))).unwrap_err().to_string().contains("expected 0 to 1"));
-    let needless = arrange(numbered(&[2, 1]), &[Element, Sample], Some(Chirp::Number(0)));
+    assert!(of(Some(ChirpChoice::Number(2))).unwrap_err().to_string().contains("expected 0 to 1"));
+    let needless = arrange(numbered(&[2, 1]), &[Element, Sample], Some(ChirpChoice::Number(0)));
     assert!(needless.unwrap_err().to_string().contains("no axis is \"chirp\""));
 }
 
@@ -47,15 +47,15 @@ fn iq_may_have_its_own_axis() {
 }
 
 #[test]
-fn one_frame_is_picked() {
+fn one_frame_is_selected() {
     let of = |frame| {
         let mut kinds = vec![AxisKind::Frame, Element, Sample];
-        let numbers = one_frame(numbered(&[2, 2, 1]), &mut kinds, frame)?;
+        let numbers = frame_of(numbered(&[2, 2, 1]), &mut kinds, frame)?;
         arrange(numbers, &kinds, None).map(reals)
     };
     assert_eq!((of(None).unwrap(), of(Some(1)).unwrap()), (array![[0.0], [1.0]], array![[2.0], [3.0]]));
     assert!(of(Some(2)).unwrap_err().to_string().contains("recording.frame is 2; expected 0 to 1"));
-    let needless = one_frame(numbered(&[2, 1]), &mut vec![Element, Sample], Some(0));
+    let needless = frame_of(numbered(&[2, 1]), &mut vec![Element, Sample], Some(0));
     assert!(needless.unwrap_err().to_string().contains("no axis is \"frame\""));
 }
 
@@ -88,12 +88,12 @@ fn wrong_axes_are_told() {
 #[test]
 fn transmitters_in_turn_have_an_axis_of_their_own() {
     let mut kinds = vec![AxisKind::Chirp, Element, Sample];
-    let numbers = in_turn(numbered(&[4, 1, 1]), &mut kinds, Some(2)).unwrap();
+    let numbers = split_turns(numbered(&[4, 1, 1]), &mut kinds, Some(2)).unwrap();
     let told = ([2, 2, 1, 1].as_slice(), [AxisKind::Chirp, Transmitter, Receiver, Sample].as_slice());
     assert_eq!((numbers.shape(), kinds.as_slice()), told);
-    let joined = loops(numbers.clone(), &kinds).unwrap();
+    let joined = into_loops(numbers.clone(), &kinds).unwrap();
     assert_eq!((joined.dim(), joined[[1, 0, 0, 0]].re), ((2, 2, 1, 1), 2.0));
-    assert_eq!(reals(arrange(numbers, &kinds, Some(Chirp::Joined(Join::Mean))).unwrap()), array![[1.0], [2.0]]);
-    let odd = in_turn(numbered(&[3, 1, 1]), &mut vec![AxisKind::Chirp, Element, Sample], Some(2));
+    assert_eq!(reals(arrange(numbers, &kinds, Some(ChirpChoice::Joined(Join::Mean))).unwrap()), array![[1.0], [2.0]]);
+    let odd = split_turns(numbered(&[3, 1, 1]), &mut vec![AxisKind::Chirp, Element, Sample], Some(2));
     assert!(odd.unwrap_err().to_string().contains("3 chirps are no multiple of 2"));
 }

@@ -1,11 +1,11 @@
-//! Of each range bin the strongest Doppler cell and those that stand out beside it, with chirps in time division compensated for their velocities.
+//! The strong Doppler cells of each range bin, without the phases that moving echoes gain between transmitters that send in turn.
 //!
-//! Side lobes of an echo fill the bins around it, and the window over the samples takes them out where all are there. So a bin whose strongest cell
-//! is another echo's keeps them too.
+//! A bin keeps the cells of all echoes in it, side lobes of other bins' echoes included: a later window over the samples removes these only where all
+//! bins have them.
 //!
-//! An object that moves turns by `f` turns from loop to loop and by a part of it from chirp to chirp of a loop, each sent by another
-//! transmitter. The cell tells `f` up to whole turns; each whole number turns the transmitters against each other, and the one whose
-//! spectrum over the array is sharpest is taken.
+//! The phase of a moving echo changes by `f` turns from loop to loop, and by equal parts of it from chirp to chirp of a loop. The Doppler cell gives
+//! `f` up to a whole number of turns. Each whole number gives other phases between the transmitters: that with the sharpest spectrum over the array is
+//! used.
 
 use super::channels::Channels;
 use super::frame::Frame;
@@ -15,21 +15,20 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Cosines at which the spectrum over the array is looked at.
-const COSINES: usize = 129;
-/// Least sharpness of the spectrum at another whole number of turns over its sharpness at none, for the other number to be taken.
-const SHARPER: f64 = 1.15;
-/// Least power of a cell that counts for itself, over that of the middle one of its bin's cells.
-const STANDS_OUT: f64 = 10.0;
-/// Least power of a cell beside the strongest, over the strongest's: side lobes of the window over the loops lie below; and least distance from it,
-/// cells.
-const BELOW_STRONGEST: f64 = 0.003;
-const APART_CELLS: f64 = 3.0;
-/// Least turns over all loops for which an echo is said to move.
-const MOVES: f64 = 0.5;
+/// Number of cosines at which the spectrum over the array is computed, from -1 to 1.
+const COSINE_COUNT: usize = 129;
+/// Least sharpness of the spectrum at a whole number of turns, relative to that at 0 turns, for which the number is used.
+const MIN_SHARPNESS_RATIO: f64 = 1.15;
+/// Least power of an echo's cell, relative to the median of its range bin.
+const MIN_POWER_RATIO: f64 = 10.0;
+/// Least power of another cell, relative to the strongest: side lobes of the window over the loops lie below. Least distance between two, cells.
+const MIN_RELATIVE_POWER: f64 = 0.003;
+const MIN_DISTANCE_CELLS: f64 = 3.0;
+/// Least phase change over all loops of an echo that counts as moving, turns.
+const MIN_MOVING_TURNS: f64 = 0.5;
 
-/// Samples of the strongest Doppler cells, `[chirps, receivers, samples]`, and the sentence on their choice. `turns` are those of the chosen chirps'
-/// pairs across the array at a cosine of 1.
+/// Samples of the strong Doppler cells, `[chirps, receivers, samples]`, and a sentence on them. `turns` are the phases of the chosen chirps' pairs for an
+/// echo at a cosine of 1.
 pub(super) fn strongest(
     frame: &Frame,
     channels: &Channels,
@@ -38,9 +37,9 @@ pub(super) fn strongest(
 ) -> (Array3<Complex64>, Option<String>) {
     let (loops, chirps, receivers, samples) = frame.samples.dim();
     if loops < 2 {
-        return (channels.of_loop(&frame.samples.index_axis(Axis(0), 0)), None);
+        return (channels.correct_loop(&frame.samples.index_axis(Axis(0), 0)), None);
     }
-    let profiles = transformed(frame);
+    let profiles = range_profiles(frame);
     let cells = Cells::new(frame.weights(true));
     let array = Array::new(chosen, receivers, turns);
     let mut out = Array3::zeros((chirps, receivers, samples));
@@ -48,27 +47,27 @@ pub(super) fn strongest(
     for bin in 0..samples {
         let plain = profiles.slice(s![.., .., bin]).to_owned();
         let (before, after) = ((bin + samples - 1) % samples, (bin + 1) % samples);
-        // The window of Hann over the samples is a sum of three bins.
+        // A Hann window over the samples is this sum of three bins.
         let windowed = &plain * Complex64::from(0.5)
             - (&profiles.slice(s![.., .., before]) + &profiles.slice(s![.., .., after])) * Complex64::from(0.25);
         let found = cells.strongest(&windowed);
-        let turn = if found.ratio >= STANDS_OUT { found } else { cells.strongest(&plain) };
+        let turn = if found.ratio >= MIN_POWER_RATIO { found } else { cells.strongest(&plain) };
         let value = |of: &Array2<Complex64>, turns: f64, whole: f64| {
             cells.value(of, turns, whole, [chirps, receivers], channels)
         };
         let whole = whole_turns(chirps, |whole| array.sharpness(&value(&windowed, turn.turns, whole)));
         let mut all = value(&plain, turn.turns, whole);
-        for turns in cells.beside(&plain, turn.turns) {
+        for turns in cells.other_cells(&plain, turn.turns) {
             let whole = whole_turns(chirps, |whole| array.sharpness(&value(&plain, turns, whole)));
             all += &value(&plain, turns, whole);
         }
         out.slice_mut(s![.., .., bin]).assign(&all.slice(s![.., .., 0]));
-        if found.ratio >= STANDS_OUT * STANDS_OUT {
-            moving += usize::from((turn.turns * loops as f64).abs() > MOVES);
+        if found.ratio >= MIN_POWER_RATIO * MIN_POWER_RATIO {
+            moving += usize::from((turn.turns * loops as f64).abs() > MIN_MOVING_TURNS);
             ambiguous += usize::from(whole != 0.0);
         }
     }
-    transform_back(&mut out);
+    samples_of_profiles(&mut out);
     let several =
         if chirps > 1 { " What an echo turns from one transmitter's chirp to the next is taken out." } else { "" };
     let faster = match ambiguous {
@@ -89,7 +88,7 @@ pub(super) fn strongest(
 }
 
 /// Range profiles of all loops without a window, `[loops, chirps * receivers, bins]`.
-fn transformed(frame: &Frame) -> Array3<Complex64> {
+fn range_profiles(frame: &Frame) -> Array3<Complex64> {
     let (loops, chirps, receivers, samples) = frame.samples.dim();
     let fft = Simd::chosen().forward_fft::<f64>(samples);
     let mut out = Array3::zeros((loops, chirps * receivers, samples));
@@ -101,7 +100,7 @@ fn transformed(frame: &Frame) -> Array3<Complex64> {
     out
 }
 
-fn transform_back(rows: &mut Array3<Complex64>) {
+fn samples_of_profiles(rows: &mut Array3<Complex64>) {
     let samples = rows.dim().2;
     let fft = Simd::chosen().forward_fft::<f64>(samples);
     let scale = (samples.max(1) as f64).recip();
@@ -114,13 +113,13 @@ fn transform_back(rows: &mut Array3<Complex64>) {
 
 #[derive(Clone, Copy)]
 struct Cell {
-    /// Turns from loop to loop, -0.5 to 0.5.
+    /// Phase change from loop to loop, turns from -0.5 to 0.5.
     turns: f64,
-    /// Its power over that of the middle cell.
+    /// Power relative to the median cell.
     ratio: f64,
 }
 
-/// The transform over loops.
+/// The transform over loops, with the weight of each loop.
 struct Cells {
     transform: Arc<dyn Fft<f64>>,
     weights: Vec<f64>,
@@ -131,7 +130,7 @@ impl Cells {
         Cells { transform: Simd::chosen().forward_fft(weights.len()), weights }
     }
 
-    /// Power of each cell, all channels together.
+    /// Power of each cell, summed over channels.
     fn powers(&self, profiles: &Array2<Complex64>) -> Vec<f64> {
         let mut powers = vec![0.0; self.weights.len()];
         for channel in profiles.axis_iter(Axis(1)) {
@@ -146,22 +145,23 @@ impl Cells {
         let powers = self.powers(profiles);
         let (best, peak) =
             powers.iter().copied().enumerate().fold((0, 0.0), |best, v| if v.1 > best.1 { v } else { best });
-        Cell { turns: turns_at(&powers, best), ratio: peak / middle(&powers) }
+        Cell { turns: turns_at(&powers, best), ratio: peak / median(&powers) }
     }
 
-    /// Turns of the cells that stand out beside that of `turns`, the strongest first.
-    fn beside(&self, profiles: &Array2<Complex64>, turns: f64) -> Vec<f64> {
+    /// Turns of the other strong cells, the strongest first. `turns` are those of the cell that is used already.
+    fn other_cells(&self, profiles: &Array2<Complex64>, turns: f64) -> Vec<f64> {
         let powers = self.powers(profiles);
         let loops = powers.len();
-        let least = (middle(&powers) * STANDS_OUT).max(powers.iter().copied().fold(0.0, f64::max) * BELOW_STRONGEST);
+        let least =
+            (median(&powers) * MIN_POWER_RATIO).max(powers.iter().copied().fold(0.0, f64::max) * MIN_RELATIVE_POWER);
         let is_top = |n: &usize| {
             powers[*n] >= least && powers[*n] >= powers[(n + loops - 1) % loops] && powers[*n] > powers[(n + 1) % loops]
         };
-        let mut tops: Vec<usize> = (0..loops).filter(is_top).collect();
-        tops.sort_by(|a, b| powers[*b].total_cmp(&powers[*a]));
+        let mut peaks: Vec<usize> = (0..loops).filter(is_top).collect();
+        peaks.sort_by(|a, b| powers[*b].total_cmp(&powers[*a]));
         let mut taken = vec![turns];
-        for at in tops.into_iter().map(|top| turns_at(&powers, top)) {
-            let is_apart = |t: &f64| ((at - t) - (at - t).round()).abs() * loops as f64 >= APART_CELLS;
+        for at in peaks.into_iter().map(|peak_cell| turns_at(&powers, peak_cell)) {
+            let is_apart = |t: &f64| ((at - t) - (at - t).round()).abs() * loops as f64 >= MIN_DISTANCE_CELLS;
             if taken.iter().all(is_apart) {
                 taken.push(at);
             }
@@ -169,7 +169,7 @@ impl Cells {
         taken.split_off(1)
     }
 
-    /// The bin's value at the cell, `[chirps, receivers, 1]`: chirps turned back, transmitters told apart.
+    /// Value of the cell, `[chirps, receivers, 1]`, without the phases of the motion and with channels corrected.
     fn value(
         &self,
         profiles: &Array2<Complex64>,
@@ -178,7 +178,7 @@ impl Cells {
         [chirps, receivers]: [usize; 2],
         channels: &Channels,
     ) -> Array3<Complex64> {
-        // Counted from the loop in the middle: neighbouring bins, whose turns are a little off, then keep their phases to each other.
+        // Phases are relative to the middle loop: they hardly depend on the small differences in turns between neighbouring bins.
         let middle = (self.weights.len() / 2) as f64;
         let loops: Vec<Complex64> = (0..)
             .zip(&self.weights)
@@ -190,25 +190,25 @@ impl Cells {
             let back = Complex64::from_polar(1.0, -TAU * (turns + whole) * chirp as f64 / chirps as f64);
             *value = channel.iter().zip(&loops).map(|(v, w)| v * w).sum::<Complex64>() * back;
         }
-        channels.of_loop(&ArrayView3::from(&found))
+        channels.correct_loop(&ArrayView3::from(&found))
     }
 }
 
-fn middle(powers: &[f64]) -> f64 {
+fn median(powers: &[f64]) -> f64 {
     let mut sorted = powers.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted[powers.len() / 2].max(f64::MIN_POSITIVE)
 }
 
-/// Turns from loop to loop of an echo whose cell is the strongest around, -0.5 to 0.5.
-fn turns_at(powers: &[f64], top: usize) -> f64 {
+/// Phase change from loop to loop of the echo at the peak `peak_cell`, turns from -0.5 to 0.5.
+fn turns_at(powers: &[f64], peak_cell: usize) -> f64 {
     let loops = powers.len();
-    let around = [powers[(top + loops - 1) % loops], powers[top], powers[(top + 1) % loops]];
-    let turns = (top as f64 + vertex(around)) / loops as f64;
+    let around = [powers[(peak_cell + loops - 1) % loops], powers[peak_cell], powers[(peak_cell + 1) % loops]];
+    let turns = (peak_cell as f64 + vertex(around)) / loops as f64;
     turns - turns.round()
 }
 
-/// Top of the parabola through three logarithms, -0.5 to 0.5 of a cell from the middle one.
+/// Vertex of the parabola through three logarithms, -0.5 to 0.5 cells from the middle one.
 fn vertex(powers: [f64; 3]) -> f64 {
     let [a, b, c] = powers.map(|p| p.max(f64::MIN_POSITIVE).ln());
     let bend = a - 2.0 * b + c;
@@ -217,7 +217,7 @@ fn vertex(powers: [f64; 3]) -> f64 {
 
 /// The whole number of turns in a loop whose spectrum over the array is sharpest.
 fn whole_turns(chirps: usize, sharpness: impl Fn(f64) -> f64) -> f64 {
-    let none = sharpness(0.0) * SHARPER;
+    let none = sharpness(0.0) * MIN_SHARPNESS_RATIO;
     let candidates = (1..chirps).map(|n| if 2 * n > chirps { n as f64 - chirps as f64 } else { n as f64 });
     candidates
         .fold((0.0, none), |best, whole| {
@@ -227,30 +227,30 @@ fn whole_turns(chirps: usize, sharpness: impl Fn(f64) -> f64) -> f64 {
         .0
 }
 
-/// Directions that the array is turned to.
+/// The array, as phase factors for each of [`COSINE_COUNT`] directions.
 struct Array<'a> {
     chosen: &'a [usize],
-    /// Factors of the pairs, a list for each direction; none where the pairs' places are not known.
+    /// Factors of the pairs, a list for each direction; empty where the pairs' places are unknown.
     directions: Vec<Vec<Complex64>>,
 }
 
 impl<'a> Array<'a> {
     fn new(chosen: &'a [usize], receivers: usize, turns: &[f64]) -> Self {
-        let half = (COSINES / 2) as f64;
+        let half = (COSINE_COUNT / 2) as f64;
         let factor = |turns: f64, n: usize| Complex64::from_polar(1.0, -TAU * turns * (n as f64 - half) / half);
         let known = turns.len() >= chosen.len() * receivers;
         let directions =
-            (0..COSINES).filter(|_| known).map(|n| turns.iter().map(|t| factor(*t, n)).collect()).collect();
+            (0..COSINE_COUNT).filter(|_| known).map(|n| turns.iter().map(|t| factor(*t, n)).collect()).collect();
         Array { chosen, directions }
     }
 
     /// Power of the strongest direction.
     fn sharpness(&self, value: &Array3<Complex64>) -> f64 {
         let receivers = value.dim().1;
-        let heard: Vec<Complex64> =
+        let values: Vec<Complex64> =
             self.chosen.iter().flat_map(|chirp| (0..receivers).map(move |r| value[[*chirp, r, 0]])).collect();
         let power = |direction: &Vec<Complex64>| {
-            heard.iter().zip(direction).map(|(v, factor)| v * factor).sum::<Complex64>().norm_sqr()
+            values.iter().zip(direction).map(|(v, factor)| v * factor).sum::<Complex64>().norm_sqr()
         };
         self.directions.iter().map(power).fold(0.0, f64::max)
     }

@@ -2,9 +2,9 @@
 
 use super::plan::Plan;
 use super::quality::Quality;
-use super::table::{Capture, Part};
+use super::table::{Capture, Treatment};
 use crate::recording::Fault;
-use crate::recording::analytic::{all_analytic, centre};
+use crate::recording::analytic::{analytic_lanes, subtract_mean};
 use crate::recording::layout::Parts;
 use crate::recording::layout::stream::Stream;
 use ndarray::{Array3, Array4, Axis, s};
@@ -13,13 +13,13 @@ use std::io::{Read, Seek};
 
 #[derive(Debug, Clone)]
 pub(in crate::recording) struct Frame {
-    /// `[loops, chirps, receivers, samples]`: complex, real ones as analytic signals of half as many samples.
+    /// `[loops, chirps, receivers, samples]`; real samples as analytic signals of half as many samples.
     pub samples: Array4<Complex64>,
     pub quality: Quality,
 }
 
 impl Frame {
-    /// Reads the loops of the plan, and takes out the parts that `capture` leaves out.
+    /// Reads the loops of the plan, and subtracts constant part and static clutter where `capture` says so.
     pub fn read<R: Read + Seek>(stream: &mut Stream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, Fault> {
         let Plan { samples, receivers, chirps, loops, layout, .. } = *plan;
         let size = layout.chirp_bytes(samples, receivers);
@@ -29,21 +29,21 @@ impl Frame {
         for n in 0..loops * chirps {
             let at = plan.start + n as u64 * size as u64 + layout.header_bytes as u64;
             stream.read_at(at, &mut bytes)?;
-            quality.look_at_bytes(n, &bytes, layout);
+            quality.add_chirp(n, &bytes, layout);
             all.slice_mut(s![n / chirps, n % chirps, .., ..]).assign(&layout.decode(&bytes, samples, receivers));
         }
-        quality.look_at_samples(&all);
-        if capture.constant == Part::Out {
-            centre(&mut all);
+        quality.measure_samples(&all);
+        if capture.constant == Treatment::Out {
+            subtract_mean(&mut all);
         }
-        if capture.static_clutter == Part::Out && loops > 1 {
+        if capture.static_clutter == Treatment::Out && loops > 1 {
             let mean = all.sum_axis(Axis(0)).mapv_into(|v| v / loops as f64);
             all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
         }
         if layout.parts == Parts::Real {
-            all = all_analytic(all.view(), samples.div_ceil(2));
+            all = analytic_lanes(all.view(), samples.div_ceil(2));
         } else if quality.is_real() {
-            all = all_analytic(all.view(), samples);
+            all = analytic_lanes(all.view(), samples);
         }
         Ok(Frame { samples: all, quality })
     }
@@ -52,7 +52,7 @@ impl Frame {
         self.samples.dim().0
     }
 
-    /// The mean of the loops that lack nothing, `[chirps, receivers, samples]`.
+    /// Mean of the loops without zeros of lost packets, `[chirps, receivers, samples]`.
     pub fn mean(&self) -> Array3<Complex64> {
         let weights = self.weights(false);
         let mut mean = Array3::zeros(self.samples.index_axis(Axis(0), 0).raw_dim());
@@ -62,8 +62,7 @@ impl Frame {
         mean
     }
 
-    /// Weight of each loop in a mean, `[loops]`, of sum 1: by a Hann window where `tapered`. Loops with zeros of lost packets weigh 0 where others
-    /// are left.
+    /// Weights of the loops, of sum 1: equal, or a Hann window where `tapered`. Loops with zeros of lost packets have weight 0, unless all have such.
     pub fn weights(&self, tapered: bool) -> Vec<f64> {
         let loops = self.loops();
         let chirps = self.samples.dim().1;

@@ -8,8 +8,8 @@
 //! | `plan` | counts, sizes and byte offsets of the file |
 //! | `frame` | a frame, `[loops, chirps, receivers, samples]` |
 //! | `quality` | zeros of lost packets, saturation, constant parts, real samples |
-//! | `doppler` | the Doppler cells of each range bin that hold echoes, chirps in time division compensated |
-//! | `channels` | transmitters that send together, phases and range bias that a `.cfg` says |
+//! | `doppler` | the strong Doppler cells of each range bin |
+//! | `channels` | transmitters that send at once, factors of channels and range bias by the `.cfg` |
 
 mod channels;
 mod doppler;
@@ -22,10 +22,10 @@ mod tests;
 
 pub(super) use frame::Frame;
 pub(super) use plan::Plan;
-pub use table::{Capture, Part};
+pub use table::{Capture, Treatment};
 
 use super::Fault;
-use super::axes::{Chirp, Join};
+use super::axes::{ChirpChoice, Join};
 use super::layout::stream::Stream;
 use super::profile::RadarProfile;
 use channels::Channels;
@@ -34,10 +34,9 @@ use num_complex::Complex64;
 use quality::Quality;
 use std::io::{Read, Seek};
 
-/// The strongest Doppler cell in each range bin of the loops of an array, `[loops, transmitters, receivers, samples]`, with the chosen transmitters
-/// turned back by its velocity; and the sentence on it. `turns` are turns of phase across the array for each pair at a
-/// cosine of 1, transmitter by transmitter; fewer than pairs where unknown.
-pub(super) fn strongest_of(
+/// Joins the loops of an array, `[loops, transmitters, receivers, samples]`, by the strong Doppler cells of each range bin, and returns a sentence on
+/// it. `turns` are the phases of the chosen transmitters' pairs for an echo at a cosine of 1, in turns; fewer than pairs where unknown.
+pub(super) fn join_strongest(
     samples: Array4<Complex64>,
     chosen: &[usize],
     turns: &[f64],
@@ -48,7 +47,7 @@ pub(super) fn strongest_of(
 }
 
 impl Capture {
-    /// The chosen chirps of a loop, and the frame with its plan. No other frame is read.
+    /// Reads the frame: the chosen chirps of a loop, the frame and its plan.
     fn frame(
         &self,
         file: impl Read + Seek,
@@ -59,11 +58,11 @@ impl Capture {
         Ok((plan.chosen_chirps(self)?, Frame::read(&mut stream, self, &plan)?, plan))
     }
 
-    /// Reads the chosen loops of the frame as `[chirps, receivers, samples]`, with sentences on doubts. `turns` are as in [`strongest_of`], and
-    /// `beat_rises` says whether the beat's phase rises from sample to sample.
+    /// Reads the loop or joins the loops of the frame, `[chirps, receivers, samples]`, with sentences on doubts. `turns` are as in [`join_strongest`];
+    /// `beat_rises` where an echo's phase rises from sample to sample.
     ///
     /// # Errors
-    /// [`Fault`] where the layout, the `.cfg` and the file don't fit each other.
+    /// [`Fault`] where the layout, the `.cfg` and the file contradict each other.
     pub(super) fn read(
         &self,
         file: impl Read + Seek,
@@ -73,15 +72,15 @@ impl Capture {
     ) -> Result<(Array3<Complex64>, Vec<String>), Fault> {
         let (chosen, frame, plan) = self.frame(file, profile)?;
         let mut notes = plan.notes.clone();
-        notes.extend(frame.quality.sentences(&plan, self.constant == Part::Out));
-        let channels = Channels::of(profile, &plan);
+        notes.extend(frame.quality.sentences(&plan, self.constant == Treatment::Out));
+        let channels = Channels::new(profile, &plan);
         notes.extend(channels.notes());
-        let rows = match self.turn {
-            Chirp::Number(turn) => {
-                channels.of_loop(&frame.samples.index_axis(ndarray::Axis(0), turn.min(frame.loops() - 1)))
+        let rows = match self.loop_choice {
+            ChirpChoice::Number(turn) => {
+                channels.correct_loop(&frame.samples.index_axis(ndarray::Axis(0), turn.min(frame.loops() - 1)))
             }
-            Chirp::Joined(Join::Mean) => channels.of_loop(&frame.mean().view()),
-            Chirp::Joined(Join::Strongest) => {
+            ChirpChoice::Joined(Join::Mean) => channels.correct_loop(&frame.mean().view()),
+            ChirpChoice::Joined(Join::Strongest) => {
                 let (rows, note) = doppler::strongest(&frame, &channels, &chosen, turns);
                 notes.extend(note);
                 rows
@@ -89,18 +88,15 @@ impl Capture {
         };
         let mut rows = rows.select(ndarray::Axis(0), &chosen);
         if let Some(taken) = &self.receivers_taken {
-            rows = rows.select(ndarray::Axis(1), &plan.taken(taken)?);
+            rows = rows.select(ndarray::Axis(1), &plan.chosen_receivers(taken)?);
         }
         if let Some(profile) = profile {
-            channels::take_off_bias(&mut rows, profile, beat_rises);
+            channels::remove_range_bias(&mut rows, profile, beat_rises);
         }
         Ok((rows, notes))
     }
 
-    /// Reads every loop of the frame, `[loops, elements, samples]`: the elements are the chosen chirps' receivers.
-    ///
-    /// # Errors
-    /// As [`Capture::read`].
+    /// Reads every loop of the frame, `[loops, elements, samples]`. Elements are the receivers of the chosen chirps.
     pub(super) fn loops(
         &self,
         file: impl Read + Seek,
@@ -110,7 +106,6 @@ impl Capture {
         let samples = frame.samples.select(ndarray::Axis(1), &chosen);
         let (loops, chirps, receivers, len) = samples.dim();
         let whole = samples.as_standard_layout().into_owned();
-        // The same numbers in the same order: the shape can't fail to fit.
         whole.into_shape_with_order((loops, chirps * receivers, len)).map_err(|e| Fault::Data(e.to_string()))
     }
 }

@@ -2,17 +2,19 @@
 
 use super::table::Capture;
 use crate::recording::Fault;
-use crate::recording::axes::Chirp;
+use crate::recording::axes::ChirpChoice;
 use crate::recording::layout::{Layout, Parts};
 use crate::recording::numbers::{MAX_NUMBERS, bounded_count};
 use crate::recording::profile::RadarProfile;
 use std::fmt::Display;
 
-/// Most samples of a frame that are held at once: a frame of more is read up to there.
-const MOST_FRAME_NUMBERS: usize = 1 << 23;
-const MOST_COUNT: usize = 1 << 16;
+/// Most samples of a frame that are read; later loops are left out.
+const MAX_FRAME_NUMBERS: usize = 1 << 23;
+/// Largest count or header length of a capture.
+const MAX_COUNT: usize = 1 << 16;
 
 #[derive(Debug, Clone, PartialEq)]
+/// Counts of a capture, and the bytes of the file that are read.
 pub(in crate::recording) struct Plan {
     pub layout: Layout,
     /// Samples of a chirp in the file.
@@ -21,8 +23,9 @@ pub(in crate::recording) struct Plan {
     pub chirps: usize,
     /// Loops that are read, of `all_loops` in a frame.
     pub loops: usize,
-    /// Byte at which the loops begin.
+    /// Byte of the file at which the loops begin.
     pub start: u64,
+    /// Number of whole frames in the file.
     pub frames: u64,
     pub all_loops: usize,
     pub notes: Vec<String>,
@@ -40,7 +43,7 @@ impl Plan {
                 format!("{receivers} receivers of {samples} samples don't fill {lanes} lanes; expected a multiple");
             return Err(Fault::Data(message));
         }
-        let header = layout.header_bytes.min(MOST_COUNT) as u64;
+        let header = layout.header_bytes.min(MAX_COUNT) as u64;
         let chirp_numbers = (samples * receivers) as u64;
         let size = |numbers: u64| numbers * layout.parts.bytes() as u64 + numbers / chirp_numbers.max(1) * header;
         let loop_bytes = size(numbers as u64);
@@ -58,37 +61,36 @@ impl Plan {
             all_loops,
             notes: Vec::new(),
         };
-        plan.take_frame(capture, bytes, [loop_bytes, frame_bytes, before])?;
+        plan.select_loops(capture, bytes, [loop_bytes, frame_bytes, before])?;
         plan.note_size(bytes, frame_bytes, profile.map_or(0, |p| p.frames));
-        if let Chirp::Number(asked) = capture.turn
-            && asked >= plan.loops
+        if let ChirpChoice::Number(number) = capture.loop_choice
+            && number >= plan.loops
         {
-            return Err(unfit("loop", format!("is {asked}"), &format!("0 to {}", plan.loops.saturating_sub(1))));
+            return Err(unfit("loop", format!("is {number}"), &format!("0 to {}", plan.loops.saturating_sub(1))));
         }
         Ok(plan)
     }
 
-    /// Chooses the loops that are read of the frame asked for.
-    fn take_frame(&mut self, capture: &Capture, bytes: u64, sizes: [u64; 3]) -> Result<(), Fault> {
+    /// Selects the loops that are read of the chosen frame. `sizes` are bytes of a loop, of a frame, and of the sub-frames before.
+    fn select_loops(&mut self, capture: &Capture, bytes: u64, sizes: [u64; 3]) -> Result<(), Fault> {
         let [loop_bytes, frame_bytes, before] = sizes;
-        let there = bytes.saturating_sub(before) / loop_bytes.max(1);
-        if there == 0 {
+        let file_loops = bytes.saturating_sub(before) / loop_bytes.max(1);
+        if file_loops == 0 {
             let Plan { chirps, receivers, samples, .. } = *self;
             let expected = before + loop_bytes;
             return Err(Fault::Data(format!(
                 "has {bytes} bytes; expected at least {expected}: a loop has {chirps} chirps of {receivers} receivers and {samples} samples"
             )));
         }
-        let partial = self.frames == 0;
         if capture.frame as u64 >= self.frames.max(1) {
             let last = self.frames.saturating_sub(1);
             let expected = format!("0 to {last}, the file holds {} frames", self.frames);
             return Err(unfit("frame", format!("is {}", capture.frame), &expected));
         }
         self.start = before + capture.frame as u64 * frame_bytes;
-        let whole = if partial { there.min(self.all_loops as u64) as usize } else { self.all_loops };
-        let held = MOST_FRAME_NUMBERS / (self.samples * self.receivers * self.chirps).max(1);
-        self.loops = whole.min(held.max(1));
+        let whole = if self.frames == 0 { file_loops.min(self.all_loops as u64) as usize } else { self.all_loops };
+        let max_loops = MAX_FRAME_NUMBERS / (self.samples * self.receivers * self.chirps).max(1);
+        self.loops = whole.min(max_loops.max(1));
         if self.loops < whole {
             self.notes.push(format!(
                 "A frame has {whole} loops, more than are held at once: the first {} are read.",
@@ -98,7 +100,8 @@ impl Plan {
         Ok(())
     }
 
-    fn note_size(&mut self, bytes: u64, frame_bytes: u64, said: usize) {
+    /// Adds a note where the file holds other than whole frames, or other than the `.cfg`'s number of frames; 0 where that is unknown.
+    fn note_size(&mut self, bytes: u64, frame_bytes: u64, config_frames: usize) {
         let rest = bytes % frame_bytes;
         let parts = |frames: u64| format!("{frames} whole frame{}", if frames == 1 { "" } else { "s" });
         match self.frames {
@@ -111,8 +114,8 @@ impl Plan {
                 parts(frames),
                 100.0 * rest as f64 / frame_bytes as f64
             )),
-            frames if said > 0 && frames != said as u64 => {
-                self.notes.push(format!("The file holds {}, not the {said} that the .cfg asks for.", parts(frames)));
+            frames if config_frames > 0 && frames != config_frames as u64 => {
+                self.notes.push(format!("The file holds {}, not the {config_frames} that the .cfg asks for.", parts(frames)));
             }
             _ => {}
         }
@@ -131,22 +134,22 @@ impl Plan {
         Err(unfit("chirps", found, &format!("some of 0 to {last}, each once: {of}")))
     }
 
-    /// The receivers that form the line of elements.
-    pub fn taken(&self, taken: &[usize]) -> Result<Vec<usize>, Fault> {
-        if is_choice(taken, self.receivers - 1) {
-            return Ok(taken.to_vec());
+    /// The receivers that form the line of elements: `receivers`, checked.
+    pub fn chosen_receivers(&self, receivers: &[usize]) -> Result<Vec<usize>, Fault> {
+        if is_choice(receivers, self.receivers - 1) {
+            return Ok(receivers.to_vec());
         }
         let expected = "some of the receivers that are on, by place from 0, each once";
-        Err(unfit("receivers_taken", format!("is {taken:?}"), expected))
+        Err(unfit("receivers_taken", format!("is {receivers:?}"), expected))
     }
 }
 
-/// A key of the table that doesn't fit the file or the `.cfg`.
+/// The error of a key of the table that contradicts the file or the `.cfg`.
 fn unfit(key: &str, found: impl Display, expected: &str) -> Fault {
     Fault::Data(format!("recording.capture.{key} {found}; expected {expected}"))
 }
 
-/// Whether the numbers are some of 0 to `last`, each once.
+/// Whether the numbers are from 0 to `last`, at least one, each once.
 fn is_choice(numbers: &[usize], last: usize) -> bool {
     let mut sorted = numbers.to_vec();
     sorted.sort_unstable();
@@ -164,26 +167,27 @@ fn layout(capture: &Capture) -> Result<Layout, Fault> {
         (Some(_), Some(_)) => return Err(unfit("lanes", "stands beside parts", "one of lanes and parts")),
     };
     let Capture { words, q_first, receivers, header_bytes, .. } = *capture;
-    if header_bytes > MOST_COUNT {
+    if header_bytes > MAX_COUNT {
         return Err(unfit("header_bytes", format!("is {header_bytes}"), "at most 65536"));
     }
     Ok(Layout { words, parts, q_first, receivers, header_bytes, packets: false })
 }
 
+/// Samples, receivers, chirps of a loop and loops of a frame.
 fn counts(capture: &Capture, profile: Option<&RadarProfile>) -> Result<[usize; 4], Fault> {
     let Capture { samples, receiver_count, loop_chirps, loops, .. } = *capture;
-    let said =
+    let keys =
         [("samples", samples), ("receiver_count", receiver_count), ("loop_chirps", loop_chirps), ("loops", loops)];
     if let Some(profile) = profile {
-        if let Some((key, Some(value))) = said.into_iter().find(|(_, value)| value.is_some()) {
+        if let Some((key, Some(value))) = keys.into_iter().find(|(_, value)| value.is_some()) {
             return Err(unfit(key, format!("is {value}"), "it not beside a .cfg, which says it"));
         }
         return Ok([profile.samples, profile.receivers, profile.chirp_transmitters.len(), profile.loops]);
     }
     let mut counts = [1; 4];
-    for (count, (key, value)) in counts.iter_mut().zip(said) {
+    for (count, (key, value)) in counts.iter_mut().zip(keys) {
         *count = match value {
-            Some(value) if (1..=MOST_COUNT).contains(&value) => value,
+            Some(value) if (1..=MAX_COUNT).contains(&value) => value,
             None if ["loop_chirps", "loops"].contains(&key) => 1,
             None => return Err(unfit(key, "is missing", "it where no .cfg says it")),
             Some(value) => return Err(unfit(key, format!("is {value}"), "a number from 1 to 65536")),

@@ -5,47 +5,46 @@ use crate::recording::layout::{Layout, Parts};
 use ndarray::{Array4, Axis};
 use num_complex::Complex64;
 
-/// Number of zero bytes in a row that are taken for a lost packet.
-const ZERO_RUN: usize = 128;
-/// Least part of the numbers at the ends of their type that is called saturation.
-const SATURATED: f64 = 1e-4;
-/// Power of a constant part over the rest above which it is noted, decibels.
-const CONSTANT_DB: f64 = 0.0;
+/// Least number of zero bytes in a row that count as a lost packet.
+const MIN_ZERO_RUN_BYTES: usize = 128;
+/// Least part of the numbers at the limits of their type that counts as saturation.
+const MIN_SATURATED_PART: f64 = 1e-4;
 
-#[derive(Debug, Clone)]
+/// Figures on the quality of a frame.
+#[derive(Debug, Clone, Default)]
 pub(in crate::recording) struct Quality {
     /// Whether each chirp has runs of zeros.
     zeros: Vec<bool>,
+    /// Number of 16-bit numbers in the frame, and of those at the limits of their type.
     numbers: u64,
-    at_ends: u64,
-    imaginary: bool,
-    complex: bool,
+    saturated_count: u64,
+    has_imaginary: bool,
+    is_complex: bool,
     /// Power of the constant part over that of the rest, decibels.
     pub constant_db: f64,
 }
 
 impl Quality {
     pub fn new(chirps: usize) -> Self {
-        let zeros = vec![false; chirps];
-        Quality { zeros, numbers: 0, at_ends: 0, imaginary: false, complex: false, constant_db: f64::NEG_INFINITY }
+        Quality { zeros: vec![false; chirps], constant_db: f64::NEG_INFINITY, ..Quality::default() }
     }
 
-    /// Looks at the bytes of chirp `n` of the frame.
-    pub fn look_at_bytes(&mut self, n: usize, bytes: &[u8], layout: Layout) {
-        self.zeros[n] = bytes.chunks_exact(ZERO_RUN).any(|part| part.iter().all(|b| *b == 0));
-        let most = layout.words.most();
+    /// Counts zeros and saturated numbers in the bytes of chirp `n` of the frame.
+    pub fn add_chirp(&mut self, n: usize, bytes: &[u8], layout: Layout) {
+        self.zeros[n] = bytes.chunks_exact(MIN_ZERO_RUN_BYTES).any(|part| part.iter().all(|b| *b == 0));
+        let max = layout.words.max_value();
         let at_end = |b: &&[u8]| {
             let value = layout.words.number([b[0], b[1]]);
-            value == most || value == -most - 1
+            value == max || value == -max - 1
         };
         self.numbers += bytes.len() as u64 / 2;
-        self.at_ends += bytes.chunks_exact(2).filter(at_end).count() as u64;
-        self.complex = layout.parts != Parts::Real;
+        self.saturated_count += bytes.chunks_exact(2).filter(at_end).count() as u64;
+        self.is_complex = layout.parts != Parts::Real;
     }
 
-    /// Looks at all samples, before any part is taken out.
-    pub fn look_at_samples(&mut self, all: &Array4<Complex64>) {
-        self.imaginary = all.iter().any(|v| v.im != 0.0);
+    /// Measures the constant part of all samples, `[loops, chirps, receivers, samples]`, before any part is subtracted.
+    pub fn measure_samples(&mut self, all: &Array4<Complex64>) {
+        self.has_imaginary = all.iter().any(|v| v.im != 0.0);
         let (mut constant, mut rest) = (0.0, 0.0);
         for row in all.lanes(Axis(3)) {
             let len = row.len().max(1) as f64;
@@ -64,38 +63,38 @@ impl Quality {
     }
 
     /// Whether the constant part has more power than the rest.
-    pub fn tells_constant(&self) -> bool {
-        self.constant_db > CONSTANT_DB
+    pub fn has_strong_constant(&self) -> bool {
+        self.constant_db > 0.0
     }
 
-    /// Whether every imaginary part is zero where samples are to be complex.
+    /// Whether samples are stored as complex, but all imaginary parts are zero.
     pub fn is_real(&self) -> bool {
-        self.complex && !self.imaginary
+        self.is_complex && !self.has_imaginary
     }
 
-    /// Doubts about the frame, a sentence each.
+    /// Doubts about the frame, a sentence each; `is_out` where the constant part was subtracted.
     pub fn sentences(&self, plan: &Plan, is_out: bool) -> Vec<String> {
-        let spoilt: Vec<usize> = (0..self.zeros.len()).filter(|n| self.zeros[*n]).collect();
-        let lost = spoilt.first().zip(spoilt.last()).map(|(first, last)| {
-            let (chirps, many) = (self.zeros.len(), spoilt.len());
+        let chirps_with_zeros: Vec<usize> = (0..self.zeros.len()).filter(|n| self.zeros[*n]).collect();
+        let lost = chirps_with_zeros.first().zip(chirps_with_zeros.last()).map(|(first, last)| {
+            let (chirps, many) = (self.zeros.len(), chirps_with_zeros.len());
             format!(
                 "Runs of zeros, as lost packets leave them, spoil {many} of the frame's {chirps} chirps, from chirp {first} to {last}: where \
                  loops are joined, their loops count nothing."
             )
         });
-        let part = self.at_ends as f64 / self.numbers.max(1) as f64;
-        let saturated = (part > SATURATED).then(|| {
-            let (percent, most) = (100.0 * part, plan.layout.words.most());
+        let part = self.saturated_count as f64 / self.numbers.max(1) as f64;
+        let saturated = (part > MIN_SATURATED_PART).then(|| {
+            let (percent, max) = (100.0 * part, plan.layout.words.max_value());
             format!(
-                "The receivers are saturated: {percent:.1} % of the numbers are {most} or {}, the ends of their type. Harmonics of strong echoes \
+                "The receivers are saturated: {percent:.1} % of the numbers are {max} or {}, the ends of their type. Harmonics of strong echoes \
                  appear at multiples of their range.",
-                -i32::from(most) - 1
+                -i32::from(max) - 1
             )
         });
         let stored = "Every imaginary part is zero: these are real samples, stored as complex ones. An echo's mirror image would stand in the \
                       far half of the range axis, so the near half alone is kept (the analytic signal).";
         let real = "Samples are real: the positive half of their spectrum is taken (the analytic signal).";
-        let constant = (self.tells_constant() && !is_out).then(|| {
+        let constant = (self.has_strong_constant() && !is_out).then(|| {
             format!(
                 "A constant part (leakage or offset) stands {:.0} dB over all else: recording.capture.constant = \"out\" takes it out.",
                 self.constant_db

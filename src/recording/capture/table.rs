@@ -1,14 +1,14 @@
 //! The table `[recording.capture]`.
 
-use crate::recording::axes::Chirp;
+use crate::recording::axes::ChirpChoice;
 use crate::recording::layout::{Parts, ReceiverOrder, Words};
 use serde::{Deserialize, Serialize};
 
-/// The layout of a capture, and the frame, loops, chirps and receivers that are taken of it.
+/// The keys of the table: the layout of a capture, and the frame, loops, chirps and receivers that are read of it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Capture {
-    /// Name of the `.cfg`, beside the TOML; without one the counts stand in this table.
+    /// Name of the `.cfg`, beside the TOML; without it this table must have the counts.
     pub config: Option<String>,
     pub sub_frame: Option<usize>,
     /// Names of the files that continue the first, in order.
@@ -33,25 +33,24 @@ pub struct Capture {
     pub loops: Option<usize>,
     /// Chirps of a loop that form the line of elements, in this order; all where there is only one.
     pub chirps: Option<Vec<usize>>,
-    /// Receivers that form the line of elements, by place among those that are on; all where nothing is said.
+    /// Receivers that form the line of elements, as indices among those that are on; all where the key is missing.
     pub receivers_taken: Option<Vec<usize>>,
     #[serde(default)]
     pub frame: usize,
-    /// Number of the loop in the frame, or the way to join all loops.
     #[serde(default, rename = "loop")]
-    pub turn: Chirp,
-    /// The mean of each chirp's samples: leakage and offset.
+    pub loop_choice: ChirpChoice,
+    /// Treatment of the mean of each chirp's samples: leakage and offset.
     #[serde(default)]
-    pub constant: Part,
-    /// The mean of all loops: echoes that stand still.
+    pub constant: Treatment,
+    /// Treatment of the mean of all loops: echoes that stand still.
     #[serde(default)]
-    pub static_clutter: Part,
+    pub static_clutter: Treatment,
 }
 
-/// The treatment of a part of the samples.
+/// Whether a component of the samples is kept or subtracted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Part {
+pub enum Treatment {
     #[default]
     Keep,
     Out,

@@ -50,7 +50,7 @@ fn file(loops: usize, lanes: usize, receivers: ReceiverOrder) -> Vec<u8> {
 fn every_layout_gives_every_sample_its_place() {
     for lanes in [2, 4] {
         for order in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
-            let layout = Capture { frame: 1, turn: Chirp::Number(1), ..capture(lanes, order) };
+            let layout = Capture { frame: 1, loop_choice: ChirpChoice::Number(1), ..capture(lanes, order) };
             let (found, _) = read(&layout, &file(4, lanes, order), &profile()).unwrap();
             assert_eq!(found.dim(), (2, 4, 8));
             for ((chirp, receiver, sample), v) in found.indexed_iter() {
@@ -68,7 +68,7 @@ fn every_layout_gives_every_sample_its_place() {
 }
 
 #[test]
-fn contradictions_are_told() {
+fn contradictions_are_refused() {
     let order = ReceiverOrder::OneAfterAnother;
     let whole = file(2, 2, order);
     let message = |capture: Capture, profile: &RadarProfile, bytes: &[u8]| {
@@ -85,7 +85,7 @@ fn contradictions_are_told() {
         (Capture { chirps: Some(vec![2]), ..usual() }, "0 to 1"),
         (Capture { receivers_taken: Some(vec![4]), ..usual() }, "receivers_taken is [4]"),
         (Capture { frame: 1, ..usual() }, "frame is 1; expected 0 to 0"),
-        (Capture { turn: Chirp::Number(2), ..usual() }, "loop is 2; expected 0 to 1"),
+        (Capture { loop_choice: ChirpChoice::Number(2), ..usual() }, "loop is 2; expected 0 to 1"),
     ] {
         let message = message(changed, &profile(), &whole);
         assert!(message.contains(part), "{message}");
@@ -113,7 +113,7 @@ fn a_cut_file_gives_its_whole_frames() {
 }
 
 #[test]
-fn zeros_saturation_constants_and_real_samples_are_told() {
+fn zeros_saturation_constants_and_real_samples_are_noted() {
     let order = ReceiverOrder::OneAfterAnother;
     let long = RadarProfile { samples: 64, loops: 1, ..profile() };
     let notes = |change: &dyn Fn(usize) -> [i16; 2]| {
@@ -149,7 +149,7 @@ fn channels_are_multiplied_by_transmitter() {
 proptest! {
     #[test]
     fn any_bytes_are_read_or_refused(bytes in proptest::collection::vec(any::<u8>(), 0..1200), frame in 0usize..9) {
-        let layout = Capture { frame, turn: Chirp::Joined(Join::Strongest), ..capture(2, ReceiverOrder::OneAfterAnother) };
+        let layout = Capture { frame, loop_choice: ChirpChoice::Joined(Join::Strongest), ..capture(2, ReceiverOrder::OneAfterAnother) };
         if let Ok((found, _)) = read(&layout, &bytes, &profile()) {
             prop_assert_eq!(found.dim(), (2, 4, 8));
         }

@@ -63,7 +63,7 @@ fn a_long_list_of_missing_elements_takes_no_time() {
 }
 
 #[test]
-fn missing_elements_are_silent_with_rows_in_the_file_or_without() {
+fn missing_elements_are_zeros_with_or_without_rows() {
     let without: Vec<usize> = (0..8).filter(|n| ![2, 6].contains(n)).collect();
     let fewer = all().select(Axis(0), &without);
     for rows in [all(), fewer] {
@@ -193,7 +193,7 @@ fn faults_name_file_key_shape_expectation() {
 }
 
 #[test]
-fn the_radar_must_be_said() {
+fn the_text_must_have_the_radar() {
     let folder = folder_with("d.npz", &[("a", all().into_dyn())]);
     let path = folder.path().join("r.toml");
     let told = |radar: &str, part: &str| {

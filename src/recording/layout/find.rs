@@ -1,7 +1,7 @@
 //! The candidate layouts, and the choice of the best.
 
 use super::counts::{self, LikelyCounts};
-use super::evidence::{Evidence, Kind, Known, evidence};
+use super::evidence::{Evidence, EvidenceKind, FileFacts, evidence};
 use super::marks::{HEADER_BYTES, Marks, marks};
 use super::spectrum::Spectrum;
 use super::stream::Stream;
@@ -11,14 +11,14 @@ use ndarray::Array2;
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
 
-/// Most chirps of complex samples that a candidate is judged by.
-const CHIRPS: usize = 16;
-/// Most bytes that a candidate is judged by.
-const MOST_BYTES: usize = 1 << 20;
-/// Number of zero bytes in a row that no radar sends: their chirp is left out.
-const ZERO_RUN: usize = 128;
-/// Largest level below a flat spectrum that counts as without an echo, decibels; fewer profiles scatter more.
-const FLAT_DB: f64 = 0.35;
+/// Most chirps of complex samples that the evidence for a candidate is computed from.
+const MAX_CHIRPS: usize = 16;
+/// Most bytes that it is computed from.
+const MAX_BYTES: usize = 1 << 20;
+/// Least number of zero bytes in a row that count as a lost packet; their chirp is left out.
+const MIN_ZERO_RUN_BYTES: usize = 128;
+/// Largest mean level below a flat spectrum of a file without echoes, decibels.
+const MAX_FLATNESS_DB: f64 = 0.35;
 
 /// A layout with the evidence for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,13 +36,13 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Natural logarithm of its odds, up to a constant that all candidates share.
+    /// Natural logarithm of its odds, up to a constant that is the same for all candidates.
     pub fn log_odds(&self) -> f64 {
         self.evidence.iter().map(|e| e.log_odds).sum()
     }
 
-    /// The log-odds of one kind.
-    pub fn of_kind(&self, kind: Kind) -> f64 {
+    /// The sum of the log-odds of one kind.
+    pub fn of_kind(&self, kind: EvidenceKind) -> f64 {
         self.evidence.iter().filter(|e| e.kind == kind).map(|e| e.log_odds).sum()
     }
 }
@@ -50,22 +50,22 @@ impl Candidate {
 /// The layouts that were found for a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// The candidates, the best first; there is one at least.
+    /// The candidates, the best first; at least one.
     pub candidates: Vec<Candidate>,
     /// Sentences on headers, packets and counts.
     pub notes: Vec<String>,
-    /// Whether samples and receivers were searched where much of the file is saturated, or no rows are the same again.
+    /// Whether the counts were searched although much of the file is saturated or no rows repeat.
     pub hides_counts: bool,
 }
 
-/// Finds the layout of a capture, with the help of the `.cfg` in `profile`.
+/// Finds the layout of a capture; `profile` is its `.cfg`, where there is one.
 ///
 /// # Errors
-/// [`Fault`] where the file is too short, or no layout makes echoes of it.
+/// [`Fault`] where the file can't be read or is too short, or by no layout has echoes.
 pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, Fault> {
     let marks = marks(stream)?;
     let mut notes = Vec::new();
-    let (ways, mut hides_counts) = match profile {
+    let (all_counts, mut hides_counts) = match profile {
         Some(p) => {
             let RadarProfile { samples, receivers, loops, .. } = *p;
             let counts = Counts { samples, receivers, chirps: p.chirp_transmitters.len(), loops };
@@ -77,74 +77,75 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
         }
     };
     notes.extend(hides_counts.then(|| counts::CLIPPED_NOTE.to_owned()));
-    let header_bytes = headers(marks, ways.first().map(|way| way.counts), profile, &mut notes);
-    let known = Known { profile, bytes: stream.bytes() };
+    let header_bytes = header_bytes(marks, all_counts.first().map(|likely| likely.counts), profile, &mut notes);
+    let facts = FileFacts { profile, bytes: stream.bytes() };
     let mut candidates = Vec::new();
-    judge(stream, &ways, header_bytes, known, &mut candidates)?;
+    add_candidates(stream, &all_counts, header_bytes, facts, &mut candidates)?;
     candidates.sort_by(|a, b| b.log_odds().total_cmp(&a.log_odds()));
     let Some(best) = candidates.first() else {
         return Err(match stream.bytes() {
-            bytes @ ..1024 => short(bytes, 1024, ""),
-            _ => zeros(),
+            bytes @ ..1024 => too_short(bytes, 1024, ""),
+            _ => all_zeros(),
         });
     };
     if best.power.iter().all(|p| *p < 0.5) {
-        return Err(zeros());
+        return Err(all_zeros());
     }
-    if best.flatness_db < FLAT_DB {
+    if best.flatness_db < MAX_FLATNESS_DB {
         return Err(Fault::Data(format!(
             "is no capture of a kind that is known: in every layout its spectrum is flat, as of random bytes ({} were tried); expected 16-bit \
              samples, with the .cfg that set the radar up beside them where there is one",
             candidates.len()
         )));
     }
-    if let Some(why) = ways.iter().find(|way| way.counts == best.counts).and_then(|way| way.guessed) {
+    if let Some(note) = all_counts.iter().find(|likely| likely.counts == best.counts).and_then(|likely| likely.guessed)
+    {
         hides_counts = true;
-        notes.push(why.to_owned());
+        notes.push(note.to_owned());
     }
     if profile.is_some() {
         let Candidate { layout, counts, .. } = best;
-        let job = Job { counts: *counts, only: None, header_bytes, known };
+        let with_counts = Candidates { counts: *counts, only_parts: None, header_bytes, facts };
         let numbers = counts.samples * counts.receivers;
-        let chirps = job.chirps(stream, layout.chirp_bytes(counts.samples, counts.receivers), numbers)?;
-        notes.extend(counts::doubted(layout, *counts, &chirps.concat(), known.bytes));
+        let chirps = with_counts.chirps(stream, layout.chirp_bytes(counts.samples, counts.receivers), numbers)?;
+        notes.extend(counts::doubted(layout, *counts, &chirps.concat(), facts.bytes));
     }
-    notes.extend(stream.has_packets().then(|| told_of_packets(stream.lost_packets())));
+    notes.extend(stream.has_packets().then(|| packets_note(stream.lost_packets())));
     Ok(Found { candidates, notes, hides_counts })
 }
 
-/// The error of a file of less than a chirp; `whose` is a clause with the source of the count, or nothing.
-fn short(bytes: u64, expected: u64, whose: &str) -> Fault {
-    Fault::Data(format!("has {bytes} bytes; expected at least one chirp, {expected} bytes{whose}"))
+/// The error of a file of less than a chirp; `source` is a clause with the source of the expected number, or empty.
+fn too_short(bytes: u64, expected: u64, source: &str) -> Fault {
+    Fault::Data(format!("has {bytes} bytes; expected at least one chirp, {expected} bytes{source}"))
 }
 
-fn zeros() -> Fault {
+fn all_zeros() -> Fault {
     Fault::Data("begins with nothing but zeros or one constant: no echo to find a layout by".to_owned())
 }
 
-/// Judges every layout of each of the counts.
-fn judge<R: Read + Seek>(
+/// Adds the candidates of all counts.
+fn add_candidates<R: Read + Seek>(
     stream: &mut Stream<R>,
-    ways: &[LikelyCounts],
+    all_counts: &[LikelyCounts],
     header_bytes: usize,
-    known: Known<'_>,
+    facts: FileFacts<'_>,
     candidates: &mut Vec<Candidate>,
 ) -> Result<(), Fault> {
     let mut none = None;
-    // Log-odds of the likeliest counts. Other counts are judged beside them.
+    // Log-odds of the likeliest counts, which those of other counts are relative to.
     let mut likeliest = 0.0;
-    for way in ways {
-        match (Job { counts: way.counts, only: way.parts, header_bytes, known }).candidates(stream) {
-            Ok(of_way) if way.odds == [0.0; 2] => {
-                likeliest = of_way[0].log_odds();
-                candidates.extend(of_way);
+    for likely in all_counts {
+        match (Candidates { counts: likely.counts, only_parts: likely.parts, header_bytes, facts }).evaluate(stream) {
+            Ok(found) if likely.odds == [0.0; 2] => {
+                likeliest = found[0].log_odds();
+                candidates.extend(found);
             }
-            // Spectra of as many numbers in other rows don't tell layouts apart: the repeats and the breaks of the rows do.
-            Ok(of_way) => candidates.extend(of_way.into_iter().take(1).map(|mut other| {
-                let [rows, usual] = way.odds;
+            // Spectra of rows of other lengths are not comparable: the log-odds of repeats and breaks of the rows decide.
+            Ok(found) => candidates.extend(found.into_iter().take(1).map(|mut other| {
+                let [rows, usual] = likely.odds;
                 let log_odds = likeliest + rows - other.log_odds();
-                other.evidence.push(Evidence { kind: Kind::Rows, log_odds, sentence: String::new() });
-                other.evidence.push(Evidence { kind: Kind::Usual, log_odds: usual, sentence: String::new() });
+                other.evidence.push(Evidence { kind: EvidenceKind::Rows, log_odds, sentence: String::new() });
+                other.evidence.push(Evidence { kind: EvidenceKind::Usual, log_odds: usual, sentence: String::new() });
                 other
             })),
             Err(error @ Fault::Io(_)) => return Err(error),
@@ -154,7 +155,7 @@ fn judge<R: Read + Seek>(
     none.filter(|_| candidates.is_empty()).map_or(Ok(()), Err)
 }
 
-fn told_of_packets(lost: u64) -> String {
+fn packets_note(lost: u64) -> String {
     let lost = match lost {
         0 => "none is lost".to_owned(),
         1 => "one is lost and read as zeros".to_owned(),
@@ -163,45 +164,47 @@ fn told_of_packets(lost: u64) -> String {
     format!("The file holds network packets with headers of 10 bytes: {lost}.")
 }
 
-/// Bytes of the headers before chirps.
-fn headers(
+/// Bytes of the header before each chirp, 0 without one. Adds notes on them.
+fn header_bytes(
     marks: Option<Marks>,
     counts: Option<Counts>,
     profile: Option<&RadarProfile>,
     notes: &mut Vec<String>,
 ) -> usize {
     let Some(Marks { found, apart }) = marks else {
-        if profile.is_some_and(|p| p.headers) {
+        if profile.is_some_and(|p| p.has_headers) {
             notes.push("The .cfg asks for a header before each chirp, but none stands there.".to_owned());
         }
         return 0;
     };
     let fits = |c: &Counts| Parts::ALL.iter().any(|p| c.samples * c.receivers * p.bytes() + HEADER_BYTES == apart);
     if !counts.as_ref().is_some_and(fits) && found > 1 {
-        let held = (apart - HEADER_BYTES) / 4;
+        let samples = (apart - HEADER_BYTES) / 4;
         notes.push(format!(
-            "Headers stand {apart} bytes apart, so a chirp holds {held} complex samples of all receivers: the .cfg says otherwise."
+            "Headers stand {apart} bytes apart, so a chirp holds {samples} complex samples of all receivers: the .cfg says otherwise."
         ));
     }
     notes.push(format!("Each chirp begins with a header of {HEADER_BYTES} bytes: {found} were found."));
     HEADER_BYTES
 }
 
-/// One set of counts to judge every layout by.
-struct Job<'a> {
+/// The candidates with these counts.
+struct Candidates<'a> {
     counts: Counts,
-    /// The order of parts that alone is judged, where one is.
-    only: Option<Parts>,
+    /// The only order of parts of the candidates; `None` for every order.
+    only_parts: Option<Parts>,
     header_bytes: usize,
-    known: Known<'a>,
+    facts: FileFacts<'a>,
 }
 
-impl Job<'_> {
-    /// The layouts of these counts, the likeliest first; there is one at least.
-    fn candidates<R: Read + Seek>(&self, stream: &mut Stream<R>) -> Result<Vec<Candidate>, Fault> {
+impl Candidates<'_> {
+    /// All of them, the likeliest first; at least one.
+    fn evaluate<R: Read + Seek>(&self, stream: &mut Stream<R>) -> Result<Vec<Candidate>, Fault> {
         let Counts { samples, receivers, .. } = self.counts;
         let mut all = Vec::new();
-        for parts in Parts::ALL.into_iter().filter(|parts| self.only.is_none_or(|only| only == *parts)) {
+        for parts in
+            Parts::ALL.into_iter().filter(|parts| self.only_parts.is_none_or(|only_parts| only_parts == *parts))
+        {
             let numbers = samples.saturating_mul(receivers);
             if numbers == 0 || !numbers.is_multiple_of(parts.group()) {
                 continue;
@@ -211,48 +214,50 @@ impl Job<'_> {
             if chirps.is_empty() {
                 continue;
             }
-            let short = fits_twelve(&chirps);
-            for words in Words::ALL.into_iter().filter(|w| *w != Words::TwelveBits || short) {
+            let has_twelve_bits = are_twelve_bits(&chirps);
+            for words in Words::ALL.into_iter().filter(|w| *w != Words::TwelveBits || has_twelve_bits) {
                 for order in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
                     if order == ReceiverOrder::OneAfterAnother || receivers > 1 {
                         let (header_bytes, packets) = (self.header_bytes, stream.has_packets());
                         let layout = Layout { words, parts, q_first: false, receivers: order, header_bytes, packets };
-                        self.judge(layout, &chirps, &mut all);
+                        self.add_layout(layout, &chirps, &mut all);
                     }
                 }
             }
         }
         if all.is_empty() {
             let expected = (samples * receivers * 4 + self.header_bytes) as u64;
-            let whose = if self.known.profile.is_some() { " as the .cfg says" } else { "" };
-            return Err(short(self.known.bytes, expected, whose));
+            let source = if self.facts.profile.is_some() { " as the .cfg says" } else { "" };
+            return Err(too_short(self.facts.bytes, expected, source));
         }
         all.sort_by(|a: &Candidate, b| b.log_odds().total_cmp(&a.log_odds()));
         Ok(all)
     }
 
-    /// The first chirps without their headers; those with runs of zeros are left out where others are left.
+    /// The first chirps without their headers. Those with runs of zeros are left out, unless all have such.
     fn chirps<R: Read + Seek>(&self, stream: &mut Stream<R>, size: usize, numbers: usize) -> io::Result<Vec<Vec<u8>>> {
-        let before = self.known.profile.map_or(0, |p| p.numbers_before) / numbers * size;
-        // Real samples are half as long: every layout is judged by the same bytes.
+        let before = self.facts.profile.map_or(0, |p| p.numbers_before) / numbers * size;
+        // As many bytes for every layout: real samples have half the bytes of complex ones.
         let bytes =
-            CHIRPS.saturating_mul(numbers.saturating_mul(Parts::Pairs.bytes()).saturating_add(self.header_bytes));
-        let most = (MOST_BYTES.min(bytes) / size).max(1);
-        let there = stream.bytes().saturating_sub(before as u64) / size as u64;
+            MAX_CHIRPS.saturating_mul(numbers.saturating_mul(Parts::Pairs.bytes()).saturating_add(self.header_bytes));
+        let max_chirps = (MAX_BYTES.min(bytes) / size).max(1);
+        let file_chirps = stream.bytes().saturating_sub(before as u64) / size as u64;
         let mut chirps = Vec::new();
-        for n in 0..there.min(most as u64) {
+        for n in 0..file_chirps.min(max_chirps as u64) {
             let mut bytes = vec![0; size - self.header_bytes];
             stream.read_at(before as u64 + n * size as u64 + self.header_bytes as u64, &mut bytes)?;
             chirps.push(bytes);
         }
-        let whole = |bytes: &Vec<u8>| bytes.chunks(ZERO_RUN).all(|part| part.iter().any(|b| *b != 0));
-        if chirps.iter().any(whole) {
-            chirps.retain(whole);
+        let has_no_zero_run =
+            |bytes: &Vec<u8>| bytes.chunks(MIN_ZERO_RUN_BYTES).all(|part| part.iter().any(|b| *b != 0));
+        if chirps.iter().any(has_no_zero_run) {
+            chirps.retain(has_no_zero_run);
         }
         Ok(chirps)
     }
 
-    fn judge(&self, layout: Layout, chirps: &[Vec<u8>], all: &mut Vec<Candidate>) {
+    /// Adds the candidates of a layout, complex ones with both orders of I and Q.
+    fn add_layout(&self, layout: Layout, chirps: &[Vec<u8>], all: &mut Vec<Candidate>) {
         let Counts { samples, receivers, .. } = self.counts;
         let mut rows = Array2::<Complex64>::zeros((chirps.len() * receivers, samples));
         for (n, bytes) in chirps.iter().enumerate() {
@@ -269,14 +274,14 @@ impl Job<'_> {
     }
 
     fn candidate(&self, layout: Layout, spectrum: Spectrum) -> Candidate {
-        let evidence = evidence(&layout, self.counts, &spectrum, self.known);
+        let evidence = evidence(&layout, self.counts, &spectrum, self.facts);
         let flatness_db = spectrum.flatness_db();
         Candidate { layout, counts: self.counts, evidence, power: spectrum.power, flatness_db }
     }
 }
 
-/// Whether every word is one of 12 bits whose sign was not carried into the upper four.
-fn fits_twelve(chirps: &[Vec<u8>]) -> bool {
+/// Whether all words have 12 bits without sign extension, and some are negative.
+fn are_twelve_bits(chirps: &[Vec<u8>]) -> bool {
     let words = || chirps.iter().flat_map(|bytes| bytes.chunks_exact(2)).map(|b| u16::from_le_bytes([b[0], b[1]]));
     words().all(|word| word < 0x1000) && words().any(|word| word >= 0x0800)
 }

@@ -8,19 +8,21 @@ pub(super) const MAGIC: [u8; 8] = [0xdc, 0x0a, 0xda, 0x0c, 0xdc, 0x0a, 0xda, 0x0
 
 pub const HEADER_BYTES: usize = 64;
 
-/// Length of the beginning of a file in which headers are looked for, bytes.
-const LOOKED_THROUGH: u64 = 1 << 20;
+/// Bytes at the beginning of a file that are searched for headers.
+const MAX_SEARCHED_BYTES: u64 = 1 << 20;
 
+/// Headers of chirps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Marks {
+    /// Number of headers found.
     pub found: usize,
-    /// Bytes from one to the next; 0 where there is one.
+    /// Bytes from one to the next; 0 for a single one.
     pub apart: usize,
 }
 
-/// Looks for headers at even distances from the first byte on.
+/// Finds headers at equal distances from the first byte on; `None` where the file begins with no header.
 pub(super) fn marks<R: Read + Seek>(stream: &mut Stream<R>) -> io::Result<Option<Marks>> {
-    let mut start = vec![0; stream.bytes().min(LOOKED_THROUGH) as usize];
+    let mut start = vec![0; stream.bytes().min(MAX_SEARCHED_BYTES) as usize];
     stream.read_at(0, &mut start)?;
     if !start.starts_with(&MAGIC) {
         return Ok(None);

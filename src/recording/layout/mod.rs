@@ -4,14 +4,14 @@
 //! |---|---|
 //! | `shape` | a layout: encoding, orders of parts and of receivers; counts; bytes to samples of receivers |
 //! | [`stream`] | bytes by seeking, without the headers of packets |
-//! | `marks` | headers of chirps and of packets |
+//! | `marks` | headers of chirps |
 //! | `spectrum` | range profiles of the samples of a layout |
 //! | `evidence` | log-odds of a layout, of several kinds |
 //! | `find` | the candidates and the best of them |
-//! | `breaks` | where samples don't follow from those before |
-//! | `counts` | samples and receivers where no text says them |
+//! | `breaks` | beginnings of rows, where linear prediction fails |
+//! | `counts` | numbers of samples, receivers and chirps without a `.cfg` |
 //! | `period` | the number of rows after which rows are the same again |
-//! | `verdict` | the reasons of the choice, in sentences |
+//! | `verdict` | certainty of the choice, and its reasons in sentences |
 
 mod breaks;
 mod counts;
@@ -26,8 +26,8 @@ pub mod stream;
 mod tests;
 mod verdict;
 
-pub(super) use evidence::said;
-pub use evidence::{Evidence, Kind};
+pub(super) use evidence::config_claims;
+pub use evidence::{Evidence, EvidenceKind};
 pub use find::{Candidate, Found, find};
 pub use shape::{Counts, Layout, Parts, ReceiverOrder, Words};
 pub(in crate::recording) use spectrum::Spectrum;

@@ -1,4 +1,4 @@
-//! Layouts: encodings of numbers, orders of parts and of receivers, and the samples that bytes are by them.
+//! Layouts: encodings of numbers, orders of real and imaginary parts and of receivers, and the samples by a layout.
 
 use ndarray::Array2;
 use num_complex::Complex64;
@@ -24,7 +24,7 @@ impl Words {
     /// All of them.
     pub const ALL: [Words; 4] = [Words::Int16, Words::OffsetBinary, Words::BigEndian, Words::TwelveBits];
 
-    /// The number that two bytes stand for.
+    /// Decodes the two bytes of a number.
     pub fn number(self, bytes: [u8; 2]) -> i16 {
         match self {
             Words::Int16 => i16::from_le_bytes(bytes),
@@ -34,13 +34,13 @@ impl Words {
         }
     }
 
-    /// The largest number, where converters end.
-    pub fn most(self) -> i16 {
+    /// The largest number of the encoding.
+    pub fn max_value(self) -> i16 {
         if self == Words::TwelveBits { 2047 } else { i16::MAX }
     }
 
-    /// The encoding in a sentence's words.
-    pub fn described(self) -> &'static str {
+    /// The encoding, as a part of a sentence.
+    pub fn description(self) -> &'static str {
         match self {
             Words::Int16 => "16-bit integers, low byte first",
             Words::OffsetBinary => "16-bit integers with bit 15 flipped (offset binary)",
@@ -68,7 +68,7 @@ impl Parts {
     /// All of them.
     pub const ALL: [Parts; 4] = [Parts::Pairs, Parts::TwoLanes, Parts::FourLanes, Parts::Real];
 
-    /// Number of real or imaginary parts that stand together.
+    /// Number of real or imaginary parts in a row.
     pub fn group(self) -> usize {
         match self {
             Parts::Pairs | Parts::Real => 1,
@@ -82,8 +82,8 @@ impl Parts {
         if self == Parts::Real { 2 } else { 4 }
     }
 
-    /// The order in a sentence.
-    pub fn described(self, q_first: bool) -> &'static str {
+    /// The order, as a part of a sentence.
+    pub fn description(self, q_first: bool) -> &'static str {
         match (self, q_first) {
             (Parts::Pairs, false) => "complex, I Q in pairs",
             (Parts::Pairs, true) => "complex, Q I in pairs",
@@ -118,7 +118,7 @@ pub struct Layout {
     pub q_first: bool,
     /// Order of the receivers.
     pub receivers: ReceiverOrder,
-    /// Bytes before each chirp that are no samples.
+    /// Bytes of the header before each chirp.
     pub header_bytes: usize,
     /// Whether the file holds network packets, each of [`PACKET_BYTES`](super::stream::PACKET_BYTES).
     pub packets: bool,
@@ -127,7 +127,7 @@ pub struct Layout {
 /// Counts of samples, receivers, chirps and loops of a capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Counts {
-    /// Samples of a chirp, as the converter takes them.
+    /// Samples of a chirp at each receiver, real or complex.
     pub samples: usize,
     /// Receivers.
     pub receivers: usize,
@@ -143,8 +143,7 @@ impl Layout {
         self.header_bytes + samples * receivers * self.parts.bytes()
     }
 
-    /// The samples of one chirp, `[receivers, samples]`: real ones where the parts are real. `bytes` begin behind the header; missing bytes are
-    /// zeros.
+    /// The samples of one chirp, `[receivers, samples]`. `bytes` begin after the header; missing bytes are zeros.
     pub(crate) fn decode(&self, bytes: &[u8], samples: usize, receivers: usize) -> Array2<Complex64> {
         let numbers = self.numbers(bytes, samples * receivers);
         Array2::from_shape_fn((receivers, samples), |(r, s)| match self.receivers {

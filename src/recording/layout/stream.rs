@@ -1,18 +1,18 @@
-//! The bytes of a capture, read by seeking. Headers of network packets are left out, and lost packets are zeros.
+//! The data bytes of a capture, read by seeking, without headers of network packets and with zeros for lost packets.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Bytes of a packet: 4 of number, 6 of the count of bytes before, then the data.
+/// Bytes of a packet: 4 of its number, 6 of the number of data bytes before it, then the data.
 pub const PACKET_BYTES: u64 = HEADER_BYTES + DATA_BYTES;
 
 /// Bytes before the data of a packet.
 const HEADER_BYTES: u64 = 10;
 const DATA_BYTES: u64 = 1456;
 
-/// Packets at the beginning that must follow each other for a file to hold packets.
-const LOOKED_AT: u64 = 16;
+/// Number of packets at the beginning of a file whose headers are checked.
+const CHECKED_PACKETS: u64 = 16;
 
-/// Bytes of a capture.
+/// The data bytes of a capture's file, which may hold network packets.
 #[derive(Debug)]
 pub struct Stream<R> {
     file: R,
@@ -22,8 +22,8 @@ pub struct Stream<R> {
 
 #[derive(Debug, Clone, Copy)]
 struct Packets {
-    /// The count of the first packet.
-    begins: u64,
+    /// Number of data bytes before the first packet, by its header.
+    first_byte: u64,
     /// Number of packets in the file.
     count: u64,
     /// Bytes of data in all packets of the capture, lost ones included.
@@ -31,7 +31,7 @@ struct Packets {
 }
 
 impl<R: Read + Seek> Stream<R> {
-    /// The bytes of `file`; it holds packets where its beginning says so.
+    /// The data of `file`, which holds packets where the headers at its beginning fit.
     ///
     /// # Errors
     /// The error of the read or the seek.
@@ -42,7 +42,7 @@ impl<R: Read + Seek> Stream<R> {
         Ok(stream)
     }
 
-    /// The bytes of `file`, packets or not.
+    /// The bytes of `file`, even if it holds packets.
     ///
     /// # Errors
     /// The error of the seek.
@@ -56,17 +56,17 @@ impl<R: Read + Seek> Stream<R> {
         self.packets.is_some()
     }
 
-    /// Bytes of data, lost ones counted.
+    /// Number of data bytes, lost ones included.
     pub fn bytes(&self) -> u64 {
         self.packets.map_or(self.file_bytes, |p| p.bytes)
     }
 
-    /// Packets that are gone from the whole file.
+    /// Number of lost packets.
     pub fn lost_packets(&self) -> u64 {
         self.packets.map_or(0, |p| p.bytes.div_ceil(DATA_BYTES).saturating_sub(p.count))
     }
 
-    /// Reads `buffer.len()` bytes from `offset` on. Lost packets and bytes behind the end are zeros.
+    /// Reads `buffer.len()` data bytes from `offset` on. Lost packets and bytes after the end are zeros.
     ///
     /// # Errors
     /// The error of the read or the seek.
@@ -87,7 +87,7 @@ impl<R: Read + Seek> Stream<R> {
         Ok(())
     }
 
-    /// Number of packet `index` of the file, and its count of bytes before.
+    /// Header of packet `index` of the file: its number and the number of data bytes before it. `None` after the last packet.
     fn header(&mut self, index: u64) -> io::Result<Option<(u64, u64)>> {
         if (index * PACKET_BYTES).saturating_add(HEADER_BYTES) >= self.file_bytes {
             return Ok(None);
@@ -100,16 +100,16 @@ impl<R: Read + Seek> Stream<R> {
 
     fn find_packets(&mut self) -> io::Result<Option<Packets>> {
         let count = self.file_bytes.div_ceil(PACKET_BYTES);
-        let Some((first_number, begins)) = self.header(0)? else { return Ok(None) };
-        if count < 2 || begins % DATA_BYTES != 0 {
+        let Some((first_number, first_byte)) = self.header(0)? else { return Ok(None) };
+        if count < 2 || first_byte % DATA_BYTES != 0 {
             return Ok(None);
         }
         let follows = |number: u64, at: u64| {
             let steps = number.wrapping_sub(first_number);
-            at.checked_sub(begins) == steps.checked_mul(DATA_BYTES) && steps < 1 << 32
+            at.checked_sub(first_byte) == steps.checked_mul(DATA_BYTES) && steps < 1 << 32
         };
-        let mut last = (first_number, begins);
-        for index in (1..count.min(LOOKED_AT)).chain([count - 1]) {
+        let mut last = (first_number, first_byte);
+        for index in (1..count.min(CHECKED_PACKETS)).chain([count - 1]) {
             match self.header(index)? {
                 Some((number, at)) if follows(number, at) && number > first_number && number >= last.0 => {
                     last = (number, at)
@@ -120,16 +120,16 @@ impl<R: Read + Seek> Stream<R> {
         }
         // The last packet may be cut or hold less.
         let in_last = (self.file_bytes - (count - 1) * PACKET_BYTES).saturating_sub(HEADER_BYTES);
-        let bytes = last.1 - begins + in_last;
-        // A count of bytes far beyond the file's size is no capture with a few losses.
-        Ok((bytes <= self.file_bytes.saturating_mul(4)).then_some(Packets { begins, count, bytes }))
+        let bytes = last.1 - first_byte + in_last;
+        // A capture with most packets lost is more likely no file of packets.
+        Ok((bytes <= self.file_bytes.saturating_mul(4)).then_some(Packets { first_byte, count, bytes }))
     }
 
     fn read_packets(&mut self, packets: Packets, offset: u64, buffer: &mut [u8]) -> io::Result<()> {
         let end = offset + buffer.len() as u64;
         let mut index = self.packet_before(packets, offset)?;
         while let Some((_, at)) = self.header(index)?.filter(|_| index < packets.count) {
-            let start = at.saturating_sub(packets.begins);
+            let start = at.saturating_sub(packets.first_byte);
             if start >= end {
                 break;
             }
@@ -152,7 +152,7 @@ impl<R: Read + Seek> Stream<R> {
         let (mut low, mut high) = (0, packets.count.min(offset / DATA_BYTES + 1));
         while low + 1 < high {
             let middle = low.midpoint(high);
-            let begins = self.header(middle)?.map_or(u64::MAX, |(_, at)| at.saturating_sub(packets.begins));
+            let begins = self.header(middle)?.map_or(u64::MAX, |(_, at)| at.saturating_sub(packets.first_byte));
             if begins <= offset { low = middle } else { high = middle }
         }
         Ok(low)

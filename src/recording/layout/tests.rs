@@ -114,16 +114,16 @@ fn four_lanes_carry_a_receiver_each() {
 }
 
 #[test]
-fn the_evidence_says_what_decided() {
+fn the_deciding_evidence_is_named() {
     let right = in_order(Parts::TwoLanes);
     let plain = found(written(&right, &chirps()), Some(&profile("")));
-    assert_eq!(plain.decided_by(), Kind::Half, "I and Q alone are near: {:#?}", plain.sentences());
+    assert_eq!(plain.decided_by(), EvidenceKind::Half, "I and Q alone are near: {:#?}", plain.sentences());
     assert!(plain.sentences().iter().any(|s| s.starts_with("Every receiver sees the same echoes")));
-    // Echoes may stand in the far half: two of them weigh less than what the .cfg says.
+    // Two echoes in the far half have less weight than the .cfg.
     let swapped = profile("adcbufCfg -1 0 1 1 1\n");
     let one = found(written(&right, &seen(0.0)), Some(&swapped));
-    assert!(one.best().layout.q_first && one.best().of_kind(Kind::Half) < 0.0, "{:#?}", one.sentences());
-    assert_eq!(one.decided_by(), Kind::Config);
+    assert!(one.best().layout.q_first && one.best().of_kind(EvidenceKind::Half) < 0.0, "{:#?}", one.sentences());
+    assert_eq!(one.decided_by(), EvidenceKind::Config);
     let several = found(written(&right, &chirps()), Some(&swapped));
     assert!(several.best().layout.q_first, "{:#?}", several.sentences());
     assert_ne!(several.certainty(), Certainty::Open, "{:#?}", several.sentences());
@@ -202,11 +202,12 @@ fn two_echoes_at_mirrored_places_are_no_image() {
     let all: Vec<Vec<Complex64>> = (0..8).map(|_| (0..3 * SAMPLES).map(&mut sample).collect()).collect();
     let right = in_order(Parts::Pairs);
     let found = found(written(&right, &all), Some(&profile("adcbufCfg -1 0 0 1 1\n")));
-    assert_eq!((found.best().layout, found.best().of_kind(Kind::Images)), (right, 0.0), "{:#?}", found.sentences());
+    let best = found.best();
+    assert_eq!((best.layout, best.of_kind(EvidenceKind::Images)), (right, 0.0), "{:#?}", found.sentences());
 }
 
 #[test]
-fn a_constant_part_or_saturation_leaves_the_words() {
+fn a_constant_part_or_saturation_does_not_change_the_words() {
     let right = in_order(Parts::TwoLanes);
     let changed = |change: fn(Complex64) -> Complex64| -> Vec<Vec<Complex64>> {
         (0..5).flat_map(|_| chirps()).map(|chirp| chirp.into_iter().map(change).collect()).collect()
@@ -219,7 +220,7 @@ fn a_constant_part_or_saturation_leaves_the_words() {
 }
 
 #[test]
-fn an_echo_that_hardly_breaks_between_rows_is_cut() {
+fn rows_of_a_nearly_continuous_echo_are_separated() {
     let mut noise = noise(7, 8.0);
     // Two transmitters and four receivers: from row to row of a loop the phase goes on but for a hundredth of a turn.
     let mut sample = |n: usize| {
@@ -251,7 +252,7 @@ fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
 }
 
 #[test]
-fn rows_that_are_all_alike_leave_the_receivers_open() {
+fn equal_rows_leave_the_receivers_open() {
     let mut noise = noise(7, 8.0);
     let echoes =
         |n: usize| [(900.0, 13.3), (300.0, 29.7)].map(|(size, bin)| (size, TAU * bin * n as f64 / SAMPLES as f64));
@@ -266,7 +267,7 @@ fn rows_that_are_all_alike_leave_the_receivers_open() {
 }
 
 #[test]
-fn what_makes_no_echo_is_refused() {
+fn files_without_echoes_are_refused() {
     let mut state = 1u64;
     let mut byte = move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

@@ -1,7 +1,7 @@
-//! The sentences on the choice of a layout and its reasons.
+//! Certainty of the choice of a layout, and its reasons in sentences.
 
-use super::evidence::OF_LEVEL;
-use super::{Candidate, Counts, Found, Kind, Parts, ReceiverOrder};
+use super::evidence::LEVEL_LOG_ODDS;
+use super::{Candidate, Counts, EvidenceKind, Found, Parts, ReceiverOrder};
 use crate::radar::capitalised;
 use serde::Serialize;
 
@@ -9,24 +9,24 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Certainty {
-    /// No other layout comes near.
+    /// Every other layout is unlikely.
     Sure,
-    /// The layout is likely, but the next might be right.
+    /// The layout is likely, but the next is possible.
     Likely,
-    /// The two best are as good as each other.
+    /// The best two are about as likely.
     Open,
 }
 
-/// Log-odds to the next from which a choice is sure, and likely.
-const SURE: f64 = 5.0;
-const LIKELY: f64 = 1.0;
+/// Least log-odds above the next layout of a sure and of a likely choice.
+const MIN_SURE_LOG_ODDS: f64 = 5.0;
+const MIN_LIKELY_LOG_ODDS: f64 = 1.0;
 
 impl Certainty {
-    /// The certainty of a choice by its margin: its log-odds above those of the next; `None` where there is no next.
+    /// Certainty by the `margin`, the log-odds above those of the next layout; `None` where there is no next.
     pub fn of(margin: Option<f64>) -> Certainty {
         match margin {
-            Some(margin) if margin < LIKELY => Certainty::Open,
-            Some(margin) if margin < SURE => Certainty::Likely,
+            Some(margin) if margin < MIN_LIKELY_LOG_ODDS => Certainty::Open,
+            Some(margin) if margin < MIN_SURE_LOG_ODDS => Certainty::Likely,
             _ => Certainty::Sure,
         }
     }
@@ -43,15 +43,15 @@ impl Found {
         Some(self.best().log_odds() - self.candidates.get(1)?.log_odds())
     }
 
-    /// The next, and the likeliest of other counts where that is not far below the best.
+    /// The next candidate, and the likeliest with other counts where the choice against it is not sure.
     pub fn rivals(&self) -> Vec<&Candidate> {
         let (best, next) = (self.best(), self.candidates.get(1));
-        let is_near = |other: &&Candidate| best.log_odds() - other.log_odds() < SURE;
+        let is_near = |other: &&Candidate| best.log_odds() - other.log_odds() < MIN_SURE_LOG_ODDS;
         let other = self.candidates.iter().filter(is_near).find(|other| other.counts != best.counts);
         next.into_iter().chain(other.filter(|other| Some(*other) != next)).collect()
     }
 
-    /// Certainty of the choice: at most likely where the samples hide their counts.
+    /// Certainty of the choice, at most likely where `hides_counts`.
     pub fn certainty(&self) -> Certainty {
         match Certainty::of(self.margin()) {
             Certainty::Sure if self.hides_counts => Certainty::Likely,
@@ -59,21 +59,23 @@ impl Found {
         }
     }
 
-    /// The kind of evidence that parts the best from the next.
-    pub fn decided_by(&self) -> Kind {
+    /// The kind of evidence with the largest difference in log-odds between the best candidate and the next.
+    pub fn decided_by(&self) -> EvidenceKind {
         let (best, next) = (self.best(), self.candidates.get(1));
-        let more = |kind: Kind| best.of_kind(kind) - next.map_or(0.0, |next| next.of_kind(kind));
+        let more = |kind: EvidenceKind| best.of_kind(kind) - next.map_or(0.0, |next| next.of_kind(kind));
         let kinds = best.evidence.iter().chain(next.map_or(&[][..], |next| &next.evidence)).map(|e| e.kind);
-        kinds.max_by(|a, b| more(*a).total_cmp(&more(*b))).unwrap_or(Kind::Usual)
+        kinds.max_by(|a, b| more(*a).total_cmp(&more(*b))).unwrap_or(EvidenceKind::Usual)
     }
 
     /// The layout and the evidence for it, a sentence each.
     pub fn sentences(&self) -> Vec<String> {
         let best = self.best();
-        let mut all = vec![format!("{}.", capitalised(&best.described()))];
-        let told =
-            best.evidence.iter().filter(|e| !(e.sentence.is_empty() || e.kind == Kind::Config && e.log_odds < 0.0));
-        all.extend(told.map(|e| format!("{}.", capitalised(&e.sentence))));
+        let mut all = vec![format!("{}.", capitalised(&best.description()))];
+        let findings = best
+            .evidence
+            .iter()
+            .filter(|e| !(e.sentence.is_empty() || e.kind == EvidenceKind::Config && e.log_odds < 0.0));
+        all.extend(findings.map(|e| format!("{}.", capitalised(&e.sentence))));
         all.push(self.decision());
         all.extend(self.notes.iter().cloned());
         all
@@ -83,17 +85,18 @@ impl Found {
     fn decision(&self) -> String {
         let Some(next) = self.candidates.get(1) else { return "No other layout fits.".to_owned() };
         let decided = match self.decided_by() {
-            Kind::Sharp => {
-                let lower = (self.best().of_kind(Kind::Sharp) - next.of_kind(Kind::Sharp)) / OF_LEVEL;
+            EvidenceKind::Spectrum => {
+                let lower = (self.best().of_kind(EvidenceKind::Spectrum) - next.of_kind(EvidenceKind::Spectrum))
+                    / LEVEL_LOG_ODDS;
                 format!("the spectrum, whose level is {:.1} dB lower", 10.0 * lower / std::f64::consts::LN_10)
             }
-            Kind::Receivers => "the receivers, which see the same echoes".to_owned(),
-            Kind::Rows => "the rows, which are the same again after a loop of it".to_owned(),
-            Kind::Counts => "the count of frames that fill the file".to_owned(),
-            Kind::Half => "the empty half of the range axis".to_owned(),
-            Kind::Images => "the images of its echoes".to_owned(),
-            Kind::Config => "the .cfg".to_owned(),
-            Kind::Usual => "no more than what is usual".to_owned(),
+            EvidenceKind::Receivers => "the receivers, which see the same echoes".to_owned(),
+            EvidenceKind::Rows => "the rows, which are the same again after a loop of it".to_owned(),
+            EvidenceKind::Counts => "the count of frames that fill the file".to_owned(),
+            EvidenceKind::Half => "the empty half of the range axis".to_owned(),
+            EvidenceKind::Images => "the images of its echoes".to_owned(),
+            EvidenceKind::Config => "the .cfg".to_owned(),
+            EvidenceKind::Usual => "no more than what is usual".to_owned(),
         };
         let margin = self.margin().unwrap_or_default();
         let sure = match self.certainty() {
@@ -103,16 +106,16 @@ impl Found {
         };
         format!(
             "Decisive against the next ({}) is {decided}; the choice is {sure} (log-odds {margin:.1}).",
-            next.described()
+            next.description()
         )
     }
 }
 
 impl Candidate {
-    /// The layout and its counts in a sentence's words.
-    pub fn described(&self) -> String {
+    /// The layout and its counts, as a part of a sentence.
+    pub fn description(&self) -> String {
         let Counts { samples, receivers, chirps, .. } = self.counts;
-        let parts = self.layout.parts.described(self.layout.q_first);
+        let parts = self.layout.parts.description(self.layout.q_first);
         let order = match (receivers, self.layout.receivers) {
             (1, _) => "1 receiver".to_owned(),
             (_, ReceiverOrder::OneAfterAnother) => format!("{receivers} receivers one after another"),
@@ -120,6 +123,6 @@ impl Candidate {
         };
         let real = if self.layout.parts == Parts::Real { "real " } else { "" };
         let chirps = if chirps == 1 { String::new() } else { format!(", {chirps} chirps a loop") };
-        format!("{}, {parts}, {order}, {samples} {real}samples a chirp{chirps}", self.layout.words.described())
+        format!("{}, {parts}, {order}, {samples} {real}samples a chirp{chirps}", self.layout.words.description())
     }
 }

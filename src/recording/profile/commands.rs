@@ -1,55 +1,59 @@
-//! The commands of a `.cfg` that are read, and the frames that they set: one kind of chirps that repeats, or sub-frames of several kinds.
+//! The commands of a `.cfg`, and the frames that they set: one frame, or several sub-frames.
 //!
-//! The last of several equal commands holds, as on the radar's command line.
+//! The last of several equal commands counts, as on the radar's command line.
 
-use super::lines::{Line, MOST_CHIRPS, MOST_LOOPS, lines, missing};
+use super::lines::{ConfigLine, MAX_CHIRPS, MAX_LOOPS, config_lines, missing};
 use crate::recording::Fault;
 use std::collections::BTreeMap;
 
+/// A chirp by `chirpCfg`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct ChirpLine {
+    /// Number of the profile.
     pub profile: usize,
+    /// Bit mask of the transmitters.
     pub transmitters: u32,
     /// Line of the file that defines the chirp.
     pub line: usize,
-    /// The name of its first change of frequency, slope or start that is not 0.
+    /// Name of its first change of frequency, slope or start that is not 0.
     pub differs: Option<&'static str>,
 }
 
-/// The commands that are read, as they stand in the file.
+/// The commands of a file: `profileCfg` and `subFrameCfg` by number, each `bpmCfg`, and the chirp of each number.
 #[derive(Default)]
 pub(super) struct Commands<'a> {
-    pub profiles: BTreeMap<usize, Line<'a>>,
-    pub sub_frames: BTreeMap<usize, Line<'a>>,
-    pub both: Vec<Line<'a>>,
+    pub profiles: BTreeMap<usize, ConfigLine<'a>>,
+    pub sub_frames: BTreeMap<usize, ConfigLine<'a>>,
+    pub bpm_lines: Vec<ConfigLine<'a>>,
     pub chirps: Vec<Option<ChirpLine>>,
     /// The last line of each other command.
-    others: BTreeMap<&'a str, Line<'a>>,
+    others: BTreeMap<&'a str, ConfigLine<'a>>,
 }
 
 impl<'a> Commands<'a> {
     pub fn read(text: &'a str) -> Result<Self, Fault> {
-        let mut all = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() };
-        for line in lines(text) {
+        let mut all = Commands { chirps: vec![None; MAX_CHIRPS], ..Commands::default() };
+        for line in config_lines(text) {
             all.take(line)?;
         }
         Ok(all)
     }
 
-    pub fn last(&self, command: &str) -> Option<&Line<'a>> {
+    /// The last line of a command other than those with a field.
+    pub fn last(&self, command: &str) -> Option<&ConfigLine<'a>> {
         self.others.get(command)
     }
 
-    fn take(&mut self, line: Line<'a>) -> Result<(), Fault> {
+    fn take(&mut self, line: ConfigLine<'a>) -> Result<(), Fault> {
         match line.command {
-            "flushCfg" => *self = Commands { chirps: vec![None; MOST_CHIRPS], ..Commands::default() },
+            "flushCfg" => *self = Commands { chirps: vec![None; MAX_CHIRPS], ..Commands::default() },
             "profileCfg" => {
-                self.profiles.insert(line.count(0, "the profile's number", MOST_CHIRPS)?, line);
+                self.profiles.insert(line.count(0, "the profile's number", MAX_CHIRPS)?, line);
             }
             "subFrameCfg" => {
                 self.sub_frames.insert(line.count(0, "the sub-frame's number", 3)?, line);
             }
-            "bpmCfg" => self.both.push(line),
+            "bpmCfg" => self.bpm_lines.push(line),
             "chirpCfg" => self.define_chirps(&line)?,
             other => _ = self.others.insert(other, line),
         }
@@ -57,10 +61,10 @@ impl<'a> Commands<'a> {
     }
 
     /// `chirpCfg start end profile dFrequency dSlope dIdle dAdcStart txMask`.
-    fn define_chirps(&mut self, line: &Line<'_>) -> Result<(), Fault> {
+    fn define_chirps(&mut self, line: &ConfigLine<'_>) -> Result<(), Fault> {
         let (first, last) =
-            (line.count(0, "the first chirp", MOST_CHIRPS - 1)?, line.count(1, "the last chirp", MOST_CHIRPS - 1)?);
-        let profile = line.count(2, "the profile's number", MOST_CHIRPS)?;
+            (line.count(0, "the first chirp", MAX_CHIRPS - 1)?, line.count(1, "the last chirp", MAX_CHIRPS - 1)?);
+        let profile = line.count(2, "the profile's number", MAX_CHIRPS)?;
         let mut differs = None;
         for (index, name) in
             [(3, "the change of frequency"), (4, "the change of slope"), (6, "the change of the ADC's start")]
@@ -76,22 +80,23 @@ impl<'a> Commands<'a> {
     }
 }
 
+/// A frame or a sub-frame.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Frame {
     /// Numbers of the first and the last chirp.
     pub first: usize,
     pub last: usize,
     pub loops: usize,
-    /// Number of frames that are sent; 0 where they go on until stopped.
+    /// Number of frames; 0 for no limit.
     pub frames: usize,
     /// Line of the file that defines the frame.
     pub line: usize,
 }
 
-/// The frames of the text: one, or the sub-frames in their order.
+/// The frame of the text, or its sub-frames in order.
 pub(super) fn frames(commands: &Commands<'_>) -> Result<Vec<Frame>, Fault> {
     match (commands.last("frameCfg"), commands.last("advFrameCfg")) {
-        (Some(frame), None) => Ok(vec![plain(frame)?]),
+        (Some(frame), None) => Ok(vec![frame_of(frame)?]),
         (_, Some(advanced)) => {
             let count = advanced.count(0, "the number of sub-frames", 4)?;
             let frames = advanced.count(2, "the number of frames", 1 << 24)?;
@@ -99,7 +104,7 @@ pub(super) fn frames(commands: &Commands<'_>) -> Result<Vec<Frame>, Fault> {
                 .sub_frames
                 .values()
                 .take(count)
-                .map(|line| sub_frame(line, frames))
+                .map(|line| sub_frame_of(line, frames))
                 .collect::<Result<_, _>>()?;
             if sub_frames.is_empty() || sub_frames.len() < count {
                 let found = sub_frames.len();
@@ -114,26 +119,27 @@ pub(super) fn frames(commands: &Commands<'_>) -> Result<Vec<Frame>, Fault> {
 }
 
 /// `frameCfg first last loops frames period trigger delay`.
-fn plain(line: &Line<'_>) -> Result<Frame, Fault> {
+fn frame_of(line: &ConfigLine<'_>) -> Result<Frame, Fault> {
     let (first, last) =
-        (line.count(0, "the first chirp", MOST_CHIRPS - 1)?, line.count(1, "the last chirp", MOST_CHIRPS - 1)?);
+        (line.count(0, "the first chirp", MAX_CHIRPS - 1)?, line.count(1, "the last chirp", MAX_CHIRPS - 1)?);
     if last < first {
         return Err(line.fault(format!("its chirps run from {first} to {last}; expected them in rising order")));
     }
-    let loops = line.count(2, "the number of loops", MOST_LOOPS)?;
+    let loops = line.count(2, "the number of loops", MAX_LOOPS)?;
     let frames = line.count(3, "the number of frames", 1 << 24)?;
     Ok(Frame { first, last, loops, frames, line: line.number })
 }
 
 /// `subFrameCfg number force first chirps loops period offset bursts burst-loops period`.
-fn sub_frame(line: &Line<'_>, frames: usize) -> Result<Frame, Fault> {
-    let first = line.count(2, "the first chirp", MOST_CHIRPS - 1)?;
-    let chirps = line.count(3, "the number of chirps", MOST_CHIRPS - first)?;
+fn sub_frame_of(line: &ConfigLine<'_>, frames: usize) -> Result<Frame, Fault> {
+    let first = line.count(2, "the first chirp", MAX_CHIRPS - 1)?;
+    let chirps = line.count(3, "the number of chirps", MAX_CHIRPS - first)?;
     if chirps == 0 {
         return Err(line.fault("has no chirps"));
     }
-    let loops = line.count(4, "the number of loops", MOST_LOOPS)?;
-    let bursts = line.may_count(7, MOST_LOOPS).unwrap_or(1).max(1) * line.may_count(8, MOST_LOOPS).unwrap_or(1).max(1);
-    let loops = loops.saturating_mul(bursts).min(MOST_LOOPS);
+    let loops = line.count(4, "the number of loops", MAX_LOOPS)?;
+    let bursts =
+        line.optional_count(7, MAX_LOOPS).unwrap_or(1).max(1) * line.optional_count(8, MAX_LOOPS).unwrap_or(1).max(1);
+    let loops = loops.saturating_mul(bursts).min(MAX_LOOPS);
     Ok(Frame { first, last: first + chirps - 1, loops, frames, line: line.number })
 }

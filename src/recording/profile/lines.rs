@@ -1,31 +1,32 @@
-//! The lines of a `.cfg`: commands with their numbers, out of the text around them.
+//! The lines of a `.cfg`: commands with their numbers, without comments and prompts.
 
 use crate::recording::Fault;
 use std::fmt::Display;
 
-/// Most chirps in a loop and loops in a frame that the hardware knows, with room to spare.
-pub(super) const MOST_CHIRPS: usize = 512;
-pub(super) const MOST_LOOPS: usize = 65536;
+/// Most chirps in a loop and loops in a frame: more than the hardware has.
+pub(super) const MAX_CHIRPS: usize = 512;
+pub(super) const MAX_LOOPS: usize = 65536;
 
-/// Numbers of one command, and where it stands.
+/// A command with its numbers.
 #[derive(Debug, Clone)]
-pub(super) struct Line<'a> {
+pub(super) struct ConfigLine<'a> {
     /// Number of the line in the text, from 1.
     pub number: usize,
     pub command: &'a str,
-    /// The numbers behind the command, up to the first word that is no number.
+    /// The numbers after the command, up to the first word that is no number.
     pub values: Vec<f64>,
     /// The first word that is no number.
-    bad: Option<&'a str>,
+    non_number: Option<&'a str>,
 }
 
-impl Line<'_> {
+impl ConfigLine<'_> {
     pub fn fault(&self, message: impl Display) -> Fault {
         at_line(self.number, &format!("{}: {message}", self.command))
     }
 
+    /// Number `index` of the command; `name` is its name in the error.
     pub fn real(&self, index: usize, name: &str) -> Result<f64, Fault> {
-        let missing = || match self.bad {
+        let missing = || match self.non_number {
             Some(word) => self.fault(format!("\"{word}\" is no number; expected {name} as number {}", index + 1)),
             None => self.fault(format!("has {} numbers; expected {name} as number {}", self.values.len(), index + 1)),
         };
@@ -52,24 +53,23 @@ impl Line<'_> {
         }
     }
 
-    /// A whole number from 0 to `most`.
-    pub fn count(&self, index: usize, name: &str, most: usize) -> Result<usize, Fault> {
+    /// A whole number from 0 to `max`.
+    pub fn count(&self, index: usize, name: &str, max: usize) -> Result<usize, Fault> {
         let value = self.real(index, name)?;
-        if value.fract() == 0.0 && (0.0..=most as f64).contains(&value) {
+        if value.fract() == 0.0 && (0.0..=max as f64).contains(&value) {
             return Ok(value as usize);
         }
-        Err(self.fault(format!("{name} is {value}; expected a whole number up to {most}")))
+        Err(self.fault(format!("{name} is {value}; expected a whole number up to {max}")))
     }
 
-    /// A whole number that may be missing.
-    pub fn may_count(&self, index: usize, most: usize) -> Option<usize> {
-        self.count(index, "", most).ok()
+    /// A whole number from 0 to `max` that may be missing.
+    pub fn optional_count(&self, index: usize, max: usize) -> Option<usize> {
+        self.count(index, "", max).ok()
     }
 }
 
-/// The text of a `.cfg` in any encoding: UTF-8, UTF-16 with its mark, or one byte a character, of which only comments have others
-/// than ASCII.
-pub fn text_of(bytes: &[u8]) -> String {
+/// Decodes the text of a `.cfg`: UTF-8, UTF-16 with a byte order mark, or one byte a character, where only comments have others than ASCII.
+pub fn config_text(bytes: &[u8]) -> String {
     let wide = |of: fn([u8; 2]) -> u16, rest: &[u8]| {
         let units: Vec<u16> = rest.chunks_exact(2).map(|b| of([b[0], b[1]])).collect();
         String::from_utf16_lossy(&units)
@@ -82,28 +82,28 @@ pub fn text_of(bytes: &[u8]) -> String {
     }
 }
 
-/// The command and its numbers, where the line has one: comments and what a terminal writes before a command are left out.
-fn line(number: usize, text: &str) -> Option<Line<'_>> {
+/// The command of a line with its numbers, without comments and the prompt of a terminal; `None` without a command.
+fn parse_line(number: usize, text: &str) -> Option<ConfigLine<'_>> {
     let text = ["%", "#", "//"].iter().fold(text, |rest, sign| rest.split(sign).next().unwrap_or(rest));
     // A prompt such as "mmwDemo:/>" ends with the last ">".
     let text = text.rsplit('>').next().unwrap_or(text);
     let mut words = text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '"')).filter(|w| !w.is_empty());
     let command = words.next().filter(|w| w.starts_with(|c: char| c.is_ascii_alphabetic()))?;
-    let (mut values, mut bad) = (Vec::new(), None);
+    let (mut values, mut non_number) = (Vec::new(), None);
     for word in words {
         match word.parse::<f64>() {
             Ok(value) => values.push(value),
             Err(_) => {
-                bad = Some(word);
+                non_number = Some(word);
                 break;
             }
         }
     }
-    Some(Line { number, command, values, bad })
+    Some(ConfigLine { number, command, values, non_number })
 }
 
-/// Every command of the text, in order. Lines end with LF, CR or both.
-pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+/// Every command of the text, in order. Lines end with LF, CR or CR LF.
+pub(super) fn config_lines(text: &str) -> impl Iterator<Item = ConfigLine<'_>> {
     let text = text.trim_start_matches('\u{feff}');
     let mut number = 0;
     let mut after_cr = false;
@@ -114,11 +114,11 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
             return None;
         }
         number += 1;
-        line(number, part)
+        parse_line(number, part)
     })
 }
 
-/// Refuses a text of another dialect by its name.
+/// Refuses texts of other dialects, and names the dialect.
 pub(super) fn check_dialect(text: &str) -> Result<(), Fault> {
     let start = text.trim_start_matches('\u{feff}').trim_start();
     if start.starts_with('{') {
@@ -128,24 +128,24 @@ pub(super) fn check_dialect(text: &str) -> Result<(), Fault> {
         } else {
             ("JSON", "a .cfg with profileCfg, channelCfg, chirpCfg and frameCfg")
         };
-        return Err(dialect(name, helps));
+        return Err(dialect_error(name, helps));
     }
-    let has = |word: &str| lines(text).any(|line| line.command == word);
+    let has = |word: &str| config_lines(text).any(|parse_line| parse_line.command == word);
     if has("chirpComnCfg") || has("chirpTimingCfg") {
         let helps = "a recording's TOML with carrier_hz, bandwidth_hz and samples, which say the same";
-        return Err(dialect("the xWRL radars' (chirpComnCfg, chirpTimingCfg)", helps));
+        return Err(dialect_error("the xWRL radars' (chirpComnCfg, chirpTimingCfg)", helps));
     }
     if start.starts_with("<?xml") || start.starts_with('<') {
-        return Err(dialect("XML", "a .cfg with profileCfg and frameCfg"));
+        return Err(dialect_error("XML", "a .cfg with profileCfg and frameCfg"));
     }
     if start.contains("ar1.ProfileConfig") || start.contains("ar1.ChirpConfig") {
         let helps = "a .cfg with the same numbers as profileCfg, channelCfg, chirpCfg and frameCfg";
-        return Err(dialect("a Lua script of mmWave Studio (ar1.ProfileConfig)", helps));
+        return Err(dialect_error("a Lua script of mmWave Studio (ar1.ProfileConfig)", helps));
     }
     Ok(())
 }
 
-fn dialect(name: &str, helps: &str) -> Fault {
+fn dialect_error(name: &str, helps: &str) -> Fault {
     Fault::Data(format!("is a text of another dialect, {name}, which is not read; what would help is {helps}"))
 }
 
@@ -154,6 +154,6 @@ pub(super) fn missing(command: &str) -> Fault {
 }
 
 /// The error of a line, counted from 1.
-pub(super) fn at_line(line: usize, message: &str) -> Fault {
-    Fault::Data(format!("line {line}: {message}"))
+pub(super) fn at_line(parse_line: usize, message: &str) -> Fault {
+    Fault::Data(format!("line {parse_line}: {message}"))
 }

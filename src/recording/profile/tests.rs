@@ -53,7 +53,7 @@ fn faults_name_line_with_command() {
 }
 
 #[test]
-fn other_dialects_are_told_by_name() {
+fn other_dialects_are_refused_by_name() {
     let xwrl =
         "channelCfg 7 3 0\nchirpComnCfg 13 0 0 128 4 28 0\nchirpTimingCfg 6 32 0 75 60\nframeCfg 2 0 600 64 100 0\n";
     for (text, name) in [
@@ -71,7 +71,7 @@ fn other_dialects_are_told_by_name() {
 #[test]
 fn comments_marks_prompts_and_line_ends_do_not_matter() {
     let expected = RadarProfile::parse(CFG).unwrap();
-    let said = |text: &[u8]| RadarProfile::parse(&lines::text_of(text)).unwrap();
+    let said = |text: &[u8]| RadarProfile::parse(&lines::config_text(text)).unwrap();
     assert_eq!(said(CFG.replace('\n', "\r\n").as_bytes()), expected);
     assert_eq!(said(CFG.replace('\n', "\r").as_bytes()), expected);
     assert_eq!(said([b"\xef\xbb\xbf".as_slice(), CFG.as_bytes()].concat().as_slice()), expected);
@@ -85,7 +85,7 @@ fn comments_marks_prompts_and_line_ends_do_not_matter() {
 }
 
 #[test]
-fn the_command_that_stands_last_holds() {
+fn the_last_of_equal_commands_counts() {
     assert_eq!(with("sensorStart", "channelCfg 3 5 0").receivers, 2);
     assert_eq!(with("sensorStart", "profileCfg 0 77 429 7 57.14 0 0 70 1 16 5209 0 0 30").samples, 16);
     assert_eq!(with(" 8 5209", " 125 5209").samples, 125);
@@ -93,10 +93,10 @@ fn the_command_that_stands_last_holds() {
 }
 
 #[test]
-fn what_is_said_of_the_data_is_read() {
+fn data_format_and_corrections_are_read() {
     let more = "adcbufCfg -1 0 1 0 1\nlvdsStreamCfg -1 1 1 1\ncompRangeBiasAndRxChanPhase 0.05 1 0 -1 0 0 1\n";
     let profile = with("sensorStart", more);
-    assert_eq!((profile.q_first, profile.interleaved, profile.headers), (Some(true), Some(true), true));
+    assert_eq!((profile.q_first, profile.interleaved, profile.has_headers), (Some(true), Some(true), true));
     let of_old_sdk = with("sensorStart", "adcbufCfg 0 0 1 1");
     assert_eq!((of_old_sdk.q_first, of_old_sdk.interleaved), (Some(false), Some(false)));
     assert_eq!(profile.range_bias_metres, 0.05);

@@ -1,27 +1,24 @@
-//! Arrays without a text: the kinds of their axes by evidence, and the TOML that names them.
+//! Arrays without a TOML: the kinds of their axes by evidence, and the TOML with them.
 
 use super::axes::{Reading, readings};
 use super::boards::Board;
 use super::imported::Imported;
-use super::line::{Line, line, uniform};
-use super::text::{self, About};
-use crate::recording::described::open_file;
+use super::line::{ElementLine, element_line, uniform};
+use super::text::{self, Subject};
 use crate::recording::layout::{Certainty, Counts};
 use crate::recording::numbers::Numbers;
 use crate::recording::profile::RadarProfile;
+use crate::recording::recording_text::open_file;
 use crate::recording::{AxisKind, Fault, Offer, Origin, RecordingError, hdf5, numpy};
 use crate::scene::npz::X_KEY;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-const OFFERED: usize = 4;
+const MAX_OFFERS: usize = 4;
 
 pub(super) const ENDINGS: [&str; 5] = ["npy", "npz", "mat", "h5", "hdf5"];
 
-/// Finds out what the array in `data` holds.
-///
-/// # Errors
-/// [`RecordingError`] names the file and what would help.
+/// Finds the ways to read the largest array of the file `data`.
 pub(super) fn import(
     data: &Path,
     config: Option<PathBuf>,
@@ -29,10 +26,10 @@ pub(super) fn import(
     board: Option<&'static Board>,
 ) -> Result<Imported, RecordingError> {
     let (key, mut numbers) = largest(data).map_err(|fault| fault.of(data))?;
-    let mut doubts: Vec<String> = numbers.mend_signs().into_iter().collect();
+    let mut doubts: Vec<String> = numbers.restore_signs().into_iter().collect();
     let shape = numbers.shape().to_vec();
     let mut all = readings(&numbers, profile);
-    all.truncate(OFFERED);
+    all.truncate(MAX_OFFERS);
     let Some(best) = all.first() else {
         let expected = "2 to 5 axes, none of length 0: samples and elements, with chirps, frames or transmitters";
         return Err(Fault::key("the array", format!("has shape {shape:?}"), expected).of(data));
@@ -40,13 +37,14 @@ pub(super) fn import(
     let mut sentences = vec![format!(
         "The array{} holds {}.",
         key.as_ref().map_or(String::new(), |k| format!(" \"{k}\"")),
-        best.described(&shape)
+        best.description(&shape)
     )];
     sentences.extend(best.reasons.iter().cloned());
     if let Some(next) = all.get(1)
         && Certainty::of(Some(best.log_odds - next.log_odds)) != Certainty::Sure
     {
-        doubts.push(format!("The meaning of the axes is likely, not sure. As likely is: {}.", next.described(&shape)));
+        doubts
+            .push(format!("The meaning of the axes is likely, not sure. As likely is: {}.", next.description(&shape)));
     }
     if profile.is_none() {
         doubts.push(
@@ -56,16 +54,16 @@ pub(super) fn import(
         );
     }
     let offer = |reading: &Reading| {
-        let in_turn = in_turn(reading, &shape, profile);
-        let line = line_of(reading, &shape, in_turn, profile, board);
-        let about = About { data, profile, line: &line, sentences: &sentences };
-        let array = text::Array { reading, shape: &shape, key: key.as_deref(), in_turn };
-        let (described, power) = (reading.described(&shape), reading.power.clone());
-        (Offer { described, log_odds: reading.log_odds, power, toml: text::of_array(&array, &about) }, line)
+        let turn_transmitters = turn_transmitters(reading, &shape, profile);
+        let element_line = line_of(reading, &shape, turn_transmitters, profile, board);
+        let subject = Subject { data, profile, line: &element_line, sentences: &sentences };
+        let array = text::Array { reading, shape: &shape, key: key.as_deref(), turn_transmitters };
+        let (description, power) = (reading.description(&shape), reading.power.clone());
+        (Offer { description, log_odds: reading.log_odds, power, toml: text::of_array(&array, &subject) }, element_line)
     };
-    let (offers, lines): (Vec<Offer>, Vec<Line>) = all.iter().map(offer).unzip();
-    let board = lines.first().and_then(|line| line.board);
-    doubts.extend(lines.into_iter().take(1).flat_map(|line| line.doubts));
+    let (offers, lines): (Vec<Offer>, Vec<ElementLine>) = all.iter().map(offer).unzip();
+    let board = lines.first().and_then(|element_line| element_line.board);
+    doubts.extend(lines.into_iter().take(1).flat_map(|element_line| element_line.doubts));
     let frames = best.len(AxisKind::Frame, &shape) as u64;
     let data = data.to_owned();
     let origin = Origin { data, config, offers, sentences, doubts, board, frames, ..Origin::default() };
@@ -95,44 +93,44 @@ fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
     Ok((Some(key), numbers))
 }
 
-/// Keys of an `.npz` that is a scene, or that the program itself wrote.
-const OTHERS: [&str; 8] =
+/// Keys of `.npz` files with a scene or with the program's own maps.
+const RESERVED_KEYS: [&str; 8] =
     [X_KEY, "ends", "format_version", "heard", "net_output", "polar_full", "polar_partial_mag_phase", "sub0"];
 
 /// Whether an `.npz` holds samples: an array of two axes or more, and none of a scene or of maps.
 pub(super) fn has_samples(path: &Path) -> bool {
     let all = open_file(path).ok().and_then(|file| numpy::shapes(BufReader::new(file)).ok()).unwrap_or_default();
-    all.iter().all(|(key, _)| !OTHERS.contains(&key.as_str())) && all.iter().any(|(_, shape)| shape.len() > 1)
+    all.iter().all(|(key, _)| !RESERVED_KEYS.contains(&key.as_str())) && all.iter().any(|(_, shape)| shape.len() > 1)
 }
 
-/// Number of transmitters that send in turn along the axis of chirps: those of the `.cfg`, where no axis counts them.
-fn in_turn(reading: &Reading, shape: &[usize], profile: Option<&RadarProfile>) -> Option<usize> {
+/// Number of transmitters that send in turn along the axis of chirps by the `.cfg`; `None` where the axes don't fit that.
+fn turn_transmitters(reading: &Reading, shape: &[usize], profile: Option<&RadarProfile>) -> Option<usize> {
     let profile = profile?;
     let (transmitters, chirps) = (profile.chirp_transmitters.len(), reading.len(AxisKind::Chirp, shape));
-    let is_so = transmitters > 1
+    let fits = transmitters > 1
         && !profile.both_transmitters
         && reading.kinds.contains(&AxisKind::Chirp)
         && reading.len(AxisKind::Element, shape) == profile.receivers
         && chirps == profile.loops * transmitters;
-    is_so.then_some(transmitters)
+    fits.then_some(transmitters)
 }
 
-/// The antennas: those of the `.cfg` where the array counts them so, or elements half a wavelength apart.
+/// The elements: those of the `.cfg` where the numbers of its antennas fit the axes, or elements half a wavelength apart.
 fn line_of(
     reading: &Reading,
     shape: &[usize],
-    in_turn: Option<usize>,
+    turn_transmitters: Option<usize>,
     profile: Option<&RadarProfile>,
     board: Option<&'static Board>,
-) -> Line {
+) -> ElementLine {
     let receivers = reading.len(AxisKind::Element, shape) * reading.len(AxisKind::Receiver, shape);
-    let chirps = in_turn.unwrap_or(reading.len(AxisKind::Transmitter, shape));
-    let loops = reading.len(AxisKind::Chirp, shape) / in_turn.unwrap_or(1);
+    let chirps = turn_transmitters.unwrap_or(reading.len(AxisKind::Transmitter, shape));
+    let loops = reading.len(AxisKind::Chirp, shape) / turn_transmitters.unwrap_or(1);
     let counts = Counts { samples: reading.len(AxisKind::Sample, shape), receivers, chirps, loops };
     let fits = |p: &&RadarProfile| receivers == p.receivers && chirps == p.chirp_transmitters.len();
     match profile {
         Some(profile) if !fits(&profile) => uniform(counts, profile.carrier_hz()),
-        profile => line(counts, profile, board),
+        profile => element_line(counts, profile, board),
     }
 }
 
@@ -175,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_of_matlab_stand_as_it_has_them() {
+    fn axes_of_mat_files_are_in_matlabs_order() {
         let new = include_bytes!("../../../tests/data/hdf5/new.mat");
         let folder = folder(&[("new.mat", new), ("new.h5", new)]);
         for (name, shape) in [("new.mat", [4, 3, 2]), ("new.h5", [2, 3, 4])] {
@@ -185,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_cube_is_told() {
+    fn arrays_of_no_fitting_shape_are_refused() {
         let flat = ArrayD::from_elem(vec![64], Complex64::ONE);
         let folder = folder(&[("flat.npy", &npy(flat)), ("new.h5", b"\x89HDF"), ("no.npz", b"PK")]);
         let told = |name: &str| load(&folder.path().join(name)).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! The quantities that the axes of an array count, by evidence: lengths, sameness along an axis, sharp spectra, usual orders, and the `.cfg`.
+//! The kinds of an array's axes by evidence: lengths, sameness along an axis, spectra, usual orders, and the `.cfg`.
 
 use crate::recording::AxisKind::{self, Chirp, Element, Frame, Iq, Receiver, Sample, Transmitter};
 use crate::recording::layout::Spectrum;
@@ -7,23 +7,24 @@ use crate::recording::profile::RadarProfile;
 use ndarray::{Array2, ArrayD, Axis, s};
 use num_complex::Complex64;
 
-/// Most lines along an axis, and most numbers of each, that it is judged by.
-const LINES: usize = 128;
-const LINE_NUMBERS: usize = 1 << 12;
-/// Least chirps of one transmitter that tell whether they are the same.
-const LEAST_IN_TURN: usize = 4;
-/// Log-odds of a `.cfg` that says a count, and of one that says another.
-const OF_SAID_COUNT: f64 = 8.0;
-/// Log-odds of an axis along which all is the same that it counts chirps; and of a sharp spectrum that it counts samples, for each decibel.
-const OF_SAME: f64 = 6.0;
-const OF_SHARP_DB: f64 = 0.5;
-const MOST_SHARP_DB: f64 = 12.0;
+/// Most lines along an axis, and most numbers of each, that the evidence on it is computed from.
+const MAX_LINES: usize = 128;
+const MAX_LINE_NUMBERS: usize = 1 << 12;
+/// Least number of chirps of a transmitter whose sameness is measured.
+const MIN_CHIRPS: usize = 4;
+/// Log-odds of a length that agrees with the `.cfg`; minus this for one that contradicts it.
+const CONFIG_COUNT_LOG_ODDS: f64 = 8.0;
+/// Log-odds of chirps for an axis along which all is the same. Log-odds of samples for each decibel of the mean level below a flat spectrum, and most
+/// decibels that count.
+const SAMENESS_LOG_ODDS: f64 = 6.0;
+const FLATNESS_LOG_ODDS_PER_DB: f64 = 0.5;
+const MAX_FLATNESS_DB: f64 = 12.0;
 
-/// Log-odds of an axis of two real numbers that they are real and imaginary part.
-const OF_PARTS: f64 = 5.0;
+/// Log-odds of real and imaginary part for an axis of two real numbers.
+const IQ_LOG_ODDS: f64 = 5.0;
 
-/// Kinds of axes that an array may have, by the number of axes.
-const TOGETHER: [&[AxisKind]; 6] = [
+/// Sets of kinds that the axes of an array may have.
+const AXIS_SETS: [&[AxisKind]; 6] = [
     &[Element, Sample],
     &[Chirp, Element, Sample],
     &[Transmitter, Receiver, Sample],
@@ -32,20 +33,21 @@ const TOGETHER: [&[AxisKind]; 6] = [
     &[Frame, Chirp, Transmitter, Receiver, Sample],
 ];
 
-/// One way to name the axes.
+/// Kinds of all axes, with the evidence for them.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Reading {
     pub kinds: Vec<AxisKind>,
-    /// Natural logarithm of its odds.
+    /// Natural logarithm of the odds, up to a constant of the file.
     pub log_odds: f64,
-    /// Mean power of each range bin.
+    /// Mean power of each range bin, in the square of the file's unit.
     pub power: Vec<f64>,
+    /// Evidence, a sentence each.
     pub reasons: Vec<String>,
 }
 
 impl Reading {
-    /// The axes and their lengths in a sentence's words.
-    pub fn described(&self, shape: &[usize]) -> String {
+    /// The axes and their lengths, as a part of a sentence.
+    pub fn description(&self, shape: &[usize]) -> String {
         let axis = |(kind, len): (&AxisKind, &usize)| match kind {
             Iq => "real and imaginary part".to_owned(),
             kind => format!("{len} {kind}s"),
@@ -59,15 +61,16 @@ impl Reading {
     }
 }
 
-/// Figures of one axis, from the numbers alone.
-struct Look {
-    /// Part of the power that is the same along it, 0 to 1.
+/// Figures on one axis, from the numbers alone.
+struct AxisFigures {
+    /// Part of the power in the mean along the axis, 0 to 1.
     same: f64,
+    /// Mean level of the spectrum along the axis below a flat one, decibels, and its power.
     flatness_db: f64,
     power: Vec<f64>,
 }
 
-/// Ways to name the axes of `numbers`, the most likely first; none where there are too few or too many.
+/// Readings of the axes of `numbers`, the most likely first; none for arrays of other than 2 to 5 axes.
 pub(super) fn readings(numbers: &Numbers, profile: Option<&RadarProfile>) -> Vec<Reading> {
     let shape = numbers.shape();
     let mut all = Vec::new();
@@ -75,18 +78,18 @@ pub(super) fn readings(numbers: &Numbers, profile: Option<&RadarProfile>) -> Vec
     let pairs = (0..shape.len()).filter(|axis| is_real && shape[*axis] == 2).map(Some);
     for iq in std::iter::once(None).chain(pairs) {
         let axes: Vec<usize> = (0..shape.len()).filter(|axis| Some(*axis) != iq).collect();
-        let sets = TOGETHER.into_iter().filter(|kinds| kinds.len() == axes.len());
+        let sets = AXIS_SETS.into_iter().filter(|kinds| kinds.len() == axes.len());
         let sets: Vec<&[AxisKind]> = sets.collect();
         if sets.is_empty() || shape.contains(&0) {
             continue;
         }
-        let looks: Vec<Look> = axes.iter().map(|axis| look(numbers, iq, *axis)).collect();
+        let figures: Vec<AxisFigures> = axes.iter().map(|axis| measure_axis(numbers, iq, *axis)).collect();
         let lengths: Vec<usize> = axes.iter().map(|axis| shape[*axis]).collect();
-        for kinds in sets.into_iter().flat_map(orders) {
-            let mut reading = judged(&kinds, &lengths, &looks, profile);
+        for kinds in sets.into_iter().flat_map(permutations) {
+            let mut reading = judge(&kinds, &lengths, &figures, profile);
             if let Some(iq) = iq {
                 reading.kinds.insert(iq, Iq);
-                reading.log_odds += OF_PARTS;
+                reading.log_odds += IQ_LOG_ODDS;
             }
             all.push(reading);
         }
@@ -95,55 +98,55 @@ pub(super) fn readings(numbers: &Numbers, profile: Option<&RadarProfile>) -> Vec
     all
 }
 
-fn orders(kinds: &[AxisKind]) -> Vec<Vec<AxisKind>> {
+fn permutations(kinds: &[AxisKind]) -> Vec<Vec<AxisKind>> {
     if kinds.is_empty() {
         return vec![Vec::new()];
     }
     let with = |n: usize| {
         let others: Vec<AxisKind> = kinds.iter().enumerate().filter(|(i, _)| *i != n).map(|(_, k)| *k).collect();
-        orders(&others).into_iter().map(move |rest| [vec![kinds[n]], rest].concat())
+        permutations(&others).into_iter().map(move |rest| [vec![kinds[n]], rest].concat())
     };
     (0..kinds.len()).flat_map(with).collect()
 }
 
-fn judged(kinds: &[AxisKind], lengths: &[usize], looks: &[Look], profile: Option<&RadarProfile>) -> Reading {
-    let mut log_odds = order(kinds);
+fn judge(kinds: &[AxisKind], lengths: &[usize], figures: &[AxisFigures], profile: Option<&RadarProfile>) -> Reading {
+    let mut log_odds = order_log_odds(kinds);
     let mut reasons = Vec::new();
     let mut power = Vec::new();
     for (n, (kind, len)) in kinds.iter().zip(lengths).enumerate() {
-        log_odds += length(*kind, *len);
-        let look = &looks[n];
+        log_odds += length_log_odds(*kind, *len);
+        let of_axis = &figures[n];
         match kind {
             Sample => {
-                log_odds += OF_SHARP_DB * look.flatness_db.clamp(0.0, MOST_SHARP_DB);
+                log_odds += FLATNESS_LOG_ODDS_PER_DB * of_axis.flatness_db.clamp(0.0, MAX_FLATNESS_DB);
                 reasons.push(format!(
                     "Axis {n} counts samples: its spectrum lies {:.1} dB below a flat one.",
-                    look.flatness_db
+                    of_axis.flatness_db
                 ));
-                power.clone_from(&look.power);
+                power.clone_from(&of_axis.power);
             }
-            Frame if *len > 1 => log_odds += OF_SAME / 2.0 * look.same,
+            Frame if *len > 1 => log_odds += SAMENESS_LOG_ODDS / 2.0 * of_axis.same,
             Chirp if *len > 1 => {
-                log_odds += OF_SAME * look.same;
+                log_odds += SAMENESS_LOG_ODDS * of_axis.same;
                 reasons.push(format!(
                     "Axis {n} counts chirps: {:.0} % of the power is the same along it or along every second or third.",
-                    100.0 * look.same
+                    100.0 * of_axis.same
                 ));
             }
             _ => {}
         }
         if let Some(profile) = profile
-            && let Some(agrees) = said(*kind, *len, profile, kinds.contains(&Transmitter))
+            && let Some(agrees) = agrees_with_config(*kind, *len, profile, kinds.contains(&Transmitter))
         {
-            log_odds += if agrees { OF_SAID_COUNT } else { -OF_SAID_COUNT };
+            log_odds += if agrees { CONFIG_COUNT_LOG_ODDS } else { -CONFIG_COUNT_LOG_ODDS };
             reasons.extend(agrees.then(|| format!("The .cfg says {len} {kind}s.")));
         }
     }
     Reading { kinds: kinds.to_vec(), log_odds, power, reasons }
 }
 
-/// Log-odds of an axis of this length.
-fn length(kind: AxisKind, len: usize) -> f64 {
+/// Log-odds of a length for an axis of this kind.
+fn length_log_odds(kind: AxisKind, len: usize) -> f64 {
     let usual = if len.is_power_of_two() { 0.5 } else { 0.0 };
     match (kind, len) {
         (Sample, 0..16) => -8.0,
@@ -165,8 +168,8 @@ fn length(kind: AxisKind, len: usize) -> f64 {
     }
 }
 
-/// Log-odds of an order: most programs write frames, chirps, receivers and samples from the slowest to the fastest.
-fn order(kinds: &[AxisKind]) -> f64 {
+/// Log-odds of an order of axes: most programs write frames, chirps, receivers and samples from the slowest to the fastest.
+fn order_log_odds(kinds: &[AxisKind]) -> f64 {
     let place = |kind: AxisKind| kinds.iter().position(|k| *k == kind);
     let before = |a: AxisKind, b: AxisKind| place(a).zip(place(b)).map_or(0.0, |(a, b)| f64::from(u8::from(a < b)));
     let last = kinds.last().map_or(0.0, |kind| match kind {
@@ -179,8 +182,8 @@ fn order(kinds: &[AxisKind]) -> f64 {
     last + first + several + 0.5 * (before(Chirp, Element) + before(Chirp, Receiver) + before(Transmitter, Receiver))
 }
 
-/// Whether the `.cfg` gives this count; `None` where it gives none.
-fn said(kind: AxisKind, len: usize, profile: &RadarProfile, has_transmitters: bool) -> Option<bool> {
+/// Whether the `.cfg` has this length; `None` where it has none.
+fn agrees_with_config(kind: AxisKind, len: usize, profile: &RadarProfile, has_transmitters: bool) -> Option<bool> {
     let transmitters = profile.chirp_transmitters.len();
     Some(match kind {
         Sample => len == profile.samples,
@@ -194,44 +197,43 @@ fn said(kind: AxisKind, len: usize, profile: &RadarProfile, has_transmitters: bo
     })
 }
 
-fn look(numbers: &Numbers, iq: Option<usize>, axis: usize) -> Look {
-    let rows = lines(numbers, iq, axis);
+fn measure_axis(numbers: &Numbers, iq: Option<usize>, axis: usize) -> AxisFigures {
+    let rows = lines_along(numbers, iq, axis);
     let len = rows.ncols().max(1) as f64;
     let all: f64 = rows.iter().map(|v| v.norm_sqr()).sum();
-    // Transmitters in turn make every second or third chirp the same.
-    let alike = |step: usize| -> f64 {
+    // With transmitters in turn every second or third chirp is the same.
+    let power = |step: usize| -> f64 {
         let count = rows.ncols().div_ceil(step) as f64;
-        let kept = rows.slice(s![.., ..;step as isize]);
-        kept.outer_iter().map(|row| row.sum().norm_sqr() / count).sum::<f64>() * len / count
+        let strided = rows.slice(s![.., ..;step as isize]);
+        strided.outer_iter().map(|row| row.sum().norm_sqr() / count).sum::<f64>() * len / count
     };
-    let same = (1..=3).filter(|step| *step == 1 || rows.ncols() >= LEAST_IN_TURN * step).map(alike).fold(0.0, f64::max);
+    let same = (1..=3).filter(|step| *step == 1 || rows.ncols() >= MIN_CHIRPS * step).map(power).fold(0.0, f64::max);
     let is_real = rows.iter().all(|v| v.im == 0.0);
     let spectrum = Spectrum::of(&rows, 1);
     let spectrum = if is_real { spectrum.of_real() } else { spectrum };
     let flatness_db = if is_real { spectrum.flatness_db() + 10.0 * 2f64.log10() } else { spectrum.flatness_db() };
-    Look { same: if all > 0.0 { (same / all).min(1.0) } else { 0.0 }, flatness_db, power: spectrum.power }
+    AxisFigures { same: if all > 0.0 { (same / all).min(1.0) } else { 0.0 }, flatness_db, power: spectrum.power }
 }
 
-/// Some lines along an axis, `[lines, numbers]`.
-fn lines(numbers: &Numbers, iq: Option<usize>, axis: usize) -> Array2<Complex64> {
+/// At most [`MAX_LINES`] lines along an axis, `[lines, numbers]`.
+fn lines_along(numbers: &Numbers, iq: Option<usize>, axis: usize) -> Array2<Complex64> {
     match (numbers, iq) {
-        (Numbers::Complex(values), _) => picked(values, axis, |v| *v),
-        (Numbers::Real(values), None) => picked(values, axis, |v| Complex64::from(*v)),
+        (Numbers::Complex(values), _) => lines_of(values, axis, |v| *v),
+        (Numbers::Real(values), None) => lines_of(values, axis, |v| Complex64::from(*v)),
         (Numbers::Real(values), Some(iq)) => {
             let axis = if axis > iq { axis - 1 } else { axis };
-            let part = |n: usize| picked(&values.index_axis(Axis(iq), n).to_owned(), axis, |v| Complex64::from(*v));
+            let part = |n: usize| lines_of(&values.index_axis(Axis(iq), n).to_owned(), axis, |v| Complex64::from(*v));
             part(0) + part(1) * Complex64::I
         }
     }
 }
 
-fn picked<T>(values: &ArrayD<T>, axis: usize, number: impl Fn(&T) -> Complex64) -> Array2<Complex64> {
+fn lines_of<T>(values: &ArrayD<T>, axis: usize, number: impl Fn(&T) -> Complex64) -> Array2<Complex64> {
     let lanes = values.lanes(Axis(axis)).into_iter();
-    let (count, len) = (values.len() / values.shape()[axis].max(1), values.shape()[axis].min(LINE_NUMBERS));
-    let step = count.div_ceil(LINES).max(1);
+    let (count, len) = (values.len() / values.shape()[axis].max(1), values.shape()[axis].min(MAX_LINE_NUMBERS));
+    let step = count.div_ceil(MAX_LINES).max(1);
     let taken: Vec<Complex64> = lanes.step_by(step).flat_map(|lane| lane.into_iter().take(len)).map(number).collect();
     let rows = taken.len() / len.max(1);
-    // As many numbers as rows and columns make: the shape can't fail to fit.
     Array2::from_shape_vec((rows, len), taken).unwrap_or_else(|_| Array2::zeros((0, len)))
 }
 

@@ -1,23 +1,22 @@
-//! Boards by name, with the places of their antennas in half wavelengths of the carrier.
+//! Boards by name, with the places of their antennas.
 
-/// Antennas of a board: across, and up.
+/// A board with the places of its antennas, in half wavelengths of the carrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Board {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// The maker's guide with these places.
+    /// The manufacturer's document with these places.
     pub guide: &'static str,
-    /// Places of the transmitters in the order of their bits: across and up.
+    /// Places of the transmitters by their bit in a mask: across and up.
     pub transmitters: &'static [[f64; 2]],
-    /// Places of the receivers, across.
+    /// Places of the receivers across.
     pub receivers: &'static [f64],
 }
 
-/// Four receivers beside each other.
-const FOUR: &[f64] = &[0.0, 1.0, 2.0, 3.0];
+const FOUR_RECEIVERS: &[f64] = &[0.0, 1.0, 2.0, 3.0];
 
 /// Two transmitters two wavelengths apart, and one between them half a wavelength higher.
-const WITH_HIGHER: &[[f64; 2]] = &[[0.0, 0.0], [2.0, 1.0], [4.0, 0.0]];
+const THREE_TRANSMITTERS: &[[f64; 2]] = &[[0.0, 0.0], [2.0, 1.0], [4.0, 0.0]];
 
 /// Boards whose antennas are known.
 pub const ALL: &[Board] = &[
@@ -25,25 +24,25 @@ pub const ALL: &[Board] = &[
         name: "xWR1642",
         guide: "xWR1642 Evaluation Module (xWR1642BOOST) Single-Chip mmWave Sensing Solution, SWRU521",
         transmitters: &[[0.0, 0.0], [4.0, 0.0]],
-        receivers: FOUR,
+        receivers: FOUR_RECEIVERS,
     },
     Board {
         name: "xWR1443",
         guide: "xWR1443 Evaluation Module (xWR1443BOOST) mmWave Sensing Solution, SWRU518",
-        transmitters: WITH_HIGHER,
-        receivers: FOUR,
+        transmitters: THREE_TRANSMITTERS,
+        receivers: FOUR_RECEIVERS,
     },
     Board {
         name: "xWR1843",
         guide: "xWR1843 Evaluation Module (xWR1843BOOST) Single-Chip mmWave Sensing Solution, SPRUIM4",
-        transmitters: WITH_HIGHER,
-        receivers: FOUR,
+        transmitters: THREE_TRANSMITTERS,
+        receivers: FOUR_RECEIVERS,
     },
     Board {
         name: "xWR6843ISK",
         guide: "60GHz mmWave Sensor EVMs, SWRU546",
-        transmitters: WITH_HIGHER,
-        receivers: FOUR,
+        transmitters: THREE_TRANSMITTERS,
+        receivers: FOUR_RECEIVERS,
     },
     CASCADE,
 ];
@@ -75,12 +74,12 @@ pub(super) const BY_CHIP: Board = Board {
     ..CASCADE
 };
 
-/// The board called `name`, in any case of letters.
+/// The board called `name`; the case of letters does not matter.
 pub fn by_name(name: &str) -> Option<&'static Board> {
     ALL.iter().find(|board| board.name.eq_ignore_ascii_case(name))
 }
 
-/// The usual board with transmitters of these bits.
+/// The most usual board with these transmitters, by their bits.
 pub(super) fn likely(bits: &[usize]) -> &'static Board {
     let highest = bits.iter().max().copied().unwrap_or(0);
     match highest {

@@ -1,4 +1,4 @@
-//! The first frame of a capture: figures on it that its layout doesn't tell.
+//! The first frame of a capture: the constant part, and the order of a cascade's chips.
 
 use super::boards::{self, Board};
 use crate::recording::capture::{Capture, Frame, Plan};
@@ -9,17 +9,17 @@ use num_complex::Complex64;
 use std::f64::consts::PI;
 use std::io::{Read, Seek};
 
-/// Directions in which a beam is looked for: half of the beam of 54 half wavelengths apart.
-const DIRECTIONS: i32 = 128;
-/// Least part of all power in one beam of the receivers from left to right for which they stand so in the file, and least ratio to the beam by chips:
-/// chips that are not calibrated make no such beam in any order.
-const WHOLE_BEAM: f64 = 0.9;
-const MORE_BEAM: f64 = 1.03;
+/// Number of directions on each side in which the power of a beam is computed. Their distance is about half the width of a beam of 54 half wavelengths.
+const MAX_DIRECTION: i32 = 128;
+/// Least part of the power in one beam of receivers in order from the left, and least ratio to that of receivers in the chips' order, for the order from
+/// the left. Without calibration no order has such a beam.
+const MIN_BEAM_PART: f64 = 0.9;
+const MIN_BEAM_RATIO: f64 = 1.03;
 
 /// Figures on the first frame.
 #[derive(Default)]
 pub(super) struct FirstFrame {
-    /// Power of the constant part over that of the rest, decibels, where it stands out.
+    /// Power of the constant part relative to the rest, decibels; `None` below 0.
     pub constant_db: Option<f64>,
     /// Number of whole frames in the file.
     pub frames: u64,
@@ -28,7 +28,7 @@ pub(super) struct FirstFrame {
 }
 
 impl FirstFrame {
-    /// Reads the frame as `capture` says. Without a readable frame all figures are empty.
+    /// Reads the first frame by the layout in `capture`. All figures are empty where that fails.
     pub fn read<R: Read + Seek>(
         stream: &mut Stream<R>,
         capture: &Capture,
@@ -38,33 +38,33 @@ impl FirstFrame {
         let Ok(Frame { samples, quality }) = Frame::read(stream, capture, &plan) else {
             return FirstFrame { frames: plan.frames, ..FirstFrame::default() };
         };
-        let constant_db = quality.tells_constant().then_some(quality.constant_db);
+        let constant_db = quality.has_strong_constant().then_some(quality.constant_db);
         let chirp = samples.index_axis(Axis(0), 0).index_axis(Axis(0), 0).to_owned();
         FirstFrame { constant_db, frames: plan.frames, chirp }
     }
 
-    /// The cascade whose receivers stand in the order of the file: as its chips count them, or from the left.
+    /// The cascade with its receivers in the order of the file: from the left, or chip by chip.
     pub fn cascade(&self) -> &'static Board {
         let by_chip = &boards::BY_CHIP;
         let Some(from_left) = boards::by_name(by_chip.name) else { return by_chip };
         let beam = self.beam(from_left);
-        if beam > WHOLE_BEAM && beam > MORE_BEAM * self.beam(by_chip) { from_left } else { by_chip }
+        if beam > MIN_BEAM_PART && beam > MIN_BEAM_RATIO * self.beam(by_chip) { from_left } else { by_chip }
     }
 
-    /// Part of the power, without the constant part, in the strongest beam of receivers that stand as on the board.
+    /// Part of the power in the strongest beam, for receivers in the order of the board. The constant part is subtracted.
     fn beam(&self, board: &Board) -> f64 {
         let mean = |row: ArrayView1<'_, Complex64>| row.sum() / row.len().max(1) as f64;
         let centred: Vec<_> = self.chirp.outer_iter().map(|row| row.mapv(|v| v - mean(row))).collect();
         let power = |row: &Array1<Complex64>| row.iter().map(Complex64::norm_sqr).sum::<f64>();
         let all = centred.iter().map(power).sum::<f64>() * centred.len() as f64;
-        let towards = |step: i32| {
-            let cosine = f64::from(step) / f64::from(DIRECTIONS);
+        let beam_power = |step: i32| {
+            let cosine = f64::from(step) / f64::from(MAX_DIRECTION);
             let mut sum = Array1::zeros(self.chirp.ncols());
             for (row, place) in centred.iter().zip(board.receivers) {
                 sum.scaled_add(Complex64::from_polar(1.0, PI * place * cosine), row);
             }
             power(&sum)
         };
-        (-DIRECTIONS..=DIRECTIONS).map(towards).fold(0.0, f64::max) / all.max(f64::MIN_POSITIVE)
+        (-MAX_DIRECTION..=MAX_DIRECTION).map(beam_power).fold(0.0, f64::max) / all.max(f64::MIN_POSITIVE)
     }
 }

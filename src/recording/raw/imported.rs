@@ -1,14 +1,14 @@
-//! The ways to read a file without a text.
+//! The ways to read a file without a TOML.
 
 use crate::recording::Origin;
 use crate::recording::layout::{Certainty, Found};
 
-/// The ways to read a file, and the texts that describe it.
+/// The ways to read a file, each with its TOML.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// The file, and the ways to read it.
     pub origin: Origin,
-    /// The layouts of a raw capture; nothing for an array.
+    /// The layouts of a raw capture; `None` for an array.
     pub found: Option<Found>,
 }
 
@@ -18,7 +18,7 @@ impl Imported {
         self.found.as_ref().map_or_else(|| Certainty::of(self.margin()), Found::certainty)
     }
 
-    /// Log-odds of the best above those of the next; `None` where there is no next.
+    /// Log-odds of the best way above those of the next; `None` where there is no next.
     pub fn margin(&self) -> Option<f64> {
         let offers = &self.origin.offers;
         Some(offers.first()?.log_odds - offers.get(1)?.log_odds)

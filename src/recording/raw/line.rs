@@ -1,27 +1,29 @@
-//! The antennas of a capture that form one line of elements.
+//! The line of elements that antennas of a capture form.
 
 use super::boards::{self, Board};
 use crate::radar::SPEED_OF_LIGHT;
 use crate::recording::layout::Counts;
 use crate::recording::profile::{CHIP_RECEIVERS, RadarProfile, bits};
 
-/// Carrier where nothing says one, hertz.
+/// Carrier where none is known, hertz.
 pub(super) const USUAL_CARRIER_HZ: f64 = 77e9;
 
+/// Antennas that form a line of elements.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Line {
+pub(super) struct ElementLine {
     /// Chirps of a loop whose transmitters form the line.
     pub chirps: Vec<usize>,
-    /// Receivers that form the line, where not all do.
+    /// Indices of the receivers that form the line; `None` for all.
     pub receivers: Option<Vec<usize>>,
     pub transmitter_x_metres: Vec<f64>,
     pub receiver_x_metres: Vec<f64>,
+    /// Name of the board whose places are used.
     pub board: Option<&'static str>,
     /// Assumptions, and antennas that were left out, a sentence each.
     pub doubts: Vec<String>,
 }
 
-/// A transmitter of the line: the chirp that it sends, its place across and up.
+/// A transmitter: the chirp of a loop that it sends, and its place across and up, half wavelengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sender {
     chirp: usize,
@@ -29,8 +31,8 @@ struct Sender {
     up: f64,
 }
 
-/// Elements half a wavelength apart, where their places are not known.
-pub(super) fn uniform(counts: Counts, carrier_hz: f64) -> Line {
+/// Elements half a wavelength apart, for antennas at unknown places.
+pub(super) fn uniform(counts: Counts, carrier_hz: f64) -> ElementLine {
     let Counts { receivers, chirps, .. } = counts;
     let apart = match chirps {
         1 => String::new(),
@@ -42,39 +44,49 @@ pub(super) fn uniform(counts: Counts, carrier_hz: f64) -> Line {
     let senders: Vec<Sender> =
         (0..chirps).map(|chirp| Sender { chirp, across: (chirp * receivers) as f64, up: 0.0 }).collect();
     let receivers: Vec<f64> = (0..receivers).map(|n| n as f64).collect();
-    metres(&senders, &receivers, None, carrier_hz, vec![doubt])
+    line_in_metres(&senders, &receivers, None, carrier_hz, vec![doubt])
 }
 
-/// The antennas of a board where no `.cfg` says which of them are on; `None` where it has too few.
-fn of_board(counts: Counts, board: &'static Board) -> Option<Line> {
+/// The line of a board's first antennas, without a `.cfg`; `None` where the board has too few.
+fn line_of_board(counts: Counts, board: &'static Board) -> Option<ElementLine> {
     let (places, receivers) = (board.transmitters.get(..counts.chirps)?, board.receivers.get(..counts.receivers)?);
     let sender = |(chirp, [across, up]): (usize, &[f64; 2])| Sender { chirp, across: *across, up: *up };
     let senders: Vec<Sender> = places.iter().enumerate().map(sender).collect();
     let doubt =
         format!("The transmitters of the {} are taken to send one after another in the order of its list.", board.name);
-    Some(on_board(board, &senders, receivers, USUAL_CARRIER_HZ, vec![doubt]))
+    Some(line_of_senders(board, &senders, receivers, USUAL_CARRIER_HZ, vec![doubt]))
 }
 
-/// The line of those senders of a board that stand at one height.
-fn on_board(board: &Board, senders: &[Sender], receivers: &[f64], carrier_hz: f64, mut doubts: Vec<String>) -> Line {
-    let (senders, note) = one_height(senders);
+/// The line of the senders of a board that are at one height.
+fn line_of_senders(
+    board: &Board,
+    senders: &[Sender],
+    receivers: &[f64],
+    carrier_hz: f64,
+    mut doubts: Vec<String>,
+) -> ElementLine {
+    let (senders, note) = at_one_height(senders);
     doubts.extend(note);
-    Line { board: Some(board.name), ..metres(&senders, receivers, None, carrier_hz, doubts) }
+    ElementLine { board: Some(board.name), ..line_in_metres(&senders, receivers, None, carrier_hz, doubts) }
 }
 
-/// The line of a capture: by the places that the `.cfg` says, by `board`, or by the board that the transmitters make likely.
-pub(super) fn line(counts: Counts, profile: Option<&RadarProfile>, board: Option<&'static Board>) -> Line {
+/// The line of a capture: by `board`, by the places in the `.cfg`, or by the most usual board with these transmitters.
+pub(super) fn element_line(
+    counts: Counts,
+    profile: Option<&RadarProfile>,
+    board: Option<&'static Board>,
+) -> ElementLine {
     let Some(profile) = profile else {
-        let of_board = board.and_then(|board| of_board(counts, board));
-        return of_board.unwrap_or_else(|| uniform(counts, USUAL_CARRIER_HZ));
+        let line_of_board = board.and_then(|board| line_of_board(counts, board));
+        return line_of_board.unwrap_or_else(|| uniform(counts, USUAL_CARRIER_HZ));
     };
     let carrier_hz = profile.carrier_hz();
     if board.is_none()
-        && let Some((senders, taken, receivers)) = of_geometry(profile)
+        && let Some((senders, taken, receivers)) = line_of_geometry(profile)
     {
         let doubt =
             "Elements stand where the .cfg's antGeometry lines say; those of the longest row form the line.".to_owned();
-        return metres(&senders, &receivers, Some(taken), carrier_hz, vec![doubt]);
+        return line_in_metres(&senders, &receivers, Some(taken), carrier_hz, vec![doubt]);
     }
     let transmitters: Vec<usize> = profile.chirp_transmitters.iter().flat_map(|mask| bits(*mask)).collect();
     let taken_board = board.unwrap_or_else(|| boards::likely(&transmitters));
@@ -89,18 +101,19 @@ pub(super) fn line(counts: Counts, profile: Option<&RadarProfile>, board: Option
     }
     let place = |n: &usize| taken_board.receivers.get(*n).copied().unwrap_or(*n as f64);
     let receivers: Vec<f64> = profile.receiver_numbers.iter().map(place).collect();
-    on_board(taken_board, &senders(profile, taken_board), &receivers, carrier_hz, doubts)
+    line_of_senders(taken_board, &senders(profile, taken_board), &receivers, carrier_hz, doubts)
 }
 
-fn metres(
+/// The line of senders and receivers at these places, half wavelengths.
+fn line_in_metres(
     senders: &[Sender],
     receivers: &[f64],
     taken: Option<Vec<usize>>,
     carrier_hz: f64,
     doubts: Vec<String>,
-) -> Line {
+) -> ElementLine {
     let half_wave = SPEED_OF_LIGHT / carrier_hz / 2.0;
-    Line {
+    ElementLine {
         chirps: senders.iter().map(|s| s.chirp).collect(),
         receivers: taken,
         transmitter_x_metres: senders.iter().map(|s| s.across * half_wave).collect(),
@@ -110,7 +123,7 @@ fn metres(
     }
 }
 
-/// The sender of each chirp of a loop. Several transmitters that send at once and can't be told apart are taken for one in their middle.
+/// The sender of each chirp of a loop. Several transmitters that send at once and can't be separated count as one in their middle.
 fn senders(profile: &RadarProfile, board: &Board) -> Vec<Sender> {
     let place = |bit: usize| board.transmitters.get(bit).copied().unwrap_or([4.0 * bit as f64, 0.0]);
     if profile.both_transmitters {
@@ -125,8 +138,8 @@ fn senders(profile: &RadarProfile, board: &Board) -> Vec<Sender> {
     profile.chirp_transmitters.iter().enumerate().map(|(chirp, mask)| mean(chirp, *mask)).collect()
 }
 
-/// The senders at the height that most places have, each place once.
-fn one_height(senders: &[Sender]) -> (Vec<Sender>, Option<String>) {
+/// The senders at the height with most places, each place once, and a note on those left out.
+fn at_one_height(senders: &[Sender]) -> (Vec<Sender>, Option<String>) {
     let mut best: Vec<Sender> = Vec::new();
     for height in senders {
         let mut found: Vec<Sender> = Vec::new();
@@ -150,12 +163,12 @@ fn one_height(senders: &[Sender]) -> (Vec<Sender>, Option<String>) {
     (best, note)
 }
 
-/// The longest row of elements at one height by the `.cfg`'s antGeometry lines: senders, receivers taken and their places.
-fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f64>)> {
+/// The longest row of elements at one height by the `.cfg`'s antGeometry lines: senders, indices of receivers and their places.
+fn line_of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f64>)> {
     let [across, up] = &profile.element_places;
     let receivers = profile.receivers;
     let bits = profile.senders();
-    // The lines name every receiver of the chip, or those alone that are on.
+    // The lines have every receiver of the chip, or only those that are on.
     let last = bits.iter().max()?;
     let of_chip = |r: usize| profile.receiver_numbers.get(r).copied().unwrap_or(r);
     let names_chip =
@@ -163,7 +176,7 @@ fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f
     if !names_chip && across.len() != bits.len() * receivers {
         return None;
     }
-    // One line alone means that all elements stand at one height.
+    // Without the second line all elements are at one height.
     let level = vec![0.0; across.len()];
     let up = if up.is_empty() { &level } else { up };
     if up.len() < across.len() {
@@ -186,7 +199,7 @@ fn of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f
                     .all(|(r, x)| up[at(*chirp, *r)] == height && across[at(*chirp, *r)] - x == shift)
             };
             let sender = |chirp: usize| Sender { chirp, across: across[at(chirp, taken[0])] - places[0], up: height };
-            let (senders, _) = one_height(&(0..bits.len()).filter(same).map(sender).collect::<Vec<_>>());
+            let (senders, _) = at_one_height(&(0..bits.len()).filter(same).map(sender).collect::<Vec<_>>());
             if best.as_ref().is_none_or(|(s, t, _)| senders.len() * taken.len() > s.len() * t.len()) {
                 best = Some((senders, taken, places));
             }

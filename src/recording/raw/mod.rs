@@ -1,17 +1,17 @@
-//! Raw captures and arrays without a text: the layout found by evidence, the antennas of a board, and the TOML with both.
+//! Raw captures and arrays without a TOML: the layout by evidence, the antennas of a board, and the TOML with both.
 //!
-//! A capture that is opened goes the way of every recording: the text that describes it is made, and read.
+//! To open a capture, its TOML is written in memory and read as that of any recording.
 //!
 //! | file | content |
 //! |---|---|
 //! | [`boards`] | places of antennas by a board's name |
 //! | `imported` | the ways to read a file |
-//! | `line` | the antennas of a `.cfg` that form one line |
-//! | `beside` | the `.cfg` beside a capture, and the files that go on from it |
-//! | `first_frame` | figures on the first frame: a constant part, the order of a cascade's chips |
+//! | `line` | the line of elements that antennas of a capture form |
+//! | `beside` | files beside a capture: its `.cfg`, its other files |
+//! | `first_frame` | figures on the first frame: the constant part, the order of a cascade's chips |
 //! | `text` | the TOML |
-//! | `array` | arrays without a text |
-//! | `axes` | the quantities that the axes of an array count, by evidence |
+//! | `array` | arrays |
+//! | `axes` | the kinds of an array's axes by evidence |
 
 mod array;
 mod axes;
@@ -26,13 +26,13 @@ mod text;
 
 pub use imported::Imported;
 
-use super::axes::{Chirp, Join};
-use super::capture::{Capture, Part};
-use super::chain::{Source, opened};
-use super::described::{config_text, open_file};
+use super::axes::{ChirpChoice, Join};
+use super::capture::{Capture, Treatment};
+use super::chain::{Source, open_joined};
 use super::layout::stream::Stream;
-use super::layout::{Candidate, Certainty, Found, Kind, find, said as said_of};
+use super::layout::{Candidate, Certainty, EvidenceKind, Found, config_claims, find};
 use super::profile::RadarProfile;
+use super::recording_text::{open_file, read_config_text};
 use super::{Fault, Offer, Origin, Recording, RecordingError};
 use crate::files::ends_in;
 use boards::Board;
@@ -40,32 +40,31 @@ use first_frame::FirstFrame;
 use std::io::{self, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-const OFFERED: usize = 4;
+const MAX_OFFERS: usize = 4;
 
-/// Whether `path` names a raw capture, an array without a text, or the `.cfg` of one, by its ending. An `.npz` is one only by its arrays:
-/// [`is_raw_at`].
+/// Whether `path` has the ending of a raw capture, of an array, or of a `.cfg`. For an `.npz` the arrays decide: [`is_raw_at`].
 pub fn is_raw(path: &Path) -> bool {
     ends_in(path, &["bin", "dat", "raw", "cfg"]) || ends_in(path, &array::ENDINGS) && !ends_in(path, &["npz"])
 }
 
-/// [`is_raw`], and whether an `.npz` holds samples: an array of two axes or more, and no reflectors of a scene.
+/// As [`is_raw`], and true for an `.npz` with an array of two axes or more, but none of a scene or of maps.
 pub fn is_raw_at(path: &Path) -> bool {
     is_raw(path) || ends_in(path, &["npz"]) && array::has_samples(path)
 }
 
-/// Opens a raw capture or an array as it is: the best layout, the antennas that its `.cfg` makes likely. `config` is its `.cfg`; where none
-/// is said, the one of the same name beside it, or the only one there.
+/// Reads a raw capture or an array by its most likely layout and antennas. `config` is its `.cfg`; for `None`, the one of the same name beside it, or the
+/// only one in its folder.
 ///
 /// # Errors
-/// [`RecordingError`] names the file and what would help.
+/// [`RecordingError`] names the file and the expected content.
 pub fn open(path: &Path, config: Option<&Path>) -> Result<Recording, RecordingError> {
     import(path, config, None)?.origin.recording()
 }
 
-/// Finds out what a raw capture or an array holds, by the antennas of `board` or of those that its `.cfg` makes likely.
+/// Finds the ways to read a raw capture or an array. `config` is as for [`open`], and `board` has the antennas; for `None` the most usual board is used.
 ///
 /// # Errors
-/// [`RecordingError`] names the file and what would help.
+/// [`RecordingError`] names the file and the expected content.
 pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
     let data = beside::data_of(path)?;
     let own = (data != path).then(|| path.to_owned());
@@ -81,10 +80,10 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
     };
     let stream = files.open().and_then(Stream::new).map_err(|e| Fault::from(e).of(&files.data))?;
     let profile = profile.map(|profile| profile.on_chips(1 + files.chips.len()));
-    described(stream, files, profile.as_ref(), board)
+    import_stream(stream, files, profile.as_ref(), board)
 }
 
-/// Finds the layout of one frame's bytes, as a capture card sends them; `config` is the `.cfg` that set the radar up.
+/// Finds the ways to read one frame's bytes from a capture card; `config` is the radar's `.cfg`.
 ///
 /// # Errors
 /// [`RecordingError`] names the `.cfg`, or the fault of the bytes.
@@ -92,7 +91,7 @@ pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) ->
     let profile = read_config(config)?;
     let data = frame_path(config);
     let stream = Stream::plain(Cursor::new(bytes)).map_err(|e| Fault::from(e).of(&data))?;
-    described(
+    import_stream(
         stream,
         Files { data, more: Vec::new(), chips: Vec::new(), config: Some(config.to_owned()) },
         Some(&profile),
@@ -100,12 +99,12 @@ pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) ->
     )
 }
 
-/// Path that the data of a frame in memory would have; there is no such file.
+/// Path for the data of a frame in memory, beside its `.cfg`; there is no such file.
 pub fn frame_path(config: &Path) -> PathBuf {
     config.with_file_name("frame.bin")
 }
 
-/// Bytes of a frame by the `.cfg` at `path`.
+/// Bytes of a frame by the `.cfg` at `path`, at most 1 GiB.
 ///
 /// # Errors
 /// [`RecordingError`] names the file and the fault.
@@ -116,6 +115,7 @@ pub fn frame_bytes(path: &Path) -> Result<usize, RecordingError> {
     })
 }
 
+/// The files of a capture: the first, those that continue it, those of a cascade's other chips, and the `.cfg`.
 struct Files {
     data: PathBuf,
     more: Vec<PathBuf>,
@@ -125,29 +125,29 @@ struct Files {
 
 impl Files {
     fn open(&self) -> io::Result<Box<dyn Source>> {
-        opened(&self.data, &self.more, &self.chips, |path| Ok(Box::new(BufReader::new(open_file(path)?))))
+        open_joined(&self.data, &self.more, &self.chips, |path| Ok(Box::new(BufReader::new(open_file(path)?))))
     }
 
-    /// A note on files that are read as one, or on chips whose files are missing.
-    fn told(&self) -> Option<String> {
-        let (_, lacking) = beside::chips(&self.data);
+    /// A note on files that are read as one, or on chips without a file.
+    fn note(&self) -> Option<String> {
+        let (_, missing) = beside::chips(&self.data);
         if !self.chips.is_empty() {
             return Some("The files of the four chips of a cascade are read as one.".to_owned());
         }
         if !self.more.is_empty() {
             return Some(format!("The capture goes on in {} more files, read as one.", self.more.len()));
         }
-        (!lacking.is_empty()).then(|| {
+        (!missing.is_empty()).then(|| {
             format!(
                 "The file holds the receivers of one chip of a cascade. Beside it are missing {}: it is read alone.",
-                lacking.join(", ")
+                missing.join(", ")
             )
         })
     }
 }
 
-/// The layouts of a capture, and the texts that describe it.
-fn described<R: Read + io::Seek>(
+/// The ways to read a capture, with their TOML.
+fn import_stream<R: Read + io::Seek>(
     mut stream: Stream<R>,
     files: Files,
     profile: Option<&RadarProfile>,
@@ -158,35 +158,35 @@ fn described<R: Read + io::Seek>(
     let frame = FirstFrame::read(&mut stream, &capture(best, &files, profile), profile);
     let is_cascade = !files.chips.is_empty() && board.is_none_or(|board| board.name == boards::BY_CHIP.name);
     let board = if is_cascade { Some(frame.cascade()) } else { board };
-    let line = line::line(best.counts, profile, board);
+    let line = line::element_line(best.counts, profile, board);
     if line.transmitter_x_metres.len() * line.receiver_x_metres.len() < 2 {
         let found = "has one transmitter and one receiver, which tell ranges and no directions";
         return Err(Fault::key("the capture", found, "two elements or more").of(&files.data));
     }
     let mut doubts = doubts_of(&found, profile);
     doubts.extend(line.doubts.iter().cloned());
-    doubts.extend(files.told());
+    doubts.extend(files.note());
     doubts.extend(frame.constant_db.map(|db| {
         format!(
             "A constant part (leakage or offset) stands {db:.0} dB over all else and is taken out: recording.capture.constant = \"keep\" keeps it."
         )
     }));
     let mut sentences = found.sentences();
-    sentences.extend(profile.iter().flat_map(|p| said(p)));
+    sentences.extend(profile.iter().flat_map(|p| config_sentences(p)));
     let offer = |candidate: &Candidate| {
-        let line = line::line(candidate.counts, profile, board);
+        let line = line::element_line(candidate.counts, profile, board);
         let capture = Capture {
             chirps: Some(line.chirps.clone()),
             receivers_taken: line.receivers.clone(),
-            constant: if frame.constant_db.is_some() { Part::Out } else { Part::Keep },
+            constant: if frame.constant_db.is_some() { Treatment::Out } else { Treatment::Keep },
             ..capture(candidate, &files, profile)
         };
-        let about = text::About { data: &files.data, profile, line: &line, sentences: &sentences };
-        let (described, power) = (candidate.described(), candidate.power.clone());
+        let about = text::Subject { data: &files.data, profile, line: &line, sentences: &sentences };
+        let (description, power) = (candidate.description(), candidate.power.clone());
         let toml = text::of_capture(&capture, candidate.counts.samples, &about);
-        Offer { described, log_odds: candidate.log_odds(), power, toml }
+        Offer { description, log_odds: candidate.log_odds(), power, toml }
     };
-    let offers = found.candidates.iter().take(OFFERED).map(offer).collect();
+    let offers = found.candidates.iter().take(MAX_OFFERS).map(offer).collect();
     let (board, frames) = (line.board, frame.frames);
     let Files { data, config, .. } = files;
     let origin = Origin { data, config, offers, sentences, doubts, board, frames, ..Origin::default() };
@@ -196,28 +196,30 @@ fn described<R: Read + io::Seek>(
 pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
     let read = || -> Result<RadarProfile, Fault> {
         let file = open_file(path)?;
-        RadarProfile::parse(&config_text(file)?)
+        RadarProfile::parse(&read_config_text(file)?)
     };
     read().map_err(|fault| fault.of(path))
 }
 
+/// Doubts about the layout, a sentence each.
 fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     let mut doubts = found.notes.clone();
-    let rivals: Vec<String> = found.rivals().into_iter().map(Candidate::described).collect();
+    let rivals: Vec<String> = found.rivals().into_iter().map(Candidate::description).collect();
     if found.certainty() != Certainty::Sure && !rivals.is_empty() {
         let (how, or) = match found.certainty() {
             Certainty::Open => ("open", "As likely is"),
             _ => ("likely, not sure", "It may also be"),
         };
-        doubts.push(format!("The layout is {how}: {}. {or}: {}.", found.best().described(), rivals.join("; or: ")));
+        doubts.push(format!("The layout is {how}: {}. {or}: {}.", found.best().description(), rivals.join("; or: ")));
     }
     let best = found.best();
     let Some(profile) = profile else { return doubts };
-    let against: Vec<_> = said_of(&best.layout, profile).into_iter().filter(|s| s.said != s.is).collect();
-    doubts.extend(against.iter().map(|s| {
-        format!("The .cfg says {}, but the samples look like {}: the layout follows the samples.", s.said, s.is)
+    let contradicted: Vec<_> =
+        config_claims(&best.layout, profile).into_iter().filter(|s| s.config != s.layout).collect();
+    doubts.extend(contradicted.iter().map(|s| {
+        format!("The .cfg says {}, but the samples look like {}: the layout follows the samples.", s.config, s.layout)
     }));
-    if against.is_empty() && best.of_kind(Kind::Half) < 0.0 {
+    if contradicted.is_empty() && best.of_kind(EvidenceKind::Half) < 0.0 {
         doubts.push(
             "The .cfg decides between I first and Q first; the samples alone would have it the other way.".to_owned(),
         );
@@ -226,27 +228,27 @@ fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
 }
 
 /// The radar and the counts of the `.cfg`, a sentence each.
-fn said(profile: &RadarProfile) -> Vec<String> {
+fn config_sentences(profile: &RadarProfile) -> Vec<String> {
     let RadarProfile { samples, receivers, loops, frames, .. } = *profile;
     let frames = if frames == 0 { "frames until stopped".to_owned() } else { format!("{frames} frames") };
-    let mut said = vec![format!(
+    let mut sentences = vec![format!(
         "The .cfg says: carrier {:.3} GHz in the middle of the samples, bandwidth {:.1} MHz, {samples} samples, {receivers} receivers, {} chirps \
          in each of {loops} loops, {frames}.",
         1e-9 * profile.carrier_hz(),
         1e-6 * profile.bandwidth_hz(),
         profile.chirp_transmitters.len()
     )];
-    said.extend((!profile.rises()).then(|| "The chirp falls.".to_owned()));
+    sentences.extend((!profile.rises()).then(|| "The chirp falls.".to_owned()));
     let bias = profile.range_bias_metres;
-    said.extend((bias != 0.0).then(|| format!("Ranges are {bias} m too long by the .cfg: that is taken off.")));
-    said.extend(profile.notes.iter().cloned());
-    said
+    sentences.extend((bias != 0.0).then(|| format!("Ranges are {bias} m too long by the .cfg: that is taken off.")));
+    sentences.extend(profile.notes.iter().cloned());
+    sentences
 }
 
-/// A candidate's layout as it stands in a text.
+/// The table `[recording.capture]` of a candidate, with counts where there is no `.cfg`.
 fn capture(best: &Candidate, files: &Files, profile: Option<&RadarProfile>) -> Capture {
     let Candidate { layout, counts, .. } = best;
-    let said = |value: usize| profile.is_none().then_some(value);
+    let count = |value: usize| profile.is_none().then_some(value);
     let named = |path: &PathBuf| text::beside(path, &files.data);
     Capture {
         config: files.config.as_ref().map(named),
@@ -257,11 +259,11 @@ fn capture(best: &Candidate, files: &Files, profile: Option<&RadarProfile>) -> C
         q_first: layout.q_first,
         receivers: layout.receivers,
         header_bytes: layout.header_bytes,
-        samples: said(counts.samples),
-        receiver_count: said(counts.receivers),
-        loop_chirps: said(counts.chirps),
-        loops: said(counts.loops),
-        turn: Chirp::Joined(Join::Strongest),
+        samples: count(counts.samples),
+        receiver_count: count(counts.receivers),
+        loop_chirps: count(counts.chirps),
+        loops: count(counts.loops),
+        loop_choice: ChirpChoice::Joined(Join::Strongest),
         ..Capture::default()
     }
 }

@@ -82,7 +82,7 @@ fn the_order_of_chips_is_the_sharper_one() {
 }
 
 #[test]
-fn a_chip_without_the_others_is_told() {
+fn a_chip_without_the_others_is_noted() {
     let bytes = frame();
     let folder =
         folder(&[("master_0000_data.bin", &bytes), ("slave2_0000_data.bin", &bytes), ("c.cfg", CFG.as_bytes())]);
@@ -92,7 +92,7 @@ fn a_chip_without_the_others_is_told() {
 }
 
 #[test]
-fn a_capture_of_one_element_is_told() {
+fn a_capture_of_one_element_is_refused() {
     let one = CFG.replace("channelCfg 15", "channelCfg 1").replace("frameCfg 0 1", "frameCfg 0 0");
     let folder = folder(&[("a.bin", &frame()), ("a.cfg", one.as_bytes())]);
     let told = open(&folder.path().join("a.bin"), None).unwrap_err().to_string();
@@ -131,7 +131,7 @@ fn places_of_a_cfg_make_the_line() {
 }
 
 #[test]
-fn what_is_no_capture_is_told() {
+fn files_of_no_capture_are_refused() {
     let folder = folder(&[
         ("a.cfg", CFG.as_bytes()),
         ("b.cfg", b"{ \"mmWaveDevices\": [] }"),

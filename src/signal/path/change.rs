@@ -4,7 +4,7 @@ use crate::radar::{Pair, Pattern};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// The coordinate of a point by which a derivative is taken.
+/// The coordinate of a derivative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
     /// The point's range from the array's centre, in metres, in the same direction.
@@ -25,15 +25,15 @@ impl PathChange {
     /// The derivative for a point at (`x_metres`, `y_metres`), for any reflectivity.
     pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
         let range_metres = x_metres.hypot(y_metres);
-        let [there, back] = pair.places_metres().map(|[antenna, ahead]| {
-            let leg = (x_metres - antenna).hypot(y_metres - ahead);
-            // Half the square of the leg is (range^2 - 2 range (cos(theta) antenna + sin(theta) ahead) + antenna^2 + ahead^2) / 2.
+        let [there, back] = pair.places_metres().map(|[antenna_x, antenna_y]| {
+            let leg = (x_metres - antenna_x).hypot(y_metres - antenna_y);
+            // Half the square of the leg is (range^2 - 2 range (cos(theta) antenna_x + sin(theta) antenna_y) + antenna_x^2 + antenna_y^2) / 2.
             let half_square = match by {
                 By::Range if range_metres == 0.0 => 0.0,
-                By::Range if ahead == 0.0 => range_metres - antenna * (x_metres / range_metres),
-                By::Range => range_metres - (antenna * x_metres + ahead * y_metres) / range_metres,
-                By::CosTheta if ahead == 0.0 => -range_metres * antenna,
-                By::CosTheta => range_metres * (ahead * x_metres / y_metres - antenna),
+                By::Range if antenna_y == 0.0 => range_metres - antenna_x * (x_metres / range_metres),
+                By::Range => range_metres - (antenna_x * x_metres + antenna_y * y_metres) / range_metres,
+                By::CosTheta if antenna_y == 0.0 => -range_metres * antenna_x,
+                By::CosTheta => range_metres * (antenna_y * x_metres / y_metres - antenna_x),
             };
             let change = half_square / leg;
             [change, -change / leg]
@@ -41,7 +41,7 @@ impl PathChange {
         PathChange { range_metres: (there[0] + back[0]) / 2.0, amplitude: there[1] + back[1] }
     }
 
-    /// The change between elements of a pattern.
+    /// The derivative between elements with a pattern.
     pub fn through(self, pattern: Option<Pattern>, pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
         let Some(pattern) = pattern else { return self };
         let square = x_metres * x_metres + y_metres * y_metres;
@@ -60,7 +60,7 @@ impl PathChange {
         PathChange { amplitude: self.amplitude + pattern.relative_change(of_log_cos), ..self }
     }
 
-    /// Relative change of the sample where an echo's phase turns by `turns_per_metre`.
+    /// Relative derivative of a sample, where the echo's phase changes by `turns_per_metre` of range.
     pub fn of_sample(&self, turns_per_metre: f64) -> Complex64 {
         Complex64::new(self.amplitude, TAU * turns_per_metre * self.range_metres)
     }

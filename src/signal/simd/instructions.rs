@@ -1,14 +1,14 @@
-//! Choice of the instructions that kernels run with: the best of the processor, or those that were asked for.
+//! The instruction set of kernels: the best of the processor, or that of [`SIMD_VARIABLE`].
 
 use rustfft::{Fft, FftNum, FftPlanner, FftPlannerScalar};
 use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, OnceLock};
 
-/// The environment variable that picks an instruction set: `portable`, `avx2` or `avx512`.
+/// The environment variable with the name of an instruction set: `portable`, `avx2` or `avx512`.
 ///
-/// It governs the kernels of this crate: simulation, transforms of maps, the live network. `faer`, `burn` and the fit's short transforms of
-/// `rustfft` choose by the processor themselves.
+/// It holds for the kernels of this crate: simulation, transforms of maps, the live network. `faer`, `burn` and the fit's short transforms of
+/// `rustfft` use the instructions of the processor.
 pub const SIMD_VARIABLE: &str = "APERTURA_SIMD";
 
 /// An instruction set that kernels are compiled for.
@@ -64,7 +64,7 @@ impl Simd {
 
     /// The set to compute with: the one that [`SIMD_VARIABLE`] names, else the best that this processor has. Looked up once.
     ///
-    /// An unusable set counts as none, with a warning in the log; programs refuse to start with it ([`Simd::requested`]).
+    /// An unusable set is ignored, with a warning in the log; programs refuse to start with it ([`Simd::requested`]).
     pub fn chosen() -> Simd {
         static CHOSEN: OnceLock<Simd> = OnceLock::new();
         *CHOSEN.get_or_init(|| match Simd::requested() {
@@ -141,9 +141,9 @@ impl Simd {
         kernel.run::<false>()
     }
 
-    /// A forward transform of `len` points by rustfft, with none but these instructions (rustfft itself has nothing beyond AVX2).
+    /// A forward transform of `len` points by rustfft with these instructions alone (rustfft has none beyond AVX2).
     pub fn forward_fft<T: FftNum>(self, len: usize) -> Arc<dyn Fft<T>> {
-        // On targets whose only set is portable, rustfft may use instructions that are not told apart here.
+        // On targets whose only set is portable, rustfft may use the target's other instructions.
         if self == Simd::Portable && Simd::best() != Simd::Portable {
             FftPlannerScalar::new().plan_fft_forward(len)
         } else {
@@ -154,8 +154,8 @@ impl Simd {
 
 /// Work that is compiled for several instruction sets.
 ///
-/// Functions that it calls must be `#[inline(always)]`, and its loops plain ones: a closure handed to `map`, `for_each` or `array::from_fn` may be
-/// compiled apart, without the instructions, where every fused multiply-add is a call.
+/// Functions that it calls must be `#[inline(always)]`, and its loops `for` loops: a closure passed to `map`, `for_each` or `array::from_fn` may be
+/// compiled separately, without the instructions, where every fused multiply-add is a call.
 pub trait Kernel {
     type Output;
 

@@ -14,17 +14,15 @@ use num_complex::Complex;
 use rustfft::FftNum;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// f32 or f64: the two precisions of everything after the phase.
+/// f32 or f64: the two precisions of computations after that of the phase.
 pub trait Real: FftNum + Copy + Default + PartialOrd + Sub<Output = Self> + Add<Output = Self> {
     /// Terms of the Taylor series of sine and cosine up to an eighth of a turn, lowest first.
     const SIN: &'static [f64];
-    /// See [`Real::SIN`].
     const COS: &'static [f64];
     /// Distance from 1 to the next value.
     const EPSILON: f64;
     const NAME: &'static str;
     fn of(v: f64) -> Self;
-    /// The number as f64.
     fn wide(self) -> f64;
     /// `self * b + c`, rounded once.
     fn fused(self, b: Self, c: Self) -> Self;
@@ -87,13 +85,11 @@ pub const LANES_F64: usize = 8;
 pub struct Lanes<T, const W: usize>(pub [T; W]);
 
 impl<T: Real, const W: usize> Lanes<T, W> {
-    /// The same number in every lane.
     #[inline(always)]
     pub fn splat(v: T) -> Self {
         Lanes([v; W])
     }
 
-    /// The first `W` of `from`.
     #[inline(always)]
     pub fn load(from: &[T]) -> Self {
         let mut lanes = [T::default(); W];
@@ -101,13 +97,11 @@ impl<T: Real, const W: usize> Lanes<T, W> {
         Lanes(lanes)
     }
 
-    /// Writes the lanes over the first `W` of `to`.
     #[inline(always)]
     pub fn store(self, to: &mut [T]) {
         to[..W].copy_from_slice(&self.0);
     }
 
-    /// Applies `f` to every lane.
     #[inline(always)]
     pub fn map(mut self, f: impl Fn(T) -> T) -> Self {
         for v in &mut self.0 {
@@ -116,7 +110,6 @@ impl<T: Real, const W: usize> Lanes<T, W> {
         self
     }
 
-    /// Applies `f` to every pair of lanes.
     #[inline(always)]
     pub fn zip(mut self, other: Self, f: impl Fn(T, T) -> T) -> Self {
         for i in 0..W {
@@ -143,13 +136,12 @@ impl<const W: usize> Lanes<f64, W> {
         self.map(|v| (v + SHIFT) - SHIFT)
     }
 
-    /// Square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }
 
-    /// The least and the greatest lane.
+    /// The smallest and the largest lane.
     #[inline(always)]
     pub(in crate::signal) fn bounds(self) -> (f64, f64) {
         self.0.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
@@ -168,7 +160,6 @@ impl<const W: usize> Lanes<f64, W> {
         self.0[0]
     }
 
-    /// Rounds every lane to `T`.
     #[inline(always)]
     pub fn round_to<T: Real>(self) -> Lanes<T, W> {
         let mut out = Lanes::splat(T::default());
@@ -206,20 +197,16 @@ impl<T: Real, const W: usize> Neg for Lanes<T, W> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct ComplexLanes<T, const W: usize> {
-    /// Real parts.
     pub re: Lanes<T, W>,
-    /// Imaginary parts.
     pub im: Lanes<T, W>,
 }
 
 impl<T: Real, const W: usize> ComplexLanes<T, W> {
-    /// Zero in every lane.
     #[inline(always)]
     pub fn zero() -> Self {
         ComplexLanes::splat(Complex::default())
     }
 
-    /// The same number in every lane.
     #[inline(always)]
     pub fn splat(v: Complex<T>) -> Self {
         ComplexLanes { re: Lanes::splat(v.re), im: Lanes::splat(v.im) }
@@ -245,7 +232,6 @@ impl<T: Real, const W: usize> ComplexLanes<T, W> {
         ComplexLanes { re: (-a.im).mul_add::<FMA>(b.im, re), im: a.im.mul_add::<FMA>(b.re, im) }
     }
 
-    /// Each lane times a real number.
     #[inline(always)]
     pub fn scaled(self, by: Lanes<T, W>) -> Self {
         ComplexLanes { re: self.re * by, im: self.im * by }
@@ -280,7 +266,7 @@ pub(crate) fn horner<T: Real, const W: usize, const FMA: bool>(terms: &[f64], x:
 
 /// `exp(2 pi j t)` of every lane, `|t|` below 2^49. Within two units in the last place of 1.
 ///
-/// Whole quarter turns are taken off in f64, the rest (at most an eighth of a turn) goes through the Taylor series.
+/// Whole quarter turns are removed in f64; the rest, at most an eighth of a turn, is the argument of the Taylor series.
 #[inline(always)]
 pub fn phasor<T: Real, const W: usize, const FMA: bool>(turns: Lanes<f64, W>) -> ComplexLanes<T, W> {
     let of = |v: f64| Lanes::<f64, W>::splat(v);

@@ -15,7 +15,6 @@ impl<F: Fn(f32) -> f32> Kernel for Each<'_, F> {
     }
 }
 
-/// Replaces every value by `f` of it.
 pub fn each(values: &mut [f32], f: impl Fn(f32) -> f32) {
     Simd::chosen().run(Each(values, f));
 }
@@ -31,7 +30,7 @@ pub fn power_of_ten(v: f32) -> f32 {
     let f = (x - whole) * std::f32::consts::LN_2;
     let series =
         1.0 + f * (1.0 + f * (1.0 / 2.0 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0))))));
-    // The lowest bits of `rounded` are that integer; a cast would look for overflow, one value at a time.
+    // The lowest bits of `rounded` are that integer. A cast would check for overflow, which can't be vectorised.
     series * f32::from_bits((rounded.to_bits() << 23).wrapping_add(127 << 23))
 }
 

@@ -4,7 +4,7 @@ use crate::app::state::{Command, Directions, EditCommand, RadarCommand, Settings
 use crate::app::widgets::{NumberField, choices, rarely, row, row_of, tick};
 use crate::interact::Snap;
 use crate::maps::Normalisation;
-use crate::maps::cfar::{Cfar, MOST_CELLS, Statistic};
+use crate::maps::cfar::{Cfar, MAX_CELLS, Statistic};
 use crate::picture::ColourMap;
 use crate::radar::{DecibelMilliwatts, Decibels, WindowFunction};
 use crate::signal::{self, Floor};
@@ -194,7 +194,7 @@ fn sides(ui: &mut Ui, name: &str, tooltip: &str, cells: &mut [usize; 2]) {
     row_of(ui, name, tooltip, |ui| {
         let [bins, columns] = cells;
         for (cells, along, unit) in [(bins, "in range", " bins"), (columns, "in angle", " columns")] {
-            let field = NumberField::new(cells).range(0..=MOST_CELLS).speed(0.05).suffix(unit);
+            let field = NumberField::new(cells).range(0..=MAX_CELLS).speed(0.05).suffix(unit);
             let field = ui.add(field).on_hover_text(format!("{tooltip}, {along}"));
             ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(format!("{name} cells {along}")));
         }

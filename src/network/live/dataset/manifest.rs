@@ -23,12 +23,12 @@ pub struct Manifest {
     pub kinds: Vec<String>,
     /// Floor of the scenes.
     pub floor: String,
-    /// The radar; none where each example has its own.
+    /// The radar; `None` where each example has another.
     pub radar: Option<Radar>,
-    /// Numbers of the elements whose samples replace those of the two ends.
+    /// Numbers of the elements with samples, in place of the two ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<Vec<usize>>,
-    /// The errors of elements: their share of the scenes, and the largest tolerances in decibels, degrees and millimetres. None where all elements are exact.
+    /// Errors of elements: the share of scenes with them, and the largest tolerances in decibels, degrees and millimetres. `None` for exact elements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elements: Option<[f64; 4]>,
     /// Type and axes of each array.
@@ -43,7 +43,7 @@ pub struct ArrayEntry {
     pub dtype: String,
     /// Names of the array's axes; the first is the example.
     pub axes: Vec<String>,
-    /// The array's shape behind the first axis.
+    /// The array's shape after the first axis.
     pub shape: Vec<usize>,
 }
 
@@ -52,7 +52,7 @@ pub struct ShardEntry {
     pub examples: u32,
     /// Kind of each example.
     pub kinds: Vec<String>,
-    /// Radar of each example, where each has its own.
+    /// Radar of each example, where they differ.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub radars: Vec<Radar>,
     /// The shard's files by array.
@@ -61,9 +61,9 @@ pub struct ShardEntry {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FileEntry {
-    /// The file's path from the dataset's folder.
+    /// The file's path relative to the dataset's folder.
     pub name: String,
-    /// Length of the file.
+    /// Length of the file, bytes.
     pub bytes: u64,
     /// SHA-256 of the file, hexadecimal.
     pub sha256: String,

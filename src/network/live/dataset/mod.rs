@@ -3,11 +3,11 @@
 //! ```text
 //! DIR/manifest.json                 format, origin, the files of each split with their SHA-256
 //! DIR/train/00000.ends.npy          complex128 [examples, 2, 12, 512]; of a layout 00000.heard.npy [examples, elements, samples]
-//! DIR/train/00000.fine.npy ...      the live network's input, where the radar has its shape, and the targets by their names
+//! DIR/train/00000.fine.npy ...      the live network's input, where the radar has a fitting shape, and the targets by their names
 //! DIR/validation/...  DIR/test/...
 //! ```
 //!
-//! The scenes of the splits come from streams that never meet ([`Purpose`]). Example `i` of a split is scene `i / kinds` of kind `i % kinds`: a longer
+//! The scenes of the splits have different random streams ([`Purpose`]). Example `i` of a split is scene `i / kinds` of kind `i % kinds`: a longer
 //! dataset begins with the examples of a shorter one.
 
 mod manifest;
@@ -67,8 +67,7 @@ pub enum ExamplePart {
 }
 
 impl ExamplePart {
-    /// The default parts of examples of `radars`: without the live network's input where the network doesn't fit the radar's shape, or where
-    /// there is a layout.
+    /// The default parts of examples: samples, targets, and the live network's input where the radar has a fitting shape and there is no layout.
     pub fn usual(radars: &Radars, layout: Option<&[usize]>) -> Vec<ExamplePart> {
         let fits = layout.is_none()
             && match radars {
@@ -143,7 +142,7 @@ pub struct DatasetRequest {
     pub arrays: Arrays,
     /// Radars of the scenes.
     pub radars: Radars,
-    /// Numbers of the elements whose samples replace those of the two ends.
+    /// Numbers of the elements with samples, in place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// Precision of features and targets.
     pub precision: DatasetPrecision,
@@ -154,12 +153,12 @@ pub struct DatasetRequest {
 }
 
 impl DatasetRequest {
-    /// Scenes of each kind for training, validation and test. By default there are a tenth of `training` for validation and for test, and no
-    /// test scenes with [`Kind::World`], which has none.
+    /// Scenes of each kind for training, validation and test. The default for the last two is a tenth of `training`; there are no test scenes with
+    /// [`Kind::World`].
     pub fn counts(kinds: &[Kind], training: u32, validation: Option<u32>, test: Option<u32>) -> [u32; 3] {
         let tenth = training.div_ceil(10);
-        let of_test = if kinds.contains(&Kind::World) { 0 } else { tenth };
-        [training, validation.unwrap_or(tenth), test.unwrap_or(of_test)]
+        let default_test = if kinds.contains(&Kind::World) { 0 } else { tenth };
+        [training, validation.unwrap_or(tenth), test.unwrap_or(default_test)]
     }
 }
 
@@ -177,16 +176,16 @@ pub enum DatasetError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Writes a dataset into `folder`, which is made where it is missing and must be empty, and last its manifest.
+/// Writes a dataset into `folder`, an empty folder or a new one, and last its manifest.
 /// # Errors
-/// [`DatasetError`]; a folder without a manifest is no whole dataset.
+/// [`DatasetError`]. The folder then has no manifest, which marks an incomplete dataset.
 pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Manifest, DatasetError> {
     let on = |path: &Path| {
         let path = path.to_owned();
         move |source| DatasetError::File { path, source }
     };
     check(request)?;
-    // What can't be made is refused before anything is written.
+    // Requests that can't be fulfilled are refused before files are written.
     let makers_of =
         |(purpose, count): (Purpose, u32)| if count > 0 { makers(request, purpose) } else { Ok(Vec::new()) };
     let purposes = [Purpose::Training, Purpose::Validation, Purpose::Test];
@@ -205,8 +204,8 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
         let mut shards = Vec::new();
         let total = count * makers.len() as u32;
         if total > 0 {
-            let of_split = folder.join(split);
-            fs::create_dir_all(&of_split).map_err(on(&of_split))?;
+            let split_folder = folder.join(split);
+            fs::create_dir_all(&split_folder).map_err(on(&split_folder))?;
         }
         for first in (0..total).step_by(request.shard as usize) {
             let last = total.min(first + request.shard);
@@ -241,21 +240,21 @@ fn examples_of(request: &DatasetRequest) -> u64 {
 }
 
 fn check(request: &DatasetRequest) -> Result<(), DatasetError> {
-    let told = |message: String| Err(DatasetError::Request(message));
+    let refuse = |message: String| Err(DatasetError::Request(message));
     if request.kinds.is_empty() || request.parts.is_empty() {
-        return told("there is nothing to write; expected at least one kind of scenes and one array".to_owned());
+        return refuse("there is nothing to write; expected at least one kind of scenes and one array".to_owned());
     }
     if let Some((_, part)) = request.parts.iter().enumerate().find(|(i, part)| request.parts[..*i].contains(part)) {
-        return told(format!("array {part} is given twice"));
+        return refuse(format!("array {part} is given twice"));
     }
     if let Some(kind) = request.kinds.iter().enumerate().find(|(i, kind)| request.kinds[..*i].contains(kind)) {
-        return told(format!("kind {} is given twice", kind.1));
+        return refuse(format!("kind {} is given twice", kind.1));
     }
     if !(1..=4096).contains(&request.shard) {
-        return told(format!("a shard of {} examples is asked for; expected 1 to 4096", request.shard));
+        return refuse(format!("a shard of {} examples is asked for; expected 1 to 4096", request.shard));
     }
     if request.counts[0] == 0 || examples_of(request) > 100_000_000 {
-        return told(format!(
+        return refuse(format!(
             "{} examples are asked for; expected 1 to 100000000, some for training",
             examples_of(request)
         ));
@@ -292,15 +291,15 @@ fn write_shard(
     (arrays, radar): (&[ArrayKind], &Radar),
     precision: DatasetPrecision,
 ) -> Result<BTreeMap<String, FileEntry>, DatasetError> {
-    let called = |array: &ArrayKind| array.entry(radar, precision).0;
-    let name_of = |array: &ArrayKind| format!("{split}/{number:05}.{}.npy", called(array));
+    let array_name = |array: &ArrayKind| array.entry(radar, precision).0;
+    let name_of = |array: &ArrayKind| format!("{split}/{number:05}.{}.npy", array_name(array));
     let write = |array: &ArrayKind| {
         let name = name_of(array);
         let bytes = array.file(examples, radar, precision);
         let path = folder.join(&name);
         write_bytes(&path, &bytes).map_err(|source| DatasetError::File { path: path.clone(), source })?;
         let entry = FileEntry { name, bytes: bytes.len() as u64, sha256: sha256::of_bytes(&bytes) };
-        Ok((called(array).to_owned(), entry))
+        Ok((array_name(array).to_owned(), entry))
     };
     let written: Result<_, DatasetError> = arrays.par_iter().map(write).collect();
     if written.is_err() {

@@ -12,14 +12,14 @@ use half::f16;
 use num_complex::Complex64;
 
 impl ArrayKind {
-    /// Name of the array's files behind the shard's number, and the array's type, axes and shape. Small arrays and samples keep all bits: the thesis'
-    /// floor lies 230 dB below its echoes.
+    /// Name of the array in its files' names, and its type, axes and shape. Samples have double precision, since the thesis' floor is 230 dB below its
+    /// echoes.
     pub fn entry(self, radar: &Radar, precision: DatasetPrecision) -> (&'static str, ArrayEntry) {
         let Radar { samples, elements, end_elements, .. } = *radar;
         let cells = if precision == DatasetPrecision::Half { "<f2" } else { "<f4" };
         let (name, dtype, axes, shape): (_, _, &[&str], _) = match self {
             ArrayKind::Ends => ("ends", "<c16", &["end", "element", "sample"], vec![2, end_elements, samples]),
-            ArrayKind::Layout(heard) => ("heard", "<c16", &["element", "sample"], vec![heard, samples]),
+            ArrayKind::Layout(elements) => ("heard", "<c16", &["element", "sample"], vec![elements, samples]),
             ArrayKind::Fine => ("fine", cells, &PICTURE_AXES, vec![FINE_CHANNELS, samples, FINE_COLUMNS]),
             ArrayKind::Coarse => ("coarse", cells, &PICTURE_AXES, vec![COARSE_CHANNELS, samples, COARSE_COLUMNS]),
             ArrayKind::Rows => ("rows", cells, &["channel", "range_bin"], vec![ROW_CHANNELS, samples]),
@@ -32,7 +32,7 @@ impl ArrayKind {
         (name, ArrayEntry { dtype: dtype.to_owned(), axes, shape })
     }
 
-    /// The whole file of the array for these examples.
+    /// Bytes of the array's file for these examples.
     pub fn file(self, examples: &[Example], radar: &Radar, precision: DatasetPrecision) -> Vec<u8> {
         let (_, ArrayEntry { dtype, shape, .. }) = self.entry(radar, precision);
         let shape: Vec<usize> = [examples.len()].into_iter().chain(shape).collect();
@@ -40,7 +40,7 @@ impl ArrayKind {
         for example in examples {
             let input = |of: fn(&LiveInput) -> &[f32]| example.input.as_ref().map_or([].as_slice(), of);
             match self {
-                ArrayKind::Ends | ArrayKind::Layout(_) => put_heard(&mut bytes, example),
+                ArrayKind::Ends | ArrayKind::Layout(_) => put_samples(&mut bytes, example),
                 ArrayKind::Fine => put(&mut bytes, input(|input| &input.fine), precision),
                 ArrayKind::Coarse => put(&mut bytes, input(|input| &input.coarse), precision),
                 ArrayKind::Rows => put(&mut bytes, input(|input| &input.rows), precision),
@@ -56,7 +56,7 @@ impl ArrayKind {
 
 const PICTURE_AXES: [&str; 3] = ["channel", "range_bin", "column"];
 
-fn put_heard(bytes: &mut Vec<u8>, example: &Example) {
+fn put_samples(bytes: &mut Vec<u8>, example: &Example) {
     let scale = 10f64.powf(-example.gain);
     let mut put = |sample: &Complex64| {
         bytes.extend((sample.re * scale).to_le_bytes());
@@ -88,7 +88,7 @@ fn header(dtype: &str, shape: &[usize]) -> Vec<u8> {
     bytes
 }
 
-/// The nearest half-precision number, ties to even; larger numbers become the largest finite one.
+/// The nearest half-precision number, ties to even. Numbers out of its range become the largest finite one.
 fn half_of(value: f32) -> f16 {
     f16::from_f32(value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32()))
 }
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_too_large_is_the_largest_half() {
+    fn numbers_out_of_range_become_the_largest_half() {
         let halves = [1e9, f32::INFINITY, -1e9, 0.1].map(half_of);
         assert_eq!(halves.map(f16::to_bits), [0x7bff, 0x7bff, 0xfbff, 0x2e66]);
         assert!(half_of(f32::NAN).is_nan());

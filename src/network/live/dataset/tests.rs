@@ -49,7 +49,7 @@ fn an_example_on_disk_is_the_example() {
 }
 
 #[test]
-fn the_manifest_knows_every_file() {
+fn the_manifest_lists_every_file() {
     let folder = tempfile::tempdir().unwrap();
     let request = DatasetRequest { parts: vec![ExamplePart::Ends], precision: DatasetPrecision::Half, ..request() };
     let manifest = write(folder.path(), &request, &Task::default()).unwrap();
@@ -67,7 +67,7 @@ fn the_manifest_knows_every_file() {
 }
 
 #[test]
-fn requests_that_cannot_be_are_told() {
+fn impossible_requests_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let told = |request: DatasetRequest| write(folder.path(), &request, &Task::default()).unwrap_err().to_string();
     assert!(told(DatasetRequest { kinds: Vec::new(), ..request() }).contains("nothing to write"));

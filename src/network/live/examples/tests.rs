@@ -12,7 +12,7 @@ fn decades(example: &Example) -> &Array2<f32> {
 }
 
 #[test]
-fn an_example_does_not_depend_on_what_was_asked_before() {
+fn an_example_does_not_depend_on_earlier_calls() {
     let floors = Floors::Thermal { share: 0.5, from: Decibels(10.0), to: Decibels(60.0) };
     let task = Task::default();
     let first = examples(1, floors).example(7, &task).unwrap();

@@ -1,32 +1,32 @@
 //! The table `[recording]` of a recording's TOML.
 
-use super::{AxisKind, Calibration, Capture, Chirp, Fault};
+use super::{AxisKind, Calibration, Capture, ChirpChoice, Fault};
 use crate::radar::{End, Radar};
 use serde::Deserialize;
 use std::path::Path;
 
-/// The keys of the table; `check` holds them to the radar.
+/// The keys of the table.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Table {
+pub(super) struct RecordingTable {
     pub file: String,
     pub array: Option<String>,
     pub first: Option<String>,
     pub last: Option<String>,
     pub axes: Option<Vec<AxisKind>>,
-    pub chirp: Option<Chirp>,
+    pub chirp: Option<ChirpChoice>,
     pub frame: Option<usize>,
     /// Number of transmitters that send in turn along the axis of chirps.
     pub transmitters_in_turn: Option<usize>,
-    /// Transmitters and receivers that form the line of elements; all where nothing is said.
+    /// Indices of the transmitters and receivers that form the line of elements; all where the key is missing.
     pub transmitters_taken: Option<Vec<usize>>,
     pub receivers_taken: Option<Vec<usize>>,
     #[serde(default)]
-    elements: Covers,
+    elements: CoveredElements,
     #[serde(default)]
     pub missing: Vec<usize>,
     pub range_metres: Option<f64>,
-    /// Whether the samples are conjugated: format 1 alone.
+    /// Whether the samples are conjugated; only in format 1.
     pub conjugate: Option<bool>,
     pub carrier_at: Option<CarrierAt>,
     pub beat_sign: Option<BeatSign>,
@@ -36,20 +36,20 @@ pub(super) struct Table {
     #[serde(default)]
     pub calibration: Calibration,
     pub capture: Option<Capture>,
-    /// Whether the text gives places of antennas.
+    /// Whether the table `[radar]` has places of antennas.
     #[serde(skip)]
-    pub has_places: bool,
+    pub has_antenna_places: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Covers {
+pub(super) enum CoveredElements {
     #[default]
     All,
     Ends,
 }
 
-/// Place of the frequency `radar.carrier_hz` on the chirp.
+/// The sample at which the chirp has the frequency `radar.carrier_hz`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum CarrierAt {
@@ -57,18 +57,16 @@ pub(super) enum CarrierAt {
     Middle,
 }
 
-/// The sign of the beat's phase as samples go on, for an echo that is farther than the radar itself.
+/// Sign of the beat frequencies of echoes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub(super) enum BeatSign {
-    /// Echoes stand at positive frequencies.
     #[serde(rename = "+")]
     Positive,
-    /// Echoes stand at negative frequencies.
     #[serde(rename = "-")]
     Negative,
 }
 
-/// Direction of the frequency from sample to sample.
+/// Direction in which the chirp's frequency changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Sweep {
@@ -77,8 +75,8 @@ pub(super) enum Sweep {
     Down,
 }
 
-impl Table {
-    /// Checks that the keys of the TOML agree with each other and with `radar`.
+impl RecordingTable {
+    /// Checks `range_metres` and `missing` against `radar`.
     pub fn check(&self, radar: &Radar) -> Result<(), Fault> {
         let unfit = match (radar.samples, self.range_metres) {
             (1, None) => {
@@ -96,7 +94,7 @@ impl Table {
             return Err(Fault::key("recording.range_metres", found, expected));
         }
         let mut may_miss = vec![false; radar.elements];
-        self.covered(radar).into_iter().for_each(|n| may_miss[n] = true);
+        self.covered_elements(radar).into_iter().for_each(|n| may_miss[n] = true);
         for element in &self.missing {
             if !may_miss.get_mut(*element).is_some_and(std::mem::take) {
                 let expected = format!("elements that the file is to hold, each once, below {}", radar.elements);
@@ -106,8 +104,8 @@ impl Table {
         Ok(())
     }
 
-    /// Chooses another frame than the text's.
-    pub fn look_at(&mut self, frame: Option<u64>) {
+    /// Replaces the frame of the text by `frame`; `None` keeps it.
+    pub fn select_frame(&mut self, frame: Option<u64>) {
         match (&mut self.capture, frame) {
             (_, None) => {}
             (Some(capture), Some(frame)) => capture.frame = frame as usize,
@@ -118,32 +116,32 @@ impl Table {
         }
     }
 
-    /// Whether the phase of an echo rises from sample to sample of the file.
+    /// Whether an echo's phase rises from sample to sample of the file.
     pub fn beat_rises(&self) -> bool {
         self.beat_sign != Some(BeatSign::Negative)
     }
 
-    /// Elements of the whole array that the file should hold, in its order.
-    pub fn covered(&self, radar: &Radar) -> Vec<usize> {
+    /// Elements of the whole array whose samples the file should hold, in its order.
+    pub fn covered_elements(&self, radar: &Radar) -> Vec<usize> {
         match self.covers() {
-            Covers::All => (0..radar.elements).collect(),
-            Covers::Ends => End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).collect(),
+            CoveredElements::All => (0..radar.elements).collect(),
+            CoveredElements::Ends => End::BOTH.into_iter().flat_map(|end| radar.end_range(end)).collect(),
         }
     }
 
-    /// The elements whose samples the file holds.
-    pub fn covers(&self) -> Covers {
-        if self.first.is_some() { Covers::Ends } else { self.elements }
+    /// Whether the file should hold all elements or the two ends.
+    pub fn covers(&self) -> CoveredElements {
+        if self.first.is_some() { CoveredElements::Ends } else { self.elements }
     }
 
-    /// Whether the file counts transmitters and receivers whose places the text gives: the places then give each element's pair.
+    /// Whether the rows of the file are pairs of transmitters and receivers whose places the text has.
     pub fn counts_pairs(&self) -> bool {
-        let has_both = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
+        let has_pairs = |axes: &Vec<AxisKind>| axes.contains(&AxisKind::Transmitter);
         let in_turn = self.transmitters_in_turn.is_some();
-        self.has_places && (self.capture.is_some() || in_turn || self.axes.as_ref().is_some_and(has_both))
+        self.has_antenna_places && (self.capture.is_some() || in_turn || self.axes.as_ref().is_some_and(has_pairs))
     }
 
-    /// Ending of the data file's name, in small letters, without the dot.
+    /// Extension of the data file in lower case, without the dot.
     pub fn extension(&self) -> String {
         Path::new(&self.file).extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
     }

@@ -1,4 +1,4 @@
-//! Echoes at a block of elements: points, whose paths are computed where they are needed, and paths computed before.
+//! Echoes at a block of elements: points, whose paths are computed on request, and bodies, whose paths are computed at the beginning.
 
 use super::path::{PairBlocks, Path};
 use super::phase::{EchoLanes, EchoModel};
@@ -7,17 +7,17 @@ use crate::scattering::{PathEcho, Sources};
 use crate::scene::Reflector;
 
 /// Echoes at a block of pairs, in a fixed order: the points first, then the paths.
-pub(super) struct HeardEchoes<'a, const W: usize> {
+pub(super) struct BlockEchoes<'a, const W: usize> {
     model: &'a EchoModel,
     pairs: PairBlocks<W>,
     points: &'a [Reflector],
     pub paths: Vec<Path<W>>,
 }
 
-impl<'a, const W: usize> HeardEchoes<'a, W> {
+impl<'a, const W: usize> BlockEchoes<'a, W> {
     /// The echoes of `sources` at the pairs of lanes 0, 1 and so on.
     pub fn new(model: &'a EchoModel, sources: Sources<'a>, pair: impl Fn(usize) -> Pair) -> Self {
-        HeardEchoes { model, paths: paths(sources, &pair), pairs: PairBlocks::new(pair), points: sources.points }
+        BlockEchoes { model, paths: paths(sources, &pair), pairs: PairBlocks::new(pair), points: sources.points }
     }
 
     #[inline(always)]
@@ -29,7 +29,7 @@ impl<'a, const W: usize> HeardEchoes<'a, W> {
     pub fn echo<const FMA: bool>(&self, index: usize) -> EchoLanes<W> {
         match self.points.get(index) {
             Some(point) => self.model.echo_lanes::<W, FMA>(self.pairs, point),
-            None => self.model.heard::<W, FMA>(self.paths[index - self.points.len()]),
+            None => self.model.of_path::<W, FMA>(self.paths[index - self.points.len()]),
         }
     }
 }
@@ -45,9 +45,9 @@ fn paths<const W: usize>(sources: Sources<'_>, pair: impl Fn(usize) -> Pair) -> 
         echoes
     });
     let path = |index: usize| {
-        let heard = lanes.iter().find(|echoes| echoes[index].is_heard())?;
-        // A lane without the echo takes the range of another lane: similar ranges are cheaper.
-        let range = |echo: &PathEcho| if echo.is_heard() { echo.range_metres } else { heard[index].range_metres };
+        let first = lanes.iter().find(|echoes| echoes[index].is_heard())?;
+        // A lane without the echo has the range of another lane: similar ranges are cheaper.
+        let range = |echo: &PathEcho| if echo.is_heard() { echo.range_metres } else { first[index].range_metres };
         let ranges = std::array::from_fn(|lane| range(&lanes[lane][index]));
         Some(Path::new(ranges, std::array::from_fn(|lane| lanes[lane][index].amplitude)))
     };
