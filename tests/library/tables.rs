@@ -28,7 +28,7 @@ fn tree(root: &Path) {
     let sha256 =
         apertura::methods::by_name("live").unwrap().weights(&apertura::radar::Radar::default()).unwrap().sha256;
     let floor = std::fs::read_to_string(root.join("src/signal/floor.rs")).unwrap();
-    let floor = floor.lines().find_map(|line| line.strip_prefix("const THESIS_ROUNDING: f64 = ")).unwrap();
+    let floor = floor.lines().find_map(|line| line.strip_prefix("const THESIS_ROUNDING_FACTOR: f64 = ")).unwrap();
     let floor = floor.trim_end_matches(';').replace(' ', "");
     let table = |name: &str, options: &str, made: &str| {
         format!(
@@ -61,7 +61,7 @@ fn other_weights_or_another_floor_make_tables_stale() {
     assert!(!said.contains("table floor"), "{said}");
 
     std::fs::write(&weights, shipped).unwrap();
-    std::fs::write(&floor, "const THESIS_ROUNDING: f64 = 1.5 / 12.0;").unwrap();
+    std::fs::write(&floor, "const THESIS_ROUNDING_FACTOR: f64 = 1.5 / 12.0;").unwrap();
     let said = complaints(root);
     assert!(said.contains("table both was") && said.contains("table floor was"), "{said}");
     assert!(!said.contains("table weights"), "{said}");

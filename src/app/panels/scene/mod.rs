@@ -99,9 +99,7 @@ pub fn show(ui: &mut Ui, mut input: Input<'_>, state: &mut State) -> Vec<Command
         let seconds = moved.is_some().then_some(state.timeline.seconds);
         elsewhere(ui, &painter, canvas, &scene, seconds, input.hint.as_ref());
     }
-    if let Some(hint) = &input.hint {
-        hint.draw(&painter, canvas);
-    }
+    input.hint.iter().for_each(|hint| hint.draw(&painter, canvas));
     let is_empty = editor.scene().objects.is_empty() && input.found.is_empty() && input.hint.is_none();
     say(ui, &painter, rect, is_empty, input.error);
     if let Some(hit) = editor.dragged().or(hovered) {
