@@ -15,8 +15,8 @@ export const AUTOSAVE = "/storage/autosave.toml";
 export const DESK = { width: 1440, height: 900 };
 
 // Where things are in a window of 1440 x 900: the post of the default scene, and a place beside it.
-export const POST = { x: 263, y: 224 };
-export const BESIDE = { x: 320, y: 240 };
+export const POST = { x: 263, y: 245 };
+export const BESIDE = { x: 320, y: 261 };
 
 export const launch = () => chromium.launch({ executablePath, args: [...quiet, ...software] });
 export const launchWithoutGraphics = () =>

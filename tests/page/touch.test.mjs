@@ -53,9 +53,9 @@ test("on a telephone a point is dragged in the column", async () => {
   const { context, page, told } = await open(browser, "", { options });
   const touch = await fingers(context, page);
   // The post, as the scene lies in the first third of the column.
-  await touch("touchStart", [198, 181]);
+  await touch("touchStart", [198, 201]);
   for (let step = 1; step <= 5; step += 1) {
-    await touch("touchMove", [198 + step * 8, 181 + step * 4]);
+    await touch("touchMove", [198 + step * 8, 201 + step * 4]);
     await page.waitForTimeout(100);
   }
   await touch("touchEnd");
