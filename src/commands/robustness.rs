@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 /// Measure methods on arrays with element errors: gain, phase and place drawn for each antenna
 ///
-/// Prints a line a method and scale: the standard deviations of the errors, and means over the scenes. Maps are compared with that of the array
-/// without errors. Every scale has the same scenes, and the same draw of errors times the scale.
+/// Prints a table. Its rows are methods and scales, with the standard deviations of the errors and means over the scenes. Maps are compared with
+/// that of the array without errors. Every scale has the same scenes, and the same draw of errors times the scale.
 ///
 /// With --json one object is printed: set, count, seed, floor, layout (null for the two ends), and rows with method, scale, gain_decibels,
 /// phase_degrees, position_millimetres, squared_error, detection and false_alarm; the last three are objects of mean, standard_error and median.

@@ -50,7 +50,7 @@ impl Default for ChirpChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Join {
-    /// The complex mean: static echoes keep their amplitude, moving ones lose it.
+    /// The complex mean of the chirps. Echoes at rest keep their amplitude, and moving ones cancel.
     Mean,
     /// The strong Doppler cells of each range bin. The phase that a moving echo gains between transmitters that send in turn is removed.
     Strongest,

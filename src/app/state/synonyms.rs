@@ -55,7 +55,7 @@ fn file_words(purpose: Purpose) -> &'static str {
 fn view_words(command: &ViewCommand) -> &'static str {
     match command {
         ViewCommand::Colours(_) => "colormap colourmap color palette gray heat",
-        ViewCommand::ToggleProjection | ViewCommand::SetProjection(_) => "polar xy coordinates morph bend projection",
+        ViewCommand::ToggleProjection | ViewCommand::SetProjection(_) => "polar xy coordinates bend projection",
         ViewCommand::ToggleUnits | ViewCommand::SetUnits(_) => "decibel lambda scale logarithmic units",
         ViewCommand::ToggleOneScale => "level weaker stronger common absolute",
         ViewCommand::ToggleFineColumns => "smooth interpolate padding coarse pixels few elements",

@@ -175,12 +175,12 @@ pub fn member_box<T: Ord>(ui: &mut Ui, name: impl Into<String>, value: T, chosen
     response
 }
 
-/// A box for each of `kinds` with its description; `chosen` has the ticked ones.
-pub fn kind_boxes(ui: &mut Ui, kinds: impl IntoIterator<Item = Kind>, chosen: &mut Vec<Kind>) {
+/// A box for each kind of scenes with its description; `chosen` has the ticked ones.
+pub fn kind_boxes(ui: &mut Ui, chosen: &mut Vec<Kind>) {
     let room = SENTENCE_WIDTH.min((ui.ctx().content_rect().width() - 220.0).max(120.0));
     let mut ticked: BTreeSet<Kind> = chosen.iter().copied().collect();
     Grid::new("kinds").num_columns(2).spacing([10.0, 3.0]).show(ui, |ui| {
-        for kind in kinds {
+        for kind in Kind::all() {
             member_box(ui, kind_name(&kind), kind, &mut ticked);
             ui.scope(|ui| {
                 ui.set_width(room);
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn a_menu_with_ticks_stays_open_and_each_kind_has_its_sentence() {
         let draw = |ui: &mut Ui, chosen: &mut Vec<Kind>| {
-            ticking_menu(ui, "Scenes", |ui| kind_boxes(ui, Kind::all(), chosen));
+            ticking_menu(ui, "Scenes", |ui| kind_boxes(ui, chosen));
         };
         let mut menu = Harness::builder().with_size([800.0, 900.0]).build_ui_state(draw, Vec::new());
         menu.clicks(&["Scenes"]);

@@ -17,7 +17,7 @@ pub(super) struct PrunedFft<T: Real, const W: usize> {
     twiddles: Vec<Vec<ComplexLanes<T, W>>>,
     small: LaneFft<T>,
     points: usize,
-    /// Window and plain transform, for lengths that do not factor so.
+    /// A window and a full transform, for lengths without such factors.
     plain: Option<(Vec<T>, Arc<dyn Fft<T>>)>,
 }
 

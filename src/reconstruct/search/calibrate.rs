@@ -41,7 +41,7 @@ const MAX_ROUNDING_ENERGY_RATIO: f64 = 1e-6;
 /// over the residual of the gains.
 const NOISE_MARGIN_RATIO: f64 = 3.0;
 
-/// Least gain of an object to which elements are fitted, over the largest.
+/// Minimum gain of the objects that the elements' gains are fitted to, over the largest, as a ratio.
 const MIN_GAIN_RATIO: f64 = 0.03;
 
 /// Ridge on objects' gains ([`Limits::ridge`]).

@@ -47,7 +47,7 @@ fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
 fn choose(ui: &mut Ui, input: &Input<'_>, choice: &mut FailureChoice, asked: &mut Vec<Command>) {
     method_menu(ui, input.state, &mut choice.methods, "Methods to try");
     let menu = ticking_menu(ui, &format!("Kinds: {}", kind_names(&choice.kinds, choice.own.then_some("own"))), |ui| {
-        kind_boxes(ui, Kind::all(), &mut choice.kinds);
+        kind_boxes(ui, &mut choice.kinds);
         ui.separator();
         let folder = input.own.map_or_else(|| "none is chosen".to_owned(), |path| path.display().to_string());
         ui.checkbox(&mut choice.own, "own scenes").on_hover_text(format!("The folder of your own scenes: {folder}"));

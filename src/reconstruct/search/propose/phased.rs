@@ -57,7 +57,7 @@ pub struct PeakPowers([Vec<f64>; 2]);
 pub struct PlacePower {
     /// Power of the beam towards the place over that of the strongest beam in the same range bin, 0 to 1.
     pub part: f64,
-    /// Power of that strongest beam times `R^4`, so that it doesn't depend on the range of a reflector.
+    /// Power of that beam times the fourth power of the range: the same for equal reflectors at all ranges.
     pub compensated_power: f64,
 }
 
