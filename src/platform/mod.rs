@@ -1,5 +1,5 @@
 //! The differences between a desktop and a page in a browser: clock, threads, files, file dialogs, storage, fonts of pictures, and opening of the window.
-//! `desktop` and `page` have the same functions. No other room asks whether it runs in a browser at compile time.
+//! `desktop` and `page` have the same functions. Only this room and the SIMD kernels are compiled differently for `target_arch`.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub mod console;

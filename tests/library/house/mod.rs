@@ -206,13 +206,14 @@ fn imports_are_resolved() {
 fn tests() -> Vec<(String, bool)> {
     let mut found = Vec::new();
     for path in ["src", "tests"].iter().flat_map(|folder| rust_files(&root().join(folder))) {
+        let file = path.strip_prefix(root()).unwrap().display();
         let (mut is_test, mut is_ignored) = (false, false);
         for line in std::fs::read_to_string(&path).unwrap().lines().map(str::trim) {
             is_test |= line == "#[test]";
             is_ignored |= line.starts_with("#[ignore");
             if let Some((name, _)) = line.strip_prefix("fn ").and_then(|rest| rest.split_once('(')) {
                 if std::mem::take(&mut is_test) {
-                    found.push((format!("{}::{name}", path.display()), is_ignored));
+                    found.push((format!("{file}::{name}"), is_ignored));
                 }
                 is_ignored = false;
             }
