@@ -129,7 +129,7 @@ view! {
     show_found: bool = false,
     show_fields_of_view: bool = false,
     show_theory: bool = false,
-    /// Whether every object is marked by its fate in the output.
+    /// Whether every object is marked by the verdict on it in the output.
     show_kinds: bool = false,
 }
 

@@ -119,7 +119,7 @@ impl Args {
         let detection = m.detection.map_or("-".to_owned(), |d| format!("{:.2} %", 100.0 * d));
         let mut text = format!("SE {:.1}, P_D {detection}, P_FA {:.2} %", m.squared_error, 100.0 * m.false_alarm);
         if self.measure != WorseningMeasure::SquaredError {
-            text += &format!("; {}", summary(&finding.failures));
+            text += &format!("; {}", summary(&finding.verdicts));
         }
         text
     }

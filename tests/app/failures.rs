@@ -87,8 +87,8 @@ fn the_worst_row_can_be_found_changed_kept() {
 
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     let missed = format!("{} missed", row.missed);
-    let fates = s.app.query_all_by_label_contains(&missed).count();
-    assert!(row.missed == 0 || fates == 2, "those of the row, and those of now: {fates}");
+    let verdicts = s.app.query_all_by_label_contains(&missed).count();
+    assert!(row.missed == 0 || verdicts == 2, "those of the row, and those of now: {verdicts}");
 
     let at = s.handle("point 1: move");
     s.drag(at, vec2(25.0, 10.0), 5);

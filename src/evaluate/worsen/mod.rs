@@ -11,8 +11,8 @@ mod wanted;
 pub use wanted::{Aim, Finding, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
 
 use super::Target;
-use super::failure::Failures;
 use super::trial::Trial;
+use super::verdict::OutputVerdicts;
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
@@ -107,13 +107,13 @@ impl WorseningSearch {
     ) -> Result<Finding, String> {
         let failed = |error| format!("{}: {error}", method.name());
         let answer = trial.ask(method, request).map_err(failed)?;
-        let failures = match self.measure {
-            WorseningMeasure::SquaredError => Failures::default(),
-            _ => trial.failures(&answer),
+        let verdicts = match self.measure {
+            WorseningMeasure::SquaredError => OutputVerdicts::default(),
+            _ => trial.verdicts(&answer),
         };
         let moves = start.objects.iter().zip(&scene.objects).map(|(a, b)| distance(a, b));
         let moved_metres = moves.fold(0.0, f64::max);
-        Ok(Finding { scene: scene.clone(), metrics: answer.metrics, failures, moved_metres, tries })
+        Ok(Finding { scene: scene.clone(), metrics: answer.metrics, verdicts, moved_metres, tries })
     }
 
     fn is_better(&self, found: &Finding, path: &[Finding]) -> bool {

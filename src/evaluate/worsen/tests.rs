@@ -56,7 +56,7 @@ fn a_repair_is_the_smallest_move_that_helps() {
     let found = run(&search(Aim::Repair, WorseningMeasure::Missed), 3.0);
     let (start, end) = found.ends().unwrap();
     let end = end.unwrap();
-    assert_eq!((start.failures.missed(), end.failures.missed()), (1, 0));
+    assert_eq!((start.verdicts.missed(), end.verdicts.missed()), (1, 0));
     // From 3.0 m to where the bin's middle is nearer than that of half the range, 2.44 m.
     assert!((0.5..0.75).contains(&end.moved_metres), "{}", end.moved_metres);
     assert!(found.path[1..].is_sorted_by(|a, b| a.moved_metres > b.moved_metres));

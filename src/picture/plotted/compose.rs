@@ -3,7 +3,7 @@
 use super::error::Composed;
 use super::{DetectedCells, Drawing, InputMap, Panels, PictureError, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
-use crate::evaluate::failure::Footprints;
+use crate::evaluate::verdict::Footprints;
 use crate::maps::cfar::{Cfar, DETECTED};
 use crate::maps::{LogMaps, Normalisation};
 use crate::picture::ColourMap;
@@ -96,7 +96,7 @@ pub fn compose(
     let detected = style.cfar.map(detect).transpose()?;
     let eta = style.eta.unwrap_or_else(|| method.eta_of(&output));
     let above = detected.as_ref().map_or_else(|| output.lambda.above(eta), |cells| cells.output.above(DETECTED));
-    let failures = Footprints::new(radar, scene, &target, scale).judge_cells(&target, &output.lambda, &above);
+    let verdicts = Footprints::new(radar, scene, &target, scale).judge_cells(&target, &output.lambda, &above);
     let panels = Panels {
         scene,
         found: None,
@@ -107,7 +107,7 @@ pub fn compose(
         output: &output.lambda,
         method: method.name(),
         etas: [eta, style.target_eta],
-        failures: Some(&failures),
+        verdicts: Some(&verdicts),
         detected: detected.as_ref(),
         colours: style.colours,
     };

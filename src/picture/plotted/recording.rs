@@ -90,7 +90,7 @@ fn panels(recording: &Recording, method: &dyn Reconstructor, style: &Style, form
         output: &output.lambda,
         method: method.name(),
         etas: [style.eta.unwrap_or_else(|| method.eta_of(&output)), style.target_eta],
-        failures: None,
+        verdicts: None,
         detected: detected.as_ref(),
         colours: style.colours,
     };

@@ -41,13 +41,13 @@ fn figures(ui: &mut Ui, row: &Row, now: Option<&Now>) {
         ui.label(format!("row: {}", super::cells::name(row)));
         let Row { squared_error, detection, false_alarm, .. } = *row;
         rates(ui, &Metrics { squared_error, detection, false_alarm });
-        ui.label(fates(row));
+        ui.label(verdicts(row));
         ui.end_row();
         match now {
-            Some(Now { method, metrics, fates }) => {
+            Some(Now { method, metrics, verdicts }) => {
                 ui.label(format!("now: {method}"));
                 rates(ui, metrics);
-                ui.label(fates.as_deref().unwrap_or_default());
+                ui.label(verdicts.as_deref().unwrap_or_default());
             }
             None => _ = ui.weak("now: …").on_hover_text("As soon as a panel shows the output"),
         }
@@ -64,7 +64,7 @@ fn rates(ui: &mut Ui, metrics: &Metrics) {
 }
 
 /// Text with the numbers of a row's found, missed, merged and shifted objects, and of its false alarms.
-fn fates(row: &Row) -> String {
+fn verdicts(row: &Row) -> String {
     let maybe = |count: Option<usize>, name: &str| count.filter(|n| *n > 0).map(|n| format!("{n} {name}"));
     let told = [row.found, Some(row.missed), row.merged, row.wrong_tooth].into_iter().sum::<Option<usize>>();
     let parts = [

@@ -214,9 +214,9 @@ pub enum ViewCommand {
     ToggleFieldsOfView,
     /// Switch the theory of the selected reflector on the maps.
     ToggleTheory,
-    /// Show the fate of every object in the output.
+    /// Show the verdict on every object in the output.
     MarkKinds,
-    /// Switch the fate of every object in the output.
+    /// Switch the verdict on every object in the output.
     ToggleKinds,
     SetSeveral(Box<Several>),
     SetCompare(Box<Compare>),
