@@ -41,7 +41,7 @@ mod trained;
 mod untrained;
 
 pub use answer::{Detection, Reconstruction, Request};
-pub use attempt::{Attempt, Refusal, Tried, Verdict};
+pub use attempt::{Attempt, AttemptVerdict, Proposal, Refusal};
 pub use baseline::Baseline;
 pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
