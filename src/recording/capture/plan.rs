@@ -166,11 +166,11 @@ fn layout(capture: &Capture) -> Result<Layout, Fault> {
         (None, None) => return Err(unfit("parts", "is missing", "one of lanes and parts")),
         (Some(_), Some(_)) => return Err(unfit("lanes", "stands beside parts", "one of lanes and parts")),
     };
-    let Capture { words, q_first, receivers, header_bytes, .. } = *capture;
+    let Capture { encoding, q_first, receivers, header_bytes, .. } = *capture;
     if header_bytes > MAX_COUNT {
         return Err(unfit("header_bytes", format!("is {header_bytes}"), "at most 65536"));
     }
-    Ok(Layout { words, parts, q_first, receivers, header_bytes, packets: false })
+    Ok(Layout { encoding, parts, q_first, receivers, header_bytes, packets: false })
 }
 
 /// Samples, receivers, chirps of a loop and loops of a frame.

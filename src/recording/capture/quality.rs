@@ -32,9 +32,9 @@ impl Quality {
     /// Counts zeros and saturated numbers in the bytes of chirp `n` of the frame.
     pub fn add_chirp(&mut self, n: usize, bytes: &[u8], layout: Layout) {
         self.zeros[n] = bytes.chunks_exact(MIN_ZERO_RUN_BYTES).any(|part| part.iter().all(|b| *b == 0));
-        let max = layout.words.max_value();
+        let max = layout.encoding.max_value();
         let at_end = |b: &&[u8]| {
-            let value = layout.words.number([b[0], b[1]]);
+            let value = layout.encoding.number([b[0], b[1]]);
             value == max || value == -max - 1
         };
         self.numbers += bytes.len() as u64 / 2;
@@ -84,7 +84,7 @@ impl Quality {
         });
         let part = self.saturated_count as f64 / self.numbers.max(1) as f64;
         let saturated = (part > MIN_SATURATED_PART).then(|| {
-            let (percent, max) = (100.0 * part, plan.layout.words.max_value());
+            let (percent, max) = (100.0 * part, plan.layout.encoding.max_value());
             format!(
                 "The receivers are saturated: {percent:.1} % of the numbers are {max} or {}, the ends of their type. Harmonics of strong echoes \
                  appear at multiples of their range.",

@@ -10,7 +10,7 @@ use super::marks::{HEADER_BYTES, Marks};
 use super::period::{Period, period};
 use super::spectrum::{Spectrum, correlation};
 use super::stream::Stream;
-use super::{Counts, Layout, Parts, ReceiverOrder, Words};
+use super::{Counts, Layout, NumberEncoding, Parts, ReceiverOrder};
 use ndarray::Array2;
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
@@ -113,10 +113,10 @@ pub(super) fn search<R: Read + Seek>(
 ) -> io::Result<(Vec<LikelyCounts>, bool)> {
     let bytes = sample_bytes(stream, marks, 4 * SEARCHED_NUMBERS)?;
     let chirp_bytes = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
-    let words = likely_words(&bytes);
+    let encoding = likely_encoding(&bytes);
     let mut all = Vec::new();
     for parts in Parts::ALL {
-        let layout = layout_of(words, parts);
+        let layout = layout_of(encoding, parts);
         let count = bytes.len() / parts.bytes();
         let numbers = layout.numbers(&bytes, count.min(SEARCHED_NUMBERS));
         if let Some(level) = spectrum_level(&numbers, parts == Parts::Real) {
@@ -273,8 +273,15 @@ fn peaks_repeat(logs: &[f64], shift: usize, least: f64) -> bool {
 }
 
 /// The layout of these encodings without headers, receivers one after another.
-fn layout_of(words: Words, parts: Parts) -> Layout {
-    Layout { words, parts, q_first: false, receivers: ReceiverOrder::OneAfterAnother, header_bytes: 0, packets: false }
+fn layout_of(encoding: NumberEncoding, parts: Parts) -> Layout {
+    Layout {
+        encoding,
+        parts,
+        q_first: false,
+        receivers: ReceiverOrder::OneAfterAnother,
+        header_bytes: 0,
+        packets: false,
+    }
 }
 
 /// The first `most` bytes of the samples, without headers.
@@ -291,12 +298,12 @@ fn sample_bytes<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>, mo
 }
 
 /// The encoding by which the numbers have the least variance. By a wrong one they jump between large and small values.
-fn likely_words(bytes: &[u8]) -> Words {
+fn likely_encoding(bytes: &[u8]) -> NumberEncoding {
     let words = || bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
     // By offset binary, saturated samples would be the smallest numbers. Small numbers come with the values next to them, saturated ones don't.
     let count = |of: [u16; 2]| words().filter(|w| of.contains(w)).count();
     let is_saturated = count([0x7fff, 0x8000]) > SATURATION_RATIO * count([0x7ffe, 0x8001]).max(1);
-    let power = |of: Words| {
+    let power = |of: NumberEncoding| {
         let counts = move |b: &&[u8]| !is_saturated || ![[0xff, 0x7f], [0x00, 0x80]].contains(&[b[0], b[1]]);
         let numbers = || bytes.chunks_exact(2).filter(counts).map(move |b| f64::from(of.number([b[0], b[1]])));
         let count = numbers().count().max(1) as f64;
@@ -304,15 +311,16 @@ fn likely_words(bytes: &[u8]) -> Words {
         numbers().map(|v| (v - mean).powi(2)).sum::<f64>() / count
     };
     let [plain, offset, swapped, twelve] =
-        [Words::Int16, Words::OffsetBinary, Words::BigEndian, Words::TwelveBits].map(power);
+        [NumberEncoding::Int16, NumberEncoding::OffsetBinary, NumberEncoding::BigEndian, NumberEncoding::TwelveBits]
+            .map(power);
     if words().all(|w| w < 0x1000) && twelve < 0.5 * plain {
-        Words::TwelveBits
+        NumberEncoding::TwelveBits
     } else if offset < 0.5 * plain && offset <= swapped {
-        Words::OffsetBinary
+        NumberEncoding::OffsetBinary
     } else if swapped < 0.5 * plain {
-        Words::BigEndian
+        NumberEncoding::BigEndian
     } else {
-        Words::Int16
+        NumberEncoding::Int16
     }
 }
 

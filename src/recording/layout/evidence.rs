@@ -4,7 +4,7 @@
 //! spectrum is the mean of its logarithm (Whittle, 1953), and every layout holds the same bytes.
 
 use super::spectrum::Spectrum;
-use super::{Counts, Layout, Parts, ReceiverOrder, Words};
+use super::{Counts, Layout, NumberEncoding, Parts, ReceiverOrder};
 use crate::recording::RadarProfile;
 use serde::Serialize;
 
@@ -191,10 +191,10 @@ pub(in crate::recording) fn config_claims(layout: &Layout, profile: &RadarProfil
 
 /// Log-odds of a layout by its frequency among captures.
 pub(super) fn usual(layout: &Layout) -> f64 {
-    let words = match layout.words {
-        Words::Int16 => 0.0,
-        Words::OffsetBinary | Words::TwelveBits => -1.0,
-        Words::BigEndian => -2.0,
+    let encoding = match layout.encoding {
+        NumberEncoding::Int16 => 0.0,
+        NumberEncoding::OffsetBinary | NumberEncoding::TwelveBits => -1.0,
+        NumberEncoding::BigEndian => -2.0,
     };
     let parts = match layout.parts {
         Parts::Pairs | Parts::TwoLanes => 0.0,
@@ -203,5 +203,5 @@ pub(super) fn usual(layout: &Layout) -> f64 {
     };
     let order = if layout.q_first { -0.5 } else { 0.0 };
     let is_one_lane_each = layout.parts != Parts::FourLanes || layout.receivers == ReceiverOrder::Interleaved;
-    words + parts + order - if is_one_lane_each { 0.0 } else { FOUR_LANES_LOG_ODDS }
+    encoding + parts + order - if is_one_lane_each { 0.0 } else { FOUR_LANES_LOG_ODDS }
 }

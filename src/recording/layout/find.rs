@@ -5,7 +5,7 @@ use super::evidence::{Evidence, EvidenceKind, FileFacts, evidence};
 use super::marks::{HEADER_BYTES, Marks, marks};
 use super::spectrum::Spectrum;
 use super::stream::Stream;
-use super::{Counts, Layout, Parts, ReceiverOrder, Words};
+use super::{Counts, Layout, NumberEncoding, Parts, ReceiverOrder};
 use crate::recording::{Fault, RadarProfile};
 use ndarray::Array2;
 use num_complex::Complex64;
@@ -215,11 +215,14 @@ impl Candidates<'_> {
                 continue;
             }
             let has_twelve_bits = are_twelve_bits(&chirps);
-            for words in Words::ALL.into_iter().filter(|w| *w != Words::TwelveBits || has_twelve_bits) {
+            for encoding in
+                NumberEncoding::ALL.into_iter().filter(|w| *w != NumberEncoding::TwelveBits || has_twelve_bits)
+            {
                 for order in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
                     if order == ReceiverOrder::OneAfterAnother || receivers > 1 {
                         let (header_bytes, packets) = (self.header_bytes, stream.has_packets());
-                        let layout = Layout { words, parts, q_first: false, receivers: order, header_bytes, packets };
+                        let layout =
+                            Layout { encoding, parts, q_first: false, receivers: order, header_bytes, packets };
                         self.add_layout(layout, &chirps, &mut all);
                     }
                 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The encoding of a number in 16 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Words {
+pub enum NumberEncoding {
     /// Two's complement, the low byte first.
     #[default]
     Int16,
@@ -20,32 +20,33 @@ pub enum Words {
     TwelveBits,
 }
 
-impl Words {
+impl NumberEncoding {
     /// All of them.
-    pub const ALL: [Words; 4] = [Words::Int16, Words::OffsetBinary, Words::BigEndian, Words::TwelveBits];
+    pub const ALL: [NumberEncoding; 4] =
+        [NumberEncoding::Int16, NumberEncoding::OffsetBinary, NumberEncoding::BigEndian, NumberEncoding::TwelveBits];
 
     /// Decodes the two bytes of a number.
     pub fn number(self, bytes: [u8; 2]) -> i16 {
         match self {
-            Words::Int16 => i16::from_le_bytes(bytes),
-            Words::OffsetBinary => (u16::from_le_bytes(bytes) ^ 0x8000) as i16,
-            Words::BigEndian => i16::from_be_bytes(bytes),
-            Words::TwelveBits => ((u16::from_le_bytes(bytes) << 4) as i16) >> 4,
+            NumberEncoding::Int16 => i16::from_le_bytes(bytes),
+            NumberEncoding::OffsetBinary => (u16::from_le_bytes(bytes) ^ 0x8000) as i16,
+            NumberEncoding::BigEndian => i16::from_be_bytes(bytes),
+            NumberEncoding::TwelveBits => ((u16::from_le_bytes(bytes) << 4) as i16) >> 4,
         }
     }
 
     /// The largest number of the encoding.
     pub fn max_value(self) -> i16 {
-        if self == Words::TwelveBits { 2047 } else { i16::MAX }
+        if self == NumberEncoding::TwelveBits { 2047 } else { i16::MAX }
     }
 
     /// The encoding, as a part of a sentence.
     pub fn description(self) -> &'static str {
         match self {
-            Words::Int16 => "16-bit integers, low byte first",
-            Words::OffsetBinary => "16-bit integers with bit 15 flipped (offset binary)",
-            Words::BigEndian => "16-bit integers, high byte first",
-            Words::TwelveBits => "12-bit integers in 16 bits",
+            NumberEncoding::Int16 => "16-bit integers, low byte first",
+            NumberEncoding::OffsetBinary => "16-bit integers with bit 15 flipped (offset binary)",
+            NumberEncoding::BigEndian => "16-bit integers, high byte first",
+            NumberEncoding::TwelveBits => "12-bit integers in 16 bits",
         }
     }
 }
@@ -111,7 +112,7 @@ pub enum ReceiverOrder {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Layout {
     /// Encoding of numbers in 16 bits.
-    pub words: Words,
+    pub encoding: NumberEncoding,
     /// Order of real and imaginary parts.
     pub parts: Parts,
     /// Imaginary parts come first.
@@ -156,7 +157,7 @@ impl Layout {
     pub(super) fn numbers(&self, bytes: &[u8], count: usize) -> Vec<Complex64> {
         let word = |at: usize| {
             let bytes = bytes.get(2 * at..2 * at + 2).map_or([0; 2], |b| [b[0], b[1]]);
-            f64::from(self.words.number(bytes))
+            f64::from(self.encoding.number(bytes))
         };
         if self.parts == Parts::Real {
             return (0..count).map(|n| Complex64::new(word(n), 0.0)).collect();

@@ -42,11 +42,11 @@ fn seen(second: f64) -> Vec<Vec<Complex64>> {
 
 fn written(layout: &Layout, chirps: &[Vec<Complex64>]) -> Vec<u8> {
     let mut out = Vec::new();
-    let word = |v: f64| match layout.words {
-        Words::Int16 => (v.round() as i16).to_le_bytes(),
-        Words::OffsetBinary => ((v.round() as i16) as u16 ^ 0x8000).to_le_bytes(),
-        Words::BigEndian => (v.round() as i16).to_be_bytes(),
-        Words::TwelveBits => ((v.round() as i16) as u16 & 0x0fff).to_le_bytes(),
+    let word = |v: f64| match layout.encoding {
+        NumberEncoding::Int16 => (v.round() as i16).to_le_bytes(),
+        NumberEncoding::OffsetBinary => ((v.round() as i16) as u16 ^ 0x8000).to_le_bytes(),
+        NumberEncoding::BigEndian => (v.round() as i16).to_be_bytes(),
+        NumberEncoding::TwelveBits => ((v.round() as i16) as u16 & 0x0fff).to_le_bytes(),
     };
     for chirp in chirps {
         out.extend(marks::MAGIC.iter().chain(&[0; 56]).take(layout.header_bytes));
@@ -66,12 +66,12 @@ fn written(layout: &Layout, chirps: &[Vec<Complex64>]) -> Vec<u8> {
     out
 }
 
-fn layout(words: Words, parts: Parts, q_first: bool, receivers: ReceiverOrder) -> Layout {
-    Layout { words, parts, q_first, receivers, header_bytes: 0, packets: false }
+fn layout(encoding: NumberEncoding, parts: Parts, q_first: bool, receivers: ReceiverOrder) -> Layout {
+    Layout { encoding, parts, q_first, receivers, header_bytes: 0, packets: false }
 }
 
 fn in_order(parts: Parts) -> Layout {
-    layout(Words::Int16, parts, false, ReceiverOrder::OneAfterAnother)
+    layout(NumberEncoding::Int16, parts, false, ReceiverOrder::OneAfterAnother)
 }
 
 fn found(bytes: Vec<u8>, profile: Option<&RadarProfile>) -> Found {
@@ -80,11 +80,11 @@ fn found(bytes: Vec<u8>, profile: Option<&RadarProfile>) -> Found {
 
 #[test]
 fn every_layout_is_found_by_the_spectrum_alone() {
-    for words in Words::ALL {
+    for encoding in NumberEncoding::ALL {
         for parts in [Parts::Pairs, Parts::TwoLanes, Parts::FourLanes] {
             for q_first in [false, true] {
                 for receivers in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
-                    let right = layout(words, parts, q_first, receivers);
+                    let right = layout(encoding, parts, q_first, receivers);
                     let found = found(written(&right, &chirps()), Some(&profile("")));
                     assert_eq!(found.best().layout, right, "{:#?}", found.sentences());
                     assert_ne!(found.certainty(), Certainty::Open, "{:#?}", found.sentences());
@@ -108,7 +108,7 @@ fn complex_and_real_samples_are_judged_by_the_same_bytes() {
 
 #[test]
 fn four_lanes_carry_a_receiver_each() {
-    let order = |receivers| evidence::usual(&layout(Words::Int16, Parts::FourLanes, false, receivers));
+    let order = |receivers| evidence::usual(&layout(NumberEncoding::Int16, Parts::FourLanes, false, receivers));
     let told = order(ReceiverOrder::Interleaved) - order(ReceiverOrder::OneAfterAnother);
     assert!(told > 16.0, "more than a .cfg's word for the other order: {told}");
 }
@@ -165,7 +165,7 @@ fn packets_are_read_with_zeros_for_those_lost() {
 fn samples_with_receivers_are_found_without_a_cfg() {
     let three: Vec<Vec<Complex64>> = (0..5).flat_map(|_| chirps()).collect();
     for receivers in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
-        let right = layout(Words::Int16, Parts::TwoLanes, false, receivers);
+        let right = layout(NumberEncoding::Int16, Parts::TwoLanes, false, receivers);
         let found = found(written(&right, &three), None);
         let Candidate { layout, counts, .. } = found.best();
         let read = (layout, counts.samples, counts.receivers, counts.chirps);

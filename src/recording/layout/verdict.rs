@@ -123,6 +123,6 @@ impl Candidate {
         };
         let real = if self.layout.parts == Parts::Real { "real " } else { "" };
         let chirps = if chirps == 1 { String::new() } else { format!(", {chirps} chirps a loop") };
-        format!("{}, {parts}, {order}, {samples} {real}samples a chirp{chirps}", self.layout.words.description())
+        format!("{}, {parts}, {order}, {samples} {real}samples a chirp{chirps}", self.layout.encoding.description())
     }
 }

@@ -254,7 +254,7 @@ fn capture(best: &Candidate, files: &Files, profile: Option<&RadarProfile>) -> C
         config: files.config.as_ref().map(named),
         more_files: files.more.iter().map(named).collect(),
         chips: files.chips.iter().map(named).collect(),
-        words: layout.words,
+        encoding: layout.encoding,
         parts: Some(layout.parts),
         q_first: layout.q_first,
         receivers: layout.receivers,
