@@ -202,6 +202,6 @@ fn profile_of(table: &RecordingTable, path: &Path, open: Open<'_>) -> Result<Opt
     let read = read().map_err(|fault| fault.of(&folder_of(path).join(config)))?;
     let mut profile = read.on_chips(1 + capture.chips.len());
     // A layout that contradicts the .cfg follows the samples.
-    profile.real = capture.parts.map_or(profile.real, |parts| parts == layout::Parts::Real);
+    profile.real = capture.part_order.map_or(profile.real, |part_order| part_order == layout::PartOrder::Real);
     Ok(Some(profile))
 }

@@ -5,7 +5,7 @@ use super::quality::Quality;
 use super::table::{Capture, Treatment};
 use crate::recording::Fault;
 use crate::recording::analytic::{analytic_lanes, subtract_mean};
-use crate::recording::layout::Parts;
+use crate::recording::layout::PartOrder;
 use crate::recording::layout::stream::Stream;
 use ndarray::{Array3, Array4, Axis, s};
 use num_complex::Complex64;
@@ -40,7 +40,7 @@ impl Frame {
             let mean = all.sum_axis(Axis(0)).mapv_into(|v| v / loops as f64);
             all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
         }
-        if layout.parts == Parts::Real {
+        if layout.part_order == PartOrder::Real {
             all = analytic_lanes(all.view(), samples.div_ceil(2));
         } else if quality.is_real() {
             all = analytic_lanes(all.view(), samples);

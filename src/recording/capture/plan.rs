@@ -3,7 +3,7 @@
 use super::table::Capture;
 use crate::recording::Fault;
 use crate::recording::axes::ChirpChoice;
-use crate::recording::layout::{Layout, Parts};
+use crate::recording::layout::{Layout, PartOrder};
 use crate::recording::numbers::{MAX_NUMBERS, bounded_count};
 use crate::recording::profile::RadarProfile;
 use std::fmt::Display;
@@ -35,7 +35,7 @@ impl Plan {
     pub fn new(capture: &Capture, profile: Option<&RadarProfile>, bytes: u64) -> Result<Plan, Fault> {
         let layout = layout(capture)?;
         let [samples, receivers, chirps, all_loops] = counts(capture, profile)?;
-        let lanes = layout.parts.group();
+        let lanes = layout.part_order.group();
         let numbers = bounded_count(&[chirps, receivers, samples])
             .ok_or_else(|| Fault::Data(format!("a loop holds more than {MAX_NUMBERS} numbers")))?;
         if !(samples * receivers).is_multiple_of(lanes) {
@@ -45,7 +45,7 @@ impl Plan {
         }
         let header = layout.header_bytes.min(MAX_COUNT) as u64;
         let chirp_numbers = (samples * receivers) as u64;
-        let size = |numbers: u64| numbers * layout.parts.bytes() as u64 + numbers / chirp_numbers.max(1) * header;
+        let size = |numbers: u64| numbers * layout.part_order.bytes() as u64 + numbers / chirp_numbers.max(1) * header;
         let loop_bytes = size(numbers as u64);
         let frame_numbers = profile.map_or(0, |p| p.frame_numbers as u64).max(numbers as u64 * all_loops as u64);
         let before = size(profile.map_or(0, |p| p.numbers_before as u64));
@@ -158,10 +158,10 @@ fn is_choice(numbers: &[usize], last: usize) -> bool {
 }
 
 fn layout(capture: &Capture) -> Result<Layout, Fault> {
-    let parts = match (capture.parts, capture.lanes) {
-        (Some(parts), None) => parts,
-        (None, Some(2)) => Parts::TwoLanes,
-        (None, Some(4)) => Parts::FourLanes,
+    let part_order = match (capture.part_order, capture.lanes) {
+        (Some(part_order), None) => part_order,
+        (None, Some(2)) => PartOrder::TwoLanes,
+        (None, Some(4)) => PartOrder::FourLanes,
         (None, Some(lanes)) => return Err(unfit("lanes", format!("is {lanes}"), "2 or 4")),
         (None, None) => return Err(unfit("parts", "is missing", "one of lanes and parts")),
         (Some(_), Some(_)) => return Err(unfit("lanes", "stands beside parts", "one of lanes and parts")),
@@ -170,7 +170,7 @@ fn layout(capture: &Capture) -> Result<Layout, Fault> {
     if header_bytes > MAX_COUNT {
         return Err(unfit("header_bytes", format!("is {header_bytes}"), "at most 65536"));
     }
-    Ok(Layout { encoding, parts, q_first, receivers, header_bytes, packets: false })
+    Ok(Layout { encoding, part_order, q_first, receivers, header_bytes, packets: false })
 }
 
 /// Samples, receivers, chirps of a loop and loops of a frame.

@@ -1,7 +1,7 @@
 //! Doubts about a frame: zeros of lost packets, saturation, constant parts, real samples stored as complex.
 
 use super::plan::Plan;
-use crate::recording::layout::{Layout, Parts};
+use crate::recording::layout::{Layout, PartOrder};
 use ndarray::{Array4, Axis};
 use num_complex::Complex64;
 
@@ -39,7 +39,7 @@ impl Quality {
         };
         self.numbers += bytes.len() as u64 / 2;
         self.saturated_count += bytes.chunks_exact(2).filter(at_end).count() as u64;
-        self.is_complex = layout.parts != Parts::Real;
+        self.is_complex = layout.part_order != PartOrder::Real;
     }
 
     /// Measures the constant part of all samples, `[loops, chirps, receivers, samples]`, before any part is subtracted.
@@ -101,7 +101,7 @@ impl Quality {
             )
         });
         let stored = self.is_real().then(|| stored.to_owned());
-        let real = (plan.layout.parts == Parts::Real).then(|| real.to_owned());
+        let real = (plan.layout.part_order == PartOrder::Real).then(|| real.to_owned());
         [lost, saturated, stored, real, constant].into_iter().flatten().collect()
     }
 }

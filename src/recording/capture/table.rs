@@ -1,7 +1,7 @@
 //! The table `[recording.capture]`.
 
 use crate::recording::axes::ChirpChoice;
-use crate::recording::layout::{NumberEncoding, Parts, ReceiverOrder};
+use crate::recording::layout::{NumberEncoding, PartOrder, ReceiverOrder};
 use serde::{Deserialize, Serialize};
 
 /// The keys of the table: the layout of a capture, and the frame, loops, chirps and receivers that are read of it.
@@ -19,7 +19,8 @@ pub struct Capture {
     pub chips: Vec<String>,
     #[serde(default, rename = "words")]
     pub encoding: NumberEncoding,
-    pub parts: Option<Parts>,
+    #[serde(rename = "parts")]
+    pub part_order: Option<PartOrder>,
     /// Lanes of the radar in place of `parts`: 2 (xWR16xx, 18xx, 68xx) or 4 (xWR12xx, 14xx).
     pub lanes: Option<usize>,
     #[serde(default)]

@@ -54,7 +54,7 @@ impl NumberEncoding {
 /// Order of real and imaginary parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Parts {
+pub enum PartOrder {
     /// I Q, sample by sample.
     Pairs,
     /// I I Q Q, as two lanes send them.
@@ -65,34 +65,34 @@ pub enum Parts {
     Real,
 }
 
-impl Parts {
+impl PartOrder {
     /// All of them.
-    pub const ALL: [Parts; 4] = [Parts::Pairs, Parts::TwoLanes, Parts::FourLanes, Parts::Real];
+    pub const ALL: [PartOrder; 4] = [PartOrder::Pairs, PartOrder::TwoLanes, PartOrder::FourLanes, PartOrder::Real];
 
     /// Number of real or imaginary parts in a row.
     pub fn group(self) -> usize {
         match self {
-            Parts::Pairs | Parts::Real => 1,
-            Parts::TwoLanes => 2,
-            Parts::FourLanes => 4,
+            PartOrder::Pairs | PartOrder::Real => 1,
+            PartOrder::TwoLanes => 2,
+            PartOrder::FourLanes => 4,
         }
     }
 
     /// Bytes of one sample.
     pub fn bytes(self) -> usize {
-        if self == Parts::Real { 2 } else { 4 }
+        if self == PartOrder::Real { 2 } else { 4 }
     }
 
     /// The order, as a part of a sentence.
     pub fn description(self, q_first: bool) -> &'static str {
         match (self, q_first) {
-            (Parts::Pairs, false) => "complex, I Q in pairs",
-            (Parts::Pairs, true) => "complex, Q I in pairs",
-            (Parts::TwoLanes, false) => "complex, I I Q Q as two lanes send them",
-            (Parts::TwoLanes, true) => "complex, Q Q I I as two lanes send them",
-            (Parts::FourLanes, false) => "complex, I I I I Q Q Q Q as four lanes send them",
-            (Parts::FourLanes, true) => "complex, Q Q Q Q I I I I as four lanes send them",
-            (Parts::Real, _) => "real",
+            (PartOrder::Pairs, false) => "complex, I Q in pairs",
+            (PartOrder::Pairs, true) => "complex, Q I in pairs",
+            (PartOrder::TwoLanes, false) => "complex, I I Q Q as two lanes send them",
+            (PartOrder::TwoLanes, true) => "complex, Q Q I I as two lanes send them",
+            (PartOrder::FourLanes, false) => "complex, I I I I Q Q Q Q as four lanes send them",
+            (PartOrder::FourLanes, true) => "complex, Q Q Q Q I I I I as four lanes send them",
+            (PartOrder::Real, _) => "real",
         }
     }
 }
@@ -114,7 +114,7 @@ pub struct Layout {
     /// Encoding of numbers in 16 bits.
     pub encoding: NumberEncoding,
     /// Order of real and imaginary parts.
-    pub parts: Parts,
+    pub part_order: PartOrder,
     /// Imaginary parts come first.
     pub q_first: bool,
     /// Order of the receivers.
@@ -141,7 +141,7 @@ pub struct Counts {
 impl Layout {
     /// Bytes of one chirp of all receivers, with its header.
     pub fn chirp_bytes(&self, samples: usize, receivers: usize) -> usize {
-        self.header_bytes + samples * receivers * self.parts.bytes()
+        self.header_bytes + samples * receivers * self.part_order.bytes()
     }
 
     /// The samples of one chirp, `[receivers, samples]`. `bytes` begin after the header; missing bytes are zeros.
@@ -159,10 +159,10 @@ impl Layout {
             let bytes = bytes.get(2 * at..2 * at + 2).map_or([0; 2], |b| [b[0], b[1]]);
             f64::from(self.encoding.number(bytes))
         };
-        if self.parts == Parts::Real {
+        if self.part_order == PartOrder::Real {
             return (0..count).map(|n| Complex64::new(word(n), 0.0)).collect();
         }
-        let group = self.parts.group();
+        let group = self.part_order.group();
         let sample = |n: usize| {
             let at = 2 * group * (n / group) + n % group;
             let (first, second) = (word(at), word(at + group));

@@ -255,7 +255,7 @@ fn capture(best: &Candidate, files: &Files, profile: Option<&RadarProfile>) -> C
         more_files: files.more.iter().map(named).collect(),
         chips: files.chips.iter().map(named).collect(),
         encoding: layout.encoding,
-        parts: Some(layout.parts),
+        part_order: Some(layout.part_order),
         q_first: layout.q_first,
         receivers: layout.receivers,
         header_bytes: layout.header_bytes,
