@@ -2,7 +2,7 @@
 #![no_main]
 
 use apertura::recording::layout::{find, stream::Stream};
-use apertura::recording::packets::Packets;
+use apertura::recording::packets::FrameAssembler;
 use apertura::recording::raw;
 use libfuzzer_sys::fuzz_target;
 use std::io::Cursor;
@@ -20,9 +20,9 @@ fuzz_target!(|data: &[u8]| {
         let _any = stream.read_at(u64::from(*length) * 97, &mut bytes);
         let _any = find(&mut stream, None);
     }
-    let mut packets = Packets::new(1 + 16 * usize::from(*length));
+    let mut assembler = FrameAssembler::new(1 + 16 * usize::from(*length));
     for packet in rest.chunks(64) {
-        assert!(packets.take(packet).iter().all(|frame| frame.bytes.len() == 1 + 16 * usize::from(*length)));
+        assert!(assembler.take(packet).iter().all(|frame| frame.bytes.len() == 1 + 16 * usize::from(*length)));
     }
     let [capture, setup] = ["c.bin", "c.cfg"].map(|name| FOLDER.path().join(name));
     std::fs::write(&capture, samples).expect("room for it");
