@@ -1,7 +1,7 @@
 //! Raw captures: bytes whose layout is found, packets included, beside a `.cfg` or none; and packets as they come from a card.
 #![no_main]
 
-use apertura::recording::layout::{find, stream::Stream};
+use apertura::recording::layout::{find, stream::CaptureStream};
 use apertura::recording::packets::FrameAssembler;
 use apertura::recording::raw;
 use libfuzzer_sys::fuzz_target;
@@ -15,7 +15,7 @@ fuzz_target!(|data: &[u8]| {
     // The first byte says how much of the rest is the .cfg.
     let Some((length, rest)) = data.split_first() else { return };
     let (config, samples) = rest.split_at(rest.len().min(4 * usize::from(*length)));
-    if let Ok(mut stream) = Stream::new(Cursor::new(samples)) {
+    if let Ok(mut stream) = CaptureStream::new(Cursor::new(samples)) {
         let mut bytes = vec![0; 4096];
         let _any = stream.read_at(u64::from(*length) * 97, &mut bytes);
         let _any = find(&mut stream, None);

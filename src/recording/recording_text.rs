@@ -3,7 +3,7 @@
 use super::capture::Plan;
 use super::chain::{Open, Source};
 use super::doubts::doubts;
-use super::layout::stream::Stream;
+use super::layout::stream::CaptureStream;
 use super::profile::lines::config_text;
 use super::radar_table::radar_of_table;
 use super::recording_table::RecordingTable;
@@ -157,7 +157,7 @@ impl<'a> RecordingText<'a> {
         let RecordingText { table, profile, .. } = self;
         let count = || -> Result<u64, Fault> {
             let Some(capture) = &table.capture else { return self.count_frames() };
-            let stream = Stream::new(self.open_capture(capture)?)?;
+            let stream = CaptureStream::new(self.open_capture(capture)?)?;
             Ok(Plan::new(capture, profile.as_ref(), stream.bytes())?.frames.max(1))
         };
         let repeats = |kind: &AxisKind| matches!(kind, AxisKind::Frame | AxisKind::Chirp);

@@ -6,7 +6,7 @@ use super::table::{Capture, Treatment};
 use crate::recording::Fault;
 use crate::recording::analytic::{analytic_lanes, subtract_mean};
 use crate::recording::layout::PartOrder;
-use crate::recording::layout::stream::Stream;
+use crate::recording::layout::stream::CaptureStream;
 use ndarray::{Array3, Array4, Axis, s};
 use num_complex::Complex64;
 use std::io::{Read, Seek};
@@ -20,7 +20,7 @@ pub(in crate::recording) struct Frame {
 
 impl Frame {
     /// Reads the loops of the plan, and subtracts constant part and static clutter where `capture` says so.
-    pub fn read<R: Read + Seek>(stream: &mut Stream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, Fault> {
+    pub fn read<R: Read + Seek>(stream: &mut CaptureStream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, Fault> {
         let Plan { samples, receivers, chirps, loops, layout, .. } = *plan;
         let size = layout.chirp_bytes(samples, receivers);
         let mut all = Array4::zeros((loops, chirps, receivers, samples));

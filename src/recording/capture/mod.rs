@@ -26,7 +26,7 @@ pub use table::{Capture, Treatment};
 
 use super::Fault;
 use super::axes::{ChirpChoice, Join};
-use super::layout::stream::Stream;
+use super::layout::stream::CaptureStream;
 use super::profile::RadarProfile;
 use channels::Channels;
 use ndarray::{Array3, Array4};
@@ -53,7 +53,7 @@ impl Capture {
         file: impl Read + Seek,
         profile: Option<&RadarProfile>,
     ) -> Result<(Vec<usize>, Frame, Plan), Fault> {
-        let mut stream = Stream::new(file)?;
+        let mut stream = CaptureStream::new(file)?;
         let plan = Plan::new(self, profile, stream.bytes())?;
         Ok((plan.chosen_chirps(self)?, Frame::read(&mut stream, self, &plan)?, plan))
     }

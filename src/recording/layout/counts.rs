@@ -9,7 +9,7 @@ use super::breaks::Breaks;
 use super::marks::{HEADER_BYTES, Marks};
 use super::period::{Period, period};
 use super::spectrum::{Spectrum, correlation};
-use super::stream::Stream;
+use super::stream::CaptureStream;
 use super::{Counts, Layout, NumberEncoding, PartOrder, ReceiverOrder};
 use ndarray::Array2;
 use num_complex::Complex64;
@@ -108,7 +108,7 @@ struct Cut {
 /// # Errors
 /// Those of reading the stream.
 pub(super) fn search<R: Read + Seek>(
-    stream: &mut Stream<R>,
+    stream: &mut CaptureStream<R>,
     marks: Option<Marks>,
 ) -> io::Result<(Vec<LikelyCounts>, bool)> {
     let bytes = sample_bytes(stream, marks, 4 * SEARCHED_NUMBERS)?;
@@ -289,7 +289,11 @@ fn layout_of(encoding: NumberEncoding, part_order: PartOrder) -> Layout {
 }
 
 /// The first `most` bytes of the samples, without headers.
-fn sample_bytes<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>, most: usize) -> io::Result<Vec<u8>> {
+fn sample_bytes<R: Read + Seek>(
+    stream: &mut CaptureStream<R>,
+    marks: Option<Marks>,
+    most: usize,
+) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; stream.bytes().min(most as u64 + (most / 8) as u64) as usize];
     stream.read_at(0, &mut bytes)?;
     if let Some(Marks { apart, .. }) = marks.filter(|m| m.apart > HEADER_BYTES) {

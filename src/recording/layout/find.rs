@@ -4,7 +4,7 @@ use super::counts::{self, LikelyCounts};
 use super::evidence::{Evidence, EvidenceKind, FileFacts, evidence};
 use super::marks::{HEADER_BYTES, Marks, marks};
 use super::spectrum::Spectrum;
-use super::stream::Stream;
+use super::stream::CaptureStream;
 use super::{Counts, Layout, NumberEncoding, PartOrder, ReceiverOrder};
 use crate::recording::{Fault, RadarProfile};
 use ndarray::Array2;
@@ -62,7 +62,7 @@ pub struct Found {
 ///
 /// # Errors
 /// [`Fault`] where the file can't be read or is too short, or by no layout has echoes.
-pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, Fault> {
+pub fn find<R: Read + Seek>(stream: &mut CaptureStream<R>, profile: Option<&RadarProfile>) -> Result<Found, Fault> {
     let marks = marks(stream)?;
     let mut notes = Vec::new();
     let (all_counts, mut hides_counts) = match profile {
@@ -125,7 +125,7 @@ fn all_zeros() -> Fault {
 
 /// Adds the candidates of all counts.
 fn add_candidates<R: Read + Seek>(
-    stream: &mut Stream<R>,
+    stream: &mut CaptureStream<R>,
     all_counts: &[LikelyCounts],
     header_bytes: usize,
     facts: FileFacts<'_>,
@@ -201,7 +201,7 @@ struct Candidates<'a> {
 
 impl Candidates<'_> {
     /// All of them, the likeliest first; at least one.
-    fn evaluate<R: Read + Seek>(&self, stream: &mut Stream<R>) -> Result<Vec<Candidate>, Fault> {
+    fn evaluate<R: Read + Seek>(&self, stream: &mut CaptureStream<R>) -> Result<Vec<Candidate>, Fault> {
         let Counts { samples, receivers, .. } = self.counts;
         let mut all = Vec::new();
         for part_order in PartOrder::ALL
@@ -241,7 +241,12 @@ impl Candidates<'_> {
     }
 
     /// The first chirps without their headers. Those with runs of zeros are left out, unless all have such.
-    fn chirps<R: Read + Seek>(&self, stream: &mut Stream<R>, size: usize, numbers: usize) -> io::Result<Vec<Vec<u8>>> {
+    fn chirps<R: Read + Seek>(
+        &self,
+        stream: &mut CaptureStream<R>,
+        size: usize,
+        numbers: usize,
+    ) -> io::Result<Vec<Vec<u8>>> {
         let before = self.facts.profile.map_or(0, |p| p.numbers_before) / numbers * size;
         // As many bytes for every layout: real samples have half the bytes of complex ones.
         let bytes = MAX_CHIRPS

@@ -14,7 +14,7 @@ const CHECKED_PACKETS: u64 = 16;
 
 /// The data bytes of a capture's file, which may hold network packets.
 #[derive(Debug)]
-pub struct Stream<R> {
+pub struct CaptureStream<R> {
     file: R,
     file_bytes: u64,
     packets: Option<PacketSequence>,
@@ -30,14 +30,14 @@ struct PacketSequence {
     bytes: u64,
 }
 
-impl<R: Read + Seek> Stream<R> {
+impl<R: Read + Seek> CaptureStream<R> {
     /// The data of `file`, which holds packets where the headers at its beginning fit.
     ///
     /// # Errors
     /// The error of the read or the seek.
     pub fn new(mut file: R) -> io::Result<Self> {
         let file_bytes = file.seek(SeekFrom::End(0))?;
-        let mut stream = Stream { file, file_bytes, packets: None };
+        let mut stream = CaptureStream { file, file_bytes, packets: None };
         stream.packets = stream.find_packets()?;
         Ok(stream)
     }
@@ -48,7 +48,7 @@ impl<R: Read + Seek> Stream<R> {
     /// The error of the seek.
     pub fn plain(mut file: R) -> io::Result<Self> {
         let file_bytes = file.seek(SeekFrom::End(0))?;
-        Ok(Stream { file, file_bytes, packets: None })
+        Ok(CaptureStream { file, file_bytes, packets: None })
     }
 
     /// Whether the file holds packets.

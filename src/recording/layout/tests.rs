@@ -1,4 +1,4 @@
-use super::stream::Stream;
+use super::stream::CaptureStream;
 use super::*;
 use crate::recording::RadarProfile;
 use crate::recording::card::tests::sent;
@@ -75,7 +75,7 @@ fn in_order(part_order: PartOrder) -> Layout {
 }
 
 fn found(bytes: Vec<u8>, profile: Option<&RadarProfile>) -> Found {
-    find(&mut Stream::new(Cursor::new(bytes)).unwrap(), profile).unwrap()
+    find(&mut CaptureStream::new(Cursor::new(bytes)).unwrap(), profile).unwrap()
 }
 
 #[test]
@@ -145,11 +145,11 @@ fn packets(bytes: &[u8], lost: &[usize]) -> Vec<u8> {
 #[test]
 fn packets_are_read_with_zeros_for_those_lost() {
     let bytes: Vec<u8> = (0..20_000u32).map(|n| (n % 251) as u8).collect();
-    let mut stream = Stream::new(Cursor::new(packets(&bytes, &[]))).unwrap();
+    let mut stream = CaptureStream::new(Cursor::new(packets(&bytes, &[]))).unwrap();
     let mut read = vec![0; 5000];
     stream.read_at(1000, &mut read).unwrap();
     assert!(stream.has_packets() && read == bytes[1000..6000] && stream.lost_packets() == 0);
-    let mut stream = Stream::new(Cursor::new(packets(&bytes, &[2, 5, 6]))).unwrap();
+    let mut stream = CaptureStream::new(Cursor::new(packets(&bytes, &[2, 5, 6]))).unwrap();
     assert_eq!((stream.bytes(), stream.lost_packets()), (20_000, 3));
     let mut all = vec![1; bytes.len()];
     stream.read_at(0, &mut all).unwrap();
@@ -158,7 +158,7 @@ fn packets_are_read_with_zeros_for_those_lost() {
             if [2, 5, 6].contains(&n) { vec![0; part.len()] } else { bytes[n * 1456..n * 1456 + part.len()].to_vec() };
         assert_eq!(part, expected, "packet {n}");
     }
-    assert!(!Stream::new(Cursor::new(bytes)).unwrap().has_packets());
+    assert!(!CaptureStream::new(Cursor::new(bytes)).unwrap().has_packets());
 }
 
 #[test]
@@ -275,7 +275,7 @@ fn files_without_echoes_are_refused() {
     };
     let random: Vec<u8> = (0..300_000).map(|_| byte()).collect();
     let refused = |bytes: &[u8], profile: Option<&RadarProfile>| {
-        find(&mut Stream::new(Cursor::new(bytes)).unwrap(), profile).unwrap_err().to_string()
+        find(&mut CaptureStream::new(Cursor::new(bytes)).unwrap(), profile).unwrap_err().to_string()
     };
     assert!(refused(&random, None).contains("spectrum is flat"));
     assert!(refused(&random, Some(&profile(""))).contains("spectrum is flat"));
@@ -291,7 +291,7 @@ proptest! {
     #[test]
     fn any_bytes_have_a_layout_or_none(bytes in proptest::collection::vec(any::<u8>(), 0..5000), has_profile: bool) {
         let profile = profile("");
-        if let Ok(found) = find(&mut Stream::new(Cursor::new(&bytes)).unwrap(), has_profile.then_some(&profile)) {
+        if let Ok(found) = find(&mut CaptureStream::new(Cursor::new(&bytes)).unwrap(), has_profile.then_some(&profile)) {
             prop_assert!(found.best().log_odds().is_finite() && !found.sentences().is_empty());
         }
     }

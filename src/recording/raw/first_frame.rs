@@ -2,7 +2,7 @@
 
 use super::boards::{self, Board};
 use crate::recording::capture::{Capture, Frame, Plan};
-use crate::recording::layout::stream::Stream;
+use crate::recording::layout::stream::CaptureStream;
 use crate::recording::profile::RadarProfile;
 use ndarray::{Array1, Array2, ArrayView1, Axis};
 use num_complex::Complex64;
@@ -30,7 +30,7 @@ pub(super) struct FirstFrame {
 impl FirstFrame {
     /// Reads the first frame by the layout in `capture`. All figures are empty where that fails.
     pub fn read<R: Read + Seek>(
-        stream: &mut Stream<R>,
+        stream: &mut CaptureStream<R>,
         capture: &Capture,
         profile: Option<&RadarProfile>,
     ) -> FirstFrame {

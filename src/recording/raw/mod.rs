@@ -29,7 +29,7 @@ pub use imported::Imported;
 use super::axes::{ChirpChoice, Join};
 use super::capture::{Capture, Treatment};
 use super::chain::{Source, open_joined};
-use super::layout::stream::Stream;
+use super::layout::stream::CaptureStream;
 use super::layout::{Candidate, Certainty, EvidenceKind, Found, config_claims, find};
 use super::profile::RadarProfile;
 use super::recording_text::{open_file, read_config_text};
@@ -78,7 +78,7 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
         Ok([data, chips @ ..]) => Files { data, more: Vec::new(), chips: chips.to_vec(), config },
         Err(_) => Files { more: beside::more_files(&data), data, chips: Vec::new(), config },
     };
-    let stream = files.open().and_then(Stream::new).map_err(|e| Fault::from(e).of(&files.data))?;
+    let stream = files.open().and_then(CaptureStream::new).map_err(|e| Fault::from(e).of(&files.data))?;
     let profile = profile.map(|profile| profile.on_chips(1 + files.chips.len()));
     import_stream(stream, files, profile.as_ref(), board)
 }
@@ -90,7 +90,7 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
 pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
     let profile = read_config(config)?;
     let data = frame_path(config);
-    let stream = Stream::plain(Cursor::new(bytes)).map_err(|e| Fault::from(e).of(&data))?;
+    let stream = CaptureStream::plain(Cursor::new(bytes)).map_err(|e| Fault::from(e).of(&data))?;
     import_stream(
         stream,
         Files { data, more: Vec::new(), chips: Vec::new(), config: Some(config.to_owned()) },
@@ -148,7 +148,7 @@ impl Files {
 
 /// The ways to read a capture, with their TOML.
 fn import_stream<R: Read + io::Seek>(
-    mut stream: Stream<R>,
+    mut stream: CaptureStream<R>,
     files: Files,
     profile: Option<&RadarProfile>,
     board: Option<&'static Board>,
