@@ -50,7 +50,7 @@ impl Pipeline {
     /// Takes in the workers' results since the last frame, and the methods' durations in `times`. Returns messages for the user.
     pub fn poll(&mut self, times: &mut MethodTimes) -> Vec<String> {
         let Pipeline { maps, methods } = self;
-        let mut messages = maps.poll(|maps| methods.iter_mut().for_each(|method| method.aim(maps)));
+        let mut messages = maps.poll(|maps| methods.iter_mut().for_each(|method| method.attach_maps(maps)));
         for method in methods {
             messages.extend(method.poll(maps.result(), times));
         }
@@ -71,7 +71,7 @@ impl Pipeline {
                 method: method.name(),
             });
             let pictured = self.maps.result().and_then(|maps| maps.request.pairs[slot as usize].as_ref());
-            self.methods[slot as usize].look(wanted, pictured);
+            self.methods[slot as usize].track_outdated_output(wanted, pictured);
         }
         let request = self.maps_request(state, source, (pictures, read), wants);
         let is_recorded = request.source.recording.is_some();
@@ -80,7 +80,7 @@ impl Pipeline {
         for slot in MethodSlot::BOTH {
             match read[slot as usize] {
                 true => self.ask_method(state, slot, slot == MethodSlot::First && listed),
-                false if slot == MethodSlot::Second => self.methods[slot as usize].rest(),
+                false if slot == MethodSlot::Second => self.methods[slot as usize].cancel_hidden_work(),
                 false => {}
             }
         }

@@ -18,7 +18,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 /// Longest time for maps of an earlier request; slower ones are cancelled. During a drag all are finished, so that the user sees the movement.
-const PATIENCE: Duration = Duration::from_millis(100);
+const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(100);
 
 /// A request for one map with several variants.
 #[derive(Clone, PartialEq)]
@@ -90,7 +90,7 @@ impl SeveralMaps {
         }
         self.requests += 1;
         if state.editor.dragged().is_none() {
-            self.worker.cancel_older_than(PATIENCE);
+            self.worker.cancel_older_than(MAX_OUTDATED_WORK_TIME);
         }
         self.keep_pictures(&request.variants);
         self.worker.request((self.requests, request.clone()));

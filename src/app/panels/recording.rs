@@ -66,7 +66,7 @@ pub fn show(
             ui.add_space(6.0);
             origin.sentences.iter().for_each(|sentence| _ = ui.weak(sentence));
         }
-        asked.extend(ways.into_iter().map(|way| Command::from(DocumentCommand::ReadAnotherWay(way))));
+        asked.extend(ways.into_iter().map(|way| Command::from(DocumentCommand::Reread(way))));
     })
 }
 
@@ -226,7 +226,7 @@ pub mod tests {
         seen::assert_readable(panel.output());
         assert_eq!(panel.query_all_by_label("Range profile").count(), 2, "one a layout");
         panel.clicks(&["Q I in pairs"]);
-        assert_eq!(panel.state(), &[Command::Document(DocumentCommand::ReadAnotherWay(Way::Layout(1)))]);
+        assert_eq!(panel.state(), &[Command::Document(DocumentCommand::Reread(Way::Layout(1)))]);
     }
 
     #[test]

@@ -70,7 +70,7 @@ pub enum DocumentCommand {
     Discard(u64),
     Preset(usize),
     Recording(usize),
-    ReadAnotherWay(Way),
+    Reread(Way),
     /// Show the newest frame of the capture card in use.
     ShowFrame(LiveFrame),
     RandomScene(Kind),
