@@ -1,6 +1,6 @@
 //! Confidence of each echo found: the part of the energy, unexplained without it, that it explains.
 
-use super::hearing::range_energy;
+use super::noise_model::range_energy;
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};

@@ -22,12 +22,12 @@ mod family;
 mod fit;
 pub mod found;
 mod grid;
-mod hearing;
 mod hybrid;
 mod judge;
 #[cfg(test)]
 mod layout_tests;
 mod noise;
+mod noise_model;
 mod own_threshold;
 mod power;
 mod prior;

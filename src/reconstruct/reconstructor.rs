@@ -2,7 +2,7 @@
 
 use super::answer::halves;
 use super::error::Result;
-use super::hearing::ends_noise_variance;
+use super::noise_model::ends_noise_variance;
 use super::significance::tested;
 use super::{Family, ReconstructError, Reconstruction, Request, TrainedNoise};
 use crate::radar::{End, Radar, check_layout};
@@ -261,11 +261,11 @@ fn reconstruct_layout<M: Reconstructor + ?Sized>(
     answer(method, &halves, (&halves, &ends), &Request { heard: None, ..request.clone() })
 }
 
-/// The answer of `method` to checked samples, with a threshold above the noise of `ends`, which are those of the radar `hearing`.
+/// The answer of `method` to checked samples, with a threshold above the noise of `ends`, which are those of the radar `ends_radar`.
 fn answer<M: Reconstructor + ?Sized>(
     method: &M,
     radar: &Radar,
-    (hearing, ends): (&Radar, &TwoEnds),
+    (ends_radar, ends): (&Radar, &TwoEnds),
     request: &Request,
 ) -> Result<Reconstruction> {
     let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
@@ -277,8 +277,8 @@ fn answer<M: Reconstructor + ?Sized>(
     let found = rayon::scope(|_| method.estimate(radar, &ends, request))?;
     // An answer during which the task was cancelled may be incomplete.
     request.task.check()?;
-    let noise_variance = ends_noise_variance(hearing, &ends, request.noise);
-    let mut found = tested(hearing, &ends, noise_variance, method.eta(), found);
+    let noise_variance = ends_noise_variance(ends_radar, &ends, request.noise);
+    let mut found = tested(ends_radar, &ends, noise_variance, method.eta(), found);
     found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
     let range = request.snapshot_range_metres.filter(|_| radar.samples == 1);
     Ok(match range {

@@ -11,7 +11,7 @@ use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
-use crate::reconstruct::hearing::Hearing;
+use crate::reconstruct::noise_model::NoiseModel;
 use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
 use crate::reconstruct::seen::no_plane_waves;
 use crate::signal::TwoEnds;
@@ -73,7 +73,7 @@ impl Reconstructor for CoherentMethod {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let task = &request.task;
-        let hearing = Hearing::beneath(radar, ends, request.noise);
+        let hearing = NoiseModel::beneath(radar, ends, request.noise);
         let found = if radar.samples == 1 {
             // A single sample has no ranges along which reflectors could be moved.
             gains(radar, &self.peaks(radar, ends, &hearing, task)?, ends, task)?
@@ -107,7 +107,7 @@ impl CoherentMethod {
         &self,
         radar: &Radar,
         ends: &TwoEnds,
-        hearing: &Hearing,
+        hearing: &NoiseModel,
         task: &Task,
     ) -> Result<Vec<Peak>, ReconstructError> {
         let elements = Ends::new(radar, ends);

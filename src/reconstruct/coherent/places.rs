@@ -176,7 +176,7 @@ fn vertex(before: f64, here: f64, after: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::hearing::ends_noise_variance;
+    use crate::reconstruct::noise_model::ends_noise_variance;
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
     use crate::task::Task;

@@ -5,7 +5,7 @@ use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::Result;
-use crate::reconstruct::hearing::ends_noise_variance;
+use crate::reconstruct::noise_model::ends_noise_variance;
 use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
 use crate::reconstruct::{About, Family, Hears, ReconstructError, Reconstruction, Reconstructor, Request};

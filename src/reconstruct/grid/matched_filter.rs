@@ -4,7 +4,7 @@ use super::backprojector::{Backprojector, RangeWindow};
 use super::cells::GridCells;
 use crate::radar::{Layout, Radar};
 use crate::reconstruct::error::Result;
-use crate::reconstruct::hearing::ends_noise_variance;
+use crate::reconstruct::noise_model::ends_noise_variance;
 use crate::reconstruct::power::{focused_gain, of_power};
 use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::{About, Hears, Reconstruction, Reconstructor, Request, layout_matched_filter};

@@ -9,7 +9,7 @@ use crate::radar::{End, Radar};
 use crate::reconstruct::coherent::{Peak, found_in_residuals, gains};
 use crate::reconstruct::echoes::of_echoes;
 use crate::reconstruct::error::Result;
-use crate::reconstruct::hearing::{Hearing, ends_noise_variance};
+use crate::reconstruct::noise_model::{NoiseModel, ends_noise_variance};
 use crate::reconstruct::power::of_power;
 use crate::reconstruct::seen::{Direction, directions, no_plane_waves, row_ranges_metres, too_many_folds};
 use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
@@ -81,9 +81,9 @@ impl Reconstructor for RowMethod {
         }
         // The task reports the progress of all looks, not of one.
         let quiet = Request { task: request.task.quiet(), ..request.clone() };
-        let hearing = Hearing::beneath(radar, ends, request.noise);
+        let noise_model = NoiseModel::beneath(radar, ends, request.noise);
         let look = |left: &TwoEnds| -> Result<Vec<Peak>> {
-            let noise_variance = hearing.ends_noise_variance(radar, left);
+            let noise_variance = noise_model.ends_noise_variance(radar, left);
             Ok(self.peaks(radar, &self.power(radar, left, noise_variance, &quiet)?, noise_variance))
         };
         let found = if radar.samples == 1 {

@@ -13,7 +13,7 @@ use super::trace::{CALIBRATION, MAX_ATTEMPTS, decades};
 use crate::radar::{Radar, hann};
 use crate::reconstruct::attempt::{Attempt, AttemptVerdict};
 use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, Samples, Tie};
-use crate::reconstruct::hearing::range_energy;
+use crate::reconstruct::noise_model::range_energy;
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
