@@ -2,9 +2,9 @@
 
 use super::backend::Backend;
 use super::domain::Domain;
-use super::students::Student;
 use super::thesis::{Thesis, ThesisConfig};
 use super::thesis_engine::{Buffers, ThesisEngine};
+use super::trainable_network::TrainableNetwork;
 use super::unet::{Unet, UnetConfig};
 use super::weights::{WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
@@ -183,7 +183,7 @@ impl Reconstructor for ThesisMethod {
     }
 }
 
-fn estimate<S: Student>(
+fn estimate<S: TrainableNetwork>(
     network: &S,
     method: &'static str,
     input: Vec<f32>,

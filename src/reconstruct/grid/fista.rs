@@ -234,7 +234,7 @@ impl Reconstructor for Fista {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
-        let cells = GridCells::heard_by(radar, ends);
+        let cells = GridCells::with_measured_elements(radar, ends);
         let backprojector = Backprojector::new(&cells, RangeWindow::None);
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
@@ -296,7 +296,7 @@ mod tests {
         let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let request = Request::default();
-        let cells = GridCells::heard_by(&radar, &ends);
+        let cells = GridCells::with_measured_elements(&radar, &ends);
         let heard = Backprojector::new(&cells, RangeWindow::None).amplitudes(&ends);
         let chosen = candidates(&radar, &cells, heard, 300, &[], 0.0);
         let problem =

@@ -54,7 +54,7 @@ impl Omp {
         let noise = noise_variance * heard as f64 * 1.1;
         let all = energy(&samples);
         let enough = noise.max(all * ROUNDING_ENERGY);
-        let mut cells = GridCells::heard_by(radar, ends);
+        let mut cells = GridCells::with_measured_elements(radar, ends);
         // No reflector stands at the centre: an echo in bin 0 is one range period away.
         if radar.samples > 1 {
             cells.range_metres[0] = radar.max_range_metres();
@@ -185,7 +185,7 @@ mod tests {
     /// Part of the energy of `ends` in the residual of `found`.
     fn left(radar: &Radar, ends: &TwoEnds, found: &[Reflector]) -> f64 {
         let samples = ends.flat();
-        let cells = GridCells::heard_by(radar, ends);
+        let cells = GridCells::with_measured_elements(radar, ends);
         let pick = |r: &Reflector| {
             let place = radar.polar_of(r.x_metres, r.y_metres);
             Pick {
