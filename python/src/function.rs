@@ -96,7 +96,7 @@ impl Function {
     ) -> PyResult<(Array2<f64>, Option<f32>)> {
         let told = (request.noise.to_string(), request.normalisation.to_string(), request.snapshot_range_metres);
         let radar = Radar(radar.of_one_chirp());
-        let heard = match &request.heard {
+        let heard = match &request.layout_samples {
             Some(heard) => owned(py, heard.samples.clone()).into_any(),
             None => owned(py, both_ends(ends)).into_any(),
         };

@@ -21,7 +21,7 @@ pub struct Trial {
     /// The samples of the two ends.
     pub ends: TwoEnds,
     /// The samples of the elements of another layout, for methods that use them.
-    pub heard: Option<Arc<LayoutSamples>>,
+    pub layout_samples: Option<Arc<LayoutSamples>>,
     /// Lambda against which answers are compared.
     pub target: RangeAngleMap,
     scene: Scene,
@@ -75,9 +75,9 @@ impl Trial {
         let target = full.normalise(normalisation);
         let ends = signal.two_ends(radar);
         let of_layout = |layout: &[usize]| Arc::new(signal.of_layout(layout));
-        let heard = layout.map(of_layout);
+        let layout_samples = layout.map(of_layout);
         let (radar, scene, scale) = (radar.clone(), scene.clone(), full.scale(normalisation));
-        Ok(Trial { radar, ends, heard, target, scene, scale, footprints: OnceLock::new() })
+        Ok(Trial { radar, ends, layout_samples, target, scene, scale, footprints: OnceLock::new() })
     }
 
     /// Runs `method` on the scene, and judges its answer.
@@ -87,11 +87,13 @@ impl Trial {
     pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
         request.task.check()?;
         let start = Instant::now();
-        let found = match &self.heard {
+        let found = match &self.layout_samples {
             None => method.reconstruct(&self.radar, &self.ends, request)?,
-            heard => {
-                method.reconstruct(&self.radar, &self.ends, &Request { heard: heard.clone(), ..request.clone() })?
-            }
+            layout_samples => method.reconstruct(
+                &self.radar,
+                &self.ends,
+                &Request { layout_samples: layout_samples.clone(), ..request.clone() },
+            )?,
         };
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let eta = method.eta_of(&found);

@@ -23,7 +23,7 @@ pub struct Request {
     /// as while something is dragged.
     pub may_follow: bool,
     /// Samples of another layout than the two ends, for methods that use them ([`Reconstructor::hears`](super::Reconstructor::hears)).
-    pub heard: Option<Arc<LayoutSamples>>,
+    pub layout_samples: Option<Arc<LayoutSamples>>,
     pub task: Task,
 }
 

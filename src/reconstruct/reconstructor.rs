@@ -41,7 +41,7 @@ pub enum Hears {
     Ends,
     /// The method takes elements without samples for missing ones: the ends are the halves of the array, silent but for the elements of the layout.
     Halves,
-    /// The method reads [`Request::heard`].
+    /// The method reads [`Request::layout_samples`].
     Layouts,
 }
 
@@ -72,7 +72,7 @@ pub trait Reconstructor: Send + Sync {
         !matches!(self.family(), Family::Network | Family::Classical)
     }
 
-    /// The way in which the method uses the samples of other elements than the two ends ([`Request::heard`]).
+    /// The way in which the method uses the samples of other elements than the two ends ([`Request::layout_samples`]).
     fn hears(&self) -> Hears {
         Hears::Ends
     }
@@ -157,8 +157,8 @@ pub trait Reconstructor: Send + Sync {
     /// where the method fails.
     fn reconstruct(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         request.task.check()?;
-        if let Some(heard) = &request.heard {
-            return reconstruct_layout(self, radar, heard, request);
+        if let Some(layout_samples) = &request.layout_samples {
+            return reconstruct_layout(self, radar, layout_samples, request);
         }
         check_ends(radar, ends)?;
         self.check_array(radar)?;
@@ -242,23 +242,25 @@ pub trait Reconstructor: Send + Sync {
 fn reconstruct_layout<M: Reconstructor + ?Sized>(
     method: &M,
     radar: &Radar,
-    heard: &LayoutSamples,
+    layout_samples: &LayoutSamples,
     request: &Request,
 ) -> Result<Reconstruction> {
-    check_layout(&heard.layout, radar.elements).map_err(|reason| method.unusable(reason))?;
-    let expected = [heard.layout.len(), radar.samples];
-    ReconstructError::check_shape("samples of the layout", heard.samples.shape(), expected)?;
-    if let Some(((place, sample), _)) = heard.samples.indexed_iter().find(|(_, v)| !v.is_finite()) {
-        return Err(method.unusable(format!("sample {sample} of element {} is not finite", heard.layout[place])));
+    check_layout(&layout_samples.layout, radar.elements).map_err(|reason| method.unusable(reason))?;
+    let expected = [layout_samples.layout.len(), radar.samples];
+    ReconstructError::check_shape("samples of the layout", layout_samples.samples.shape(), expected)?;
+    if let Some(((place, sample), _)) = layout_samples.samples.indexed_iter().find(|(_, v)| !v.is_finite()) {
+        return Err(
+            method.unusable(format!("sample {sample} of element {} is not finite", layout_samples.layout[place]))
+        );
     }
-    let (halves, ends) = heard.as_halves(radar);
+    let (halves, ends) = layout_samples.as_halves(radar);
     check_ends(&halves, &ends)?;
-    method.check_elements(radar, &heard.layout)?;
+    method.check_elements(radar, &layout_samples.layout)?;
     if method.hears() == Hears::Layouts {
         return answer(method, radar, (&halves, &ends), request);
     }
     method.check_both_halves([is_silent(&ends.first), is_silent(&ends.last)])?;
-    answer(method, &halves, (&halves, &ends), &Request { heard: None, ..request.clone() })
+    answer(method, &halves, (&halves, &ends), &Request { layout_samples: None, ..request.clone() })
 }
 
 /// The answer of `method` to checked samples, with a threshold above the noise of `ends`, which are those of the radar `ends_radar`.
@@ -269,10 +271,13 @@ fn answer<M: Reconstructor + ?Sized>(
     request: &Request,
 ) -> Result<Reconstruction> {
     let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
-    let heard = request.heard.as_ref().map(|heard| {
-        Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
+    let layout_samples = request.layout_samples.as_ref().map(|layout_samples| {
+        Arc::new(LayoutSamples {
+            layout: layout_samples.layout.clone(),
+            samples: layout_samples.samples.mapv(|v| v * gain),
+        })
     });
-    let request = &Request { noise: request.noise.scaled(gain), heard, ..request.clone() };
+    let request = &Request { noise: request.noise.scaled(gain), layout_samples, ..request.clone() };
     // Inside the scope a parallel step goes to an idle thread; outside, the caller would sleep through each one.
     let found = rayon::scope(|_| method.estimate(radar, &ends, request))?;
     // An answer during which the task was cancelled may be incomplete.

@@ -29,7 +29,7 @@ pub struct Basis {
     radar: Radar,
     ends: Shared<TwoEnds>,
     /// Samples of the layout in use, in place of the two ends.
-    heard: Option<Shared<LayoutSamples>>,
+    layout_samples: Option<Shared<LayoutSamples>>,
     noise: NoisePrior,
     normalisation: Normalisation,
     snapshot_range_metres: Option<f64>,
@@ -42,7 +42,7 @@ impl Basis {
         Some(Basis {
             radar: radar.clone(),
             ends: result.frame.ends.as_ref()?.into(),
-            heard: if layout.is_some() { Some(result.heard.clone()?) } else { None },
+            layout_samples: if layout.is_some() { Some(result.layout_samples.clone()?) } else { None },
             noise: if recording.is_some() { NoisePrior::UNKNOWN } else { wanted.floor.into() },
             normalisation: wanted.normalisation,
             snapshot_range_metres: recording.as_ref().and_then(|r| r.range_metres),
@@ -55,7 +55,7 @@ impl Basis {
             normalisation: self.normalisation,
             snapshot_range_metres: self.snapshot_range_metres,
             may_follow,
-            heard: self.heard.as_deref().cloned(),
+            layout_samples: self.layout_samples.as_deref().cloned(),
             task,
         }
     }

@@ -92,7 +92,7 @@ pub struct MapsResult {
     /// The engine's maps of the scene, or those of a recording.
     pub frame: EngineFrame,
     /// Samples of the layout's elements, where a layout is in use.
-    pub heard: Option<Shared<LayoutSamples>>,
+    pub layout_samples: Option<Shared<LayoutSamples>>,
     /// The unexplained part of a recording, where its map is in sight, or the reason why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
     pub detected: Detected,
@@ -145,7 +145,7 @@ impl MapsState {
     /// The reason why a scene has no maps, or that `task` was cancelled.
     pub fn work(&mut self, request: MapsRequest, task: &Task) -> Result<MapsResult, Unfinished> {
         let (mut frame, unexplained) = self.frame(&request, task)?;
-        let heard = self.heard(&request, task, &mut frame)?;
+        let layout_samples = self.heard(&request, task, &mut frame)?;
         let shows = |kind| request.pictures.contains(&kind) || request.scores;
         let output =
             |slot: usize, above| request.pairs[slot].as_ref().filter(|_| shows(above)).map(|pair| &*pair.output);
@@ -177,7 +177,7 @@ impl MapsState {
         Ok(MapsResult {
             request,
             frame,
-            heard,
+            layout_samples,
             unexplained,
             detected,
             on_one_scale,

@@ -154,17 +154,17 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
     let normalisation = request.normalisation;
     let elements = &request.scene.disturbances.elements;
     let numbers = request.layout.as_ref().map(|layout| layout.numbers(radar)).transpose()?;
-    let heard = numbers.map(|numbers| Arc::new(signal.of_layout(&numbers)));
+    let layout_samples = numbers.map(|numbers| Arc::new(signal.of_layout(&numbers)));
     let aperture = match request.map {
-        MapKind::Input0 if let Some(heard) = &heard => {
-            return Ok(layout_map(radar, elements, heard).log_magnitude().normalise(normalisation));
+        MapKind::Input0 if let Some(layout_samples) = &layout_samples => {
+            return Ok(layout_map(radar, elements, layout_samples).log_magnitude().normalise(normalisation));
         }
         MapKind::Input0 => Aperture::End(End::First),
         MapKind::Input1 => Aperture::End(End::Last),
         MapKind::Output => {
             let method = method.as_ref().ok_or("there is no method")?;
             let (noise, task) = ((*floor).into(), task.clone());
-            let wanted = MethodRequest { noise, normalisation, heard, task, ..MethodRequest::default() };
+            let wanted = MethodRequest { noise, normalisation, layout_samples, task, ..MethodRequest::default() };
             let made = method.reconstruct(radar, &signal.two_ends(radar), &wanted);
             return made.map(|made| made.lambda).map_err(|e| e.to_string());
         }

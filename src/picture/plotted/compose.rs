@@ -79,9 +79,9 @@ pub fn compose(
     let Style { floor, normalisation, .. } = *style;
     let elements = &scene.disturbances.elements;
     let maps = LogMaps::of_elements(radar, elements, signal);
-    let (heard, inputs) =
+    let (layout_samples, inputs) =
         InputMap::of(radar, elements, Some(signal), [&maps.first, &maps.last], (style.layout.as_ref(), normalisation))?;
-    let request = Request { noise: floor.into(), normalisation, heard, ..Request::default() };
+    let request = Request { noise: floor.into(), normalisation, layout_samples, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
     let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
     let reflectors = match (scene.reflector_count(), bodies) {

@@ -60,9 +60,9 @@ impl Reconstructor for MatchedFilter {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
-        if let Some(heard) = &request.heard {
-            let layout = Layout::of_numbers(radar, &heard.layout);
-            let lambda = layout_matched_filter(radar, &layout, heard.samples.view(), request)?;
+        if let Some(layout_samples) = &request.layout_samples {
+            let layout = Layout::of_numbers(radar, &layout_samples.layout);
+            let lambda = layout_matched_filter(radar, &layout, layout_samples.samples.view(), request)?;
             return Ok(Reconstruction::of_map(lambda));
         }
         let cells = GridCells::new(radar);
