@@ -214,7 +214,7 @@ impl Args {
     fn method(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
         match (self.method.as_deref(), self.layout.numbers(radar)?) {
             (Some(name), _) => Ok(methods::by_name(name)?),
-            (None, Some(layout)) => Ok(methods::preferred_hearing(radar, &layout)),
+            (None, Some(layout)) => Ok(methods::preferred_for_layout(radar, &layout)),
             (None, None) => Ok(methods::preferred_for(radar)),
         }
     }

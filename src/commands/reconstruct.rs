@@ -219,8 +219,8 @@ impl Args {
 
     fn usual(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
         let layout = self.layout.numbers(radar)?;
-        let usual =
-            layout.map_or_else(|| methods::preferred_for(radar), |layout| methods::preferred_hearing(radar, &layout));
+        let usual = layout
+            .map_or_else(|| methods::preferred_for(radar), |layout| methods::preferred_for_layout(radar, &layout));
         self.method(usual.name())
     }
 

@@ -143,8 +143,8 @@ impl Echoing {
     }
 }
 
-/// The echoes of every body as the middle of the array hears them, each with the index of its object.
-pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho)> {
+/// The echoes of every body at the centre of the array, each with the index of its object.
+pub fn array_centre_echoes(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho)> {
     let antennas = AntennaPlaces::at([0.0, 0.0]);
     let mut all = Vec::new();
     for (index, seen) in SeenObject::all(radar, scene).iter().enumerate().filter(|(_, s)| s.object.body().is_some()) {

@@ -36,7 +36,7 @@ mod sight;
 mod strips;
 pub mod transition;
 
-pub use echoing::{Echoing, SeenObject, Sources, heard_in_the_middle};
+pub use echoing::{Echoing, SeenObject, Sources, array_centre_echoes};
 pub use scatterer::Scatterer;
 
 use crate::radar::{Pair, Pattern, Radar};

@@ -68,7 +68,7 @@ impl Exports {
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let (floor, normalisation) = (state.settings.floor, state.settings.normalisation);
         let method = state.method().cloned();
-        let layout = state.settings.heard(&radar);
+        let layout = state.settings.layout_numbers(&radar);
         let hear = move |signal: &BeatSignal| layout.map(|layout| Arc::new(signal.of_layout(&layout)));
         if let Some(recording) = seen_recording(state) {
             let layout_samples = recording.signal().and_then(hear);

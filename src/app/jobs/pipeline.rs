@@ -67,7 +67,7 @@ impl Pipeline {
             let wanted = state.method_in(slot).filter(|_| read[slot as usize]).map(|method| Origin {
                 source: source.clone(),
                 normalisation: state.settings.normalisation,
-                layout: state.settings.heard(state.radar()),
+                layout: state.settings.layout_numbers(state.radar()),
                 method: method.name(),
             });
             let pictured = self.maps.result().and_then(|maps| maps.request.pairs[slot as usize].as_ref());
@@ -98,7 +98,7 @@ impl Pipeline {
         let all = wants.contains(&Want::EveryMap);
         let output = read.contains(&true);
         let settings = &state.settings;
-        let layout = settings.heard(state.radar());
+        let layout = settings.layout_numbers(state.radar());
         let on_one_scale = settings.one_scale && (map(MapKind::Input0) || map(MapKind::Input1) || all);
         let wanted = MapRequest {
             floor: settings.floor,

@@ -60,7 +60,7 @@ impl Search {
             radar: state.radar().clone(),
             floor: state.settings.floor,
             normalisation: state.settings.normalisation,
-            layout: state.settings.heard(state.radar()),
+            layout: state.settings.layout_numbers(state.radar()),
             ..search
         };
         let document = state.editor.document().id();
