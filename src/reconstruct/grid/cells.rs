@@ -29,7 +29,7 @@ impl<'a> GridCells<'a> {
 
     /// The cells of `radar`'s map, with echoes at the elements of `ends` that have samples.
     pub fn with_measured_elements(radar: &'a Radar, ends: &TwoEnds) -> Self {
-        GridCells { is_measured: ends.hears(), ..GridCells::new(radar) }
+        GridCells { is_measured: ends.measured_elements(), ..GridCells::new(radar) }
     }
 
     pub fn radar(&self) -> &'a Radar {

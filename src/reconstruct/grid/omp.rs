@@ -50,7 +50,7 @@ const LEAST_OF_ALL: f64 = 1e-10;
 impl Omp {
     fn pursue(&self, radar: &Radar, ends: &TwoEnds, noise_variance: f64, request: &Request) -> Result<Vec<Gained>> {
         let samples = ends.flat();
-        let heard = ends.hears().into_iter().filter(|hears| *hears).count() * radar.samples;
+        let heard = ends.measured_elements().into_iter().filter(|is_measured| *is_measured).count() * radar.samples;
         let noise = noise_variance * heard as f64 * 1.1;
         let all = energy(&samples);
         let enough = noise.max(all * ROUNDING_ENERGY);
