@@ -4,7 +4,7 @@ use crate::arrays::{both_ends, numbers, owned};
 use crate::errors::value;
 use crate::radar::Radar;
 use apertura::maps::{LogMap, RangeAngleMap};
-use apertura::reconstruct::{About, Family, Hears, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use apertura::reconstruct::{About, Family, LayoutSupport, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use apertura::signal::TwoEnds;
 use ndarray::Array2;
 use pyo3::prelude::*;
@@ -138,8 +138,8 @@ impl Reconstructor for Function {
         Family::Own
     }
 
-    fn hears(&self) -> Hears {
-        Hears::Layouts
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::AnyLayout
     }
 
     fn weights(&self, _radar: &apertura::radar::Radar) -> Option<Weights> {

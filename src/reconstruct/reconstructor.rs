@@ -37,12 +37,12 @@ pub struct Weights {
 
 /// The way in which a method uses the samples of other elements than the two ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hears {
-    Ends,
+pub enum LayoutSupport {
+    TwoEnds,
     /// The method takes elements without samples for missing ones: the ends are the halves of the array, silent but for the elements of the layout.
     Halves,
     /// The method reads [`Request::layout_samples`].
-    Layouts,
+    AnyLayout,
 }
 
 /// The reason why a method of samples can't answer to the input of the thesis' networks.
@@ -73,8 +73,8 @@ pub trait Reconstructor: Send + Sync {
     }
 
     /// The way in which the method uses the samples of other elements than the two ends ([`Request::layout_samples`]).
-    fn hears(&self) -> Hears {
-        Hears::Ends
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::TwoEnds
     }
 
     /// [`Reconstructor::check_array`] where the ends are the `halves` of an array, of which so many elements have samples.
@@ -116,15 +116,17 @@ pub trait Reconstructor: Send + Sync {
     /// [`ReconstructError::Unusable`] with the reason.
     fn check_elements(&self, radar: &Radar, layout: &[usize]) -> Result<()> {
         check_layout(layout, radar.elements).map_err(|reason| self.unusable(reason))?;
-        match self.hears() {
-            Hears::Layouts => self.check_array(radar),
-            Hears::Halves => {
+        match self.layout_support() {
+            LayoutSupport::AnyLayout => self.check_array(radar),
+            LayoutSupport::Halves => {
                 let halves = halves(radar);
                 self.check_halves(&halves, layout.len())?;
                 let is_first = |n: &usize| *n < halves.end_elements;
                 self.check_both_halves([!layout.iter().any(is_first), layout.iter().all(is_first)])
             }
-            Hears::Ends => Err(self.unusable("it hears the two ends of an array, and no other layout".to_owned())),
+            LayoutSupport::TwoEnds => {
+                Err(self.unusable("it hears the two ends of an array, and no other layout".to_owned()))
+            }
         }
     }
 
@@ -256,7 +258,7 @@ fn reconstruct_layout<M: Reconstructor + ?Sized>(
     let (halves, ends) = layout_samples.as_halves(radar);
     check_ends(&halves, &ends)?;
     method.check_elements(radar, &layout_samples.layout)?;
-    if method.hears() == Hears::Layouts {
+    if method.layout_support() == LayoutSupport::AnyLayout {
         return answer(method, radar, (&halves, &ends), request);
     }
     method.check_both_halves([is_silent(&ends.first), is_silent(&ends.last)])?;

@@ -12,7 +12,7 @@ use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::noise_model::NoiseModel;
-use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
+use crate::reconstruct::reconstructor::{About, LayoutSupport, Reconstructor};
 use crate::reconstruct::seen::no_plane_waves;
 use crate::signal::TwoEnds;
 use crate::task::Task;
@@ -59,8 +59,8 @@ impl Reconstructor for CoherentMethod {
         1
     }
 
-    fn hears(&self) -> Hears {
-        Hears::Halves
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::Halves
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

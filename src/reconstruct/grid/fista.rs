@@ -8,7 +8,7 @@ use crate::reconstruct::error::Result;
 use crate::reconstruct::noise_model::ends_noise_variance;
 use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
-use crate::reconstruct::{About, Family, Hears, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{About, Family, LayoutSupport, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
 use ndarray::{Array2, Zip};
@@ -225,8 +225,8 @@ impl Reconstructor for Fista {
         }
     }
 
-    fn hears(&self) -> Hears {
-        Hears::Halves
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::Halves
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {

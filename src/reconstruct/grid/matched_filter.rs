@@ -7,7 +7,7 @@ use crate::reconstruct::error::Result;
 use crate::reconstruct::noise_model::ends_noise_variance;
 use crate::reconstruct::power::{focused_gain, of_power};
 use crate::reconstruct::seen::too_many_folds;
-use crate::reconstruct::{About, Hears, Reconstruction, Reconstructor, Request, layout_matched_filter};
+use crate::reconstruct::{About, LayoutSupport, Reconstruction, Reconstructor, Request, layout_matched_filter};
 use crate::signal::TwoEnds;
 use ndarray::Zip;
 
@@ -55,8 +55,8 @@ impl Reconstructor for MatchedFilter {
         too_many_folds(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    fn hears(&self) -> Hears {
-        if *self == MatchedFilter::Coherent { Hears::Layouts } else { Hears::Ends }
+    fn layout_support(&self) -> LayoutSupport {
+        if *self == MatchedFilter::Coherent { LayoutSupport::AnyLayout } else { LayoutSupport::TwoEnds }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {

@@ -9,7 +9,7 @@ use crate::reconstruct::error::Result;
 use crate::reconstruct::noise_model::ends_noise_variance;
 use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
-use crate::reconstruct::{About, Family, Hears, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{About, Family, LayoutSupport, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip, s};
 use num_complex::Complex64;
@@ -139,8 +139,8 @@ impl Reconstructor for Omp {
         }
     }
 
-    fn hears(&self) -> Hears {
-        Hears::Halves
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::Halves
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {
