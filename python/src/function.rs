@@ -67,7 +67,7 @@ impl Function {
         let about = About {
             name: name.to_owned().leak(),
             description: text(description, "a function of your own"),
-            told: text(told, "its author doesn't say"),
+            prior_knowledge: text(told, "its author doesn't say"),
             eta,
         };
         let weights = (!weights.is_empty()).then(|| Weights { sha256: weights.to_owned(), optimiser: String::new() });

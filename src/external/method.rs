@@ -93,7 +93,7 @@ fn who(line: AnswerHeader) -> Result<(About, Option<Weights>), String> {
     let about = About {
         name: name.leak(),
         description: text(description, "a program of your own"),
-        told: text(told, "its program doesn't say"),
+        prior_knowledge: text(told, "its program doesn't say"),
         eta,
     };
     let weights = (!weights.is_empty()).then(|| Weights { sha256: weights, optimiser: String::new() });

@@ -103,7 +103,7 @@ impl ThesisMethod {
         Ok(ThesisMethod {
             network: Network::new(&file, &config, backend)?,
             config: Some(config),
-            about: About { name, description, told: TRAINED_ON, eta },
+            about: About { name, description, prior_knowledge: TRAINED_ON, eta },
             weights: file.weights(),
             trained: file.provenance.domain(file.name())?,
         })
@@ -121,7 +121,7 @@ impl ThesisMethod {
         Ok(ThesisMethod {
             network: Network::Unet { network, device },
             config: None,
-            about: About { name: Unet::NAME, description, told: TRAINED_ON, eta: 0.5 },
+            about: About { name: Unet::NAME, description, prior_knowledge: TRAINED_ON, eta: 0.5 },
             weights: file.weights(),
             trained: file.provenance.domain(file.name())?,
         })

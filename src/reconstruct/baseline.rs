@@ -15,7 +15,7 @@ impl Reconstructor for Baseline {
         About {
             name: "baseline",
             description: "the first end's own map, as the thesis compares with",
-            told: "nothing; its threshold is the thesis' own",
+            prior_knowledge: "nothing; its threshold is the thesis' own",
             eta: 0.9,
         }
     }

@@ -70,7 +70,7 @@ impl Reconstructor for Hybrid {
         About {
             name: "hybrid",
             description: "draws the exact map of the objects it finds; in cells that they don't explain it believes a network more",
-            told: "the same as nomp; and by its network, the training scenes of live",
+            prior_knowledge: "the same as nomp; and by its network, the training scenes of live",
             eta: super::search::ETA,
         }
     }

@@ -19,7 +19,7 @@ pub struct About {
     pub description: &'static str,
     /// Knowledge of the method beside the samples and the radar: assumptions that a user's own scene may not meet, or that the scenes of the
     /// tables happen to.
-    pub told: &'static str,
+    pub prior_knowledge: &'static str,
     /// Threshold that turns the output into detections, where an answer has none of its own ([`Reconstruction::eta`]). Chosen on validation
     /// scenes, never on test scenes, by one rule for all methods: the mean false-alarm rate over the three sets is that of the thesis, 0.65 %
     /// (`examples/choose_eta.rs`).
@@ -332,7 +332,7 @@ mod tests {
 
     impl Reconstructor for Echo {
         fn about(&self) -> About {
-            About { name: "echo", description: "for tests", told: "nothing", eta: 0.5 }
+            About { name: "echo", description: "for tests", prior_knowledge: "nothing", eta: 0.5 }
         }
 
         fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

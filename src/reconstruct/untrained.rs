@@ -41,7 +41,7 @@ mod tests {
 
     impl Reconstructor for Network {
         fn about(&self) -> About {
-            About { name: "network", description: "for tests", told: "nothing", eta: 0.5 }
+            About { name: "network", description: "for tests", prior_knowledge: "nothing", eta: 0.5 }
         }
 
         fn trained_noise(&self) -> Option<TrainedNoise> {

@@ -228,7 +228,7 @@ impl Stub {
 
 impl Reconstructor for Stub {
     fn about(&self) -> About {
-        About { name: "stub", description: "does as it is told", told: "", eta: 0.5 }
+        About { name: "stub", description: "does as it is told", prior_knowledge: "", eta: 0.5 }
     }
     fn knows_pairs(&self) -> bool {
         true

@@ -13,7 +13,7 @@ struct ShortSighted;
 
 impl Reconstructor for ShortSighted {
     fn about(&self) -> About {
-        About { name: "short-sighted", description: "sees near objects only", told: "nothing", eta: 0.8 }
+        About { name: "short-sighted", description: "sees near objects only", prior_knowledge: "nothing", eta: 0.8 }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -83,7 +83,7 @@ struct Dazzled;
 
 impl Reconstructor for Dazzled {
     fn about(&self) -> About {
-        About { name: "dazzled", description: "is dazzled by glints", told: "nothing", eta: 0.8 }
+        About { name: "dazzled", description: "is dazzled by glints", prior_knowledge: "nothing", eta: 0.8 }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

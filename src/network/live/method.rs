@@ -168,7 +168,11 @@ impl Reconstructor for LiveMethod {
         About {
             name: self.name,
             description: if is_shipped { DESCRIPTION } else { "the live network with weights from a file" },
-            told: if is_shipped { TRAINED_ON } else { "what its weights were trained on, which their file says" },
+            prior_knowledge: if is_shipped {
+                TRAINED_ON
+            } else {
+                "what its weights were trained on, which their file says"
+            },
             eta: self.eta,
         }
     }

@@ -15,7 +15,7 @@ pub const IAA: CoherentMethod = CoherentMethod {
     about: About {
         name: "iaa",
         description: "weighted least squares for every direction, both ends as one aperture, and the exact map of its peaks",
-        told: TOLD_TO_COHERENT,
+        prior_knowledge: TOLD_TO_COHERENT,
         eta: 0.809, // by examples/choose_eta.rs
     },
     update: Update {

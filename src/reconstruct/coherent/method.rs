@@ -30,7 +30,7 @@ const SAME_PEAK: (f64, f64) = (1.0, 0.75);
 /// Largest length of the array, range bins: it has as many sectors.
 const MAX_SECTORS: f64 = 1000.0;
 
-/// [`About::told`](crate::reconstruct::About::told) of the coherent methods.
+/// [`About::prior_knowledge`](crate::reconstruct::About::prior_knowledge) of the coherent methods.
 pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor; it measures the noise itself";
 
 /// A method that finds the powers of steering vectors of both ends together.

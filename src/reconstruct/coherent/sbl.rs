@@ -13,7 +13,7 @@ pub const SBL: CoherentMethod = CoherentMethod {
     about: About {
         name: "sbl",
         description: "the fewest directions that explain what both ends heard as one aperture, and the exact map of them",
-        told: TOLD_TO_COHERENT,
+        prior_knowledge: TOLD_TO_COHERENT,
         eta: 0.782, // by examples/choose_eta.rs
     },
     update: Update {

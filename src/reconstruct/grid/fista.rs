@@ -219,7 +219,7 @@ impl Reconstructor for Fista {
         About {
             name: "fista",
             description: "sparse fit with an l1 penalty on the near-field polar grid, among the cells heard most, and its exact map",
-            told: "that a scene holds few reflectors, each in one of the 1024 cells from which both ends heard most or of at most 1024 more that \
+            prior_knowledge: "that a scene holds few reflectors, each in one of the 1024 cells from which both ends heard most or of at most 1024 more that \
                 these leave unexplained; its penalty was chosen on scenes like the tables', the noise it measures itself",
             eta: 0.847, // by examples/choose_eta.rs
         }

@@ -35,7 +35,12 @@ impl Reconstructor for MatchedFilter {
                 ("matched-filter-incoherent", "both ends projected back onto the scene, powers added", 0.960)
             }
         };
-        About { name, description, told: "nothing about the scene or the floor; it measures the noise itself", eta }
+        About {
+            name,
+            description,
+            prior_knowledge: "nothing about the scene or the floor; it measures the noise itself",
+            eta,
+        }
     }
 
     fn finds_reflectors(&self) -> bool {

@@ -134,7 +134,7 @@ impl Reconstructor for Omp {
         About {
             name: "omp",
             description: "greedy sparse fit of exact near-field echoes, each moved off the polar grid to where it explains most, and their exact map",
-            told: "that a scene holds single reflectors, 64 at most; it measures the noise itself",
+            prior_knowledge: "that a scene holds single reflectors, 64 at most; it measures the noise itself",
             eta: 0.819, // by examples/choose_eta.rs
         }
     }

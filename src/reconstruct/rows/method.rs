@@ -22,11 +22,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Power of a row relative to the strongest below which the row has only side lobes: plain beamforming draws it.
 const ACTIVE_ROW: f64 = 1e-12;
 
-/// [`About::told`] of the methods that draw a spectrum.
+/// [`About::prior_knowledge`] of the methods that draw a spectrum.
 const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
     It does not use the phase between the ends";
 
-const TOLD_PEAKS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
+const PEAK_ASSUMPTIONS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
     scene or the floor, it measures the noise itself. Its peaks do not use the phase between the ends; their places and amplitudes \
     are then fitted to both ends together, as those of iaa and sbl are";
 
@@ -66,7 +66,12 @@ pub struct RowMethod {
 impl Reconstructor for RowMethod {
     fn about(&self) -> About {
         let RowMethod { name, description, eta, render, .. } = *self;
-        About { name, description, told: if render == Render::Peaks { TOLD_PEAKS } else { ASSUMPTIONS }, eta }
+        About {
+            name,
+            description,
+            prior_knowledge: if render == Render::Peaks { PEAK_ASSUMPTIONS } else { ASSUMPTIONS },
+            eta,
+        }
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {

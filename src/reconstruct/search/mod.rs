@@ -97,7 +97,7 @@ const CONFIDENCE_SLOPE: f64 = 0.8;
 const CERTAIN_DECADES: f64 = 2.0;
 const MAX_OVER_CERTAIN: f64 = 2.0;
 
-/// [`About::told`](crate::reconstruct::About::told) of the search.
+/// [`About::prior_knowledge`](crate::reconstruct::About::prior_knowledge) of the search.
 const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
     along or across the array's axis; the kind of floor beneath the samples, and how the thesis' program rounds; \
     by about how much elements are off, where they are";
@@ -129,7 +129,7 @@ impl Reconstructor for Nomp {
         About {
             name: "nomp",
             description: "finds reflectors and lines by Newton steps on the raw samples, then draws their exact map",
-            told: TOLD_TO_SEARCH,
+            prior_knowledge: TOLD_TO_SEARCH,
             eta: ETA,
         }
     }
