@@ -4,7 +4,7 @@ use crate::arrays::{both_ends, numbers, owned};
 use crate::errors::value;
 use crate::radar::Radar;
 use apertura::maps::{LogMap, RangeAngleMap};
-use apertura::reconstruct::{About, Family, LayoutSupport, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use apertura::reconstruct::{MethodInfo, Family, LayoutSupport, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use apertura::signal::TwoEnds;
 use ndarray::Array2;
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ const LAMBDA: [f64; 2] = [-1.0, 2.0];
 
 /// A Python function that makes maps of the samples of two ends.
 pub struct Function {
-    about: About,
+    info: MethodInfo,
     weights: Option<Weights>,
     is_decades: bool,
     /// `apertura.serve.called` with the function bound to it.
@@ -64,7 +64,7 @@ impl Function {
             "" => otherwise,
             text => &*text.to_owned().leak(),
         };
-        let about = About {
+        let about = MethodInfo {
             name: name.to_owned().leak(),
             description: text(description, "a function of your own"),
             prior_knowledge: text(told, "its author doesn't say"),
@@ -130,8 +130,8 @@ pub fn is_name(name: &str) -> bool {
 }
 
 impl Reconstructor for Function {
-    fn about(&self) -> About {
-        self.about
+    fn info(&self) -> MethodInfo {
+        self.info
     }
 
     fn family(&self) -> Family {

@@ -221,7 +221,7 @@ impl Method {
     /// The method's knowledge beside samples and radar.
     #[getter]
     fn told(&self) -> &'static str {
-        self.inner.about().prior_knowledge
+        self.inner.info().prior_knowledge
     }
 
     /// Hexadecimal digits that tell its weights from others, as rows hold them; "" where it has none, or doesn't say.

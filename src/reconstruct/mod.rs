@@ -52,7 +52,7 @@ pub use judge::{blended, network_weight};
 #[cfg(feature = "live")]
 pub(crate) use own_threshold::own_threshold;
 pub use prior::NoisePrior;
-pub use reconstructor::{About, LayoutSupport, NEEDS_SAMPLES, Reconstructor, Weights, check_ends};
+pub use reconstructor::{LayoutSupport, MethodInfo, NEEDS_SAMPLES, Reconstructor, Weights, check_ends};
 pub use rows::{
     BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,
     ROOT_MUSIC_PEAKS, RowMethod,

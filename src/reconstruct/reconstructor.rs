@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// Name and description of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct About {
+pub struct MethodInfo {
     pub name: &'static str,
     /// One sentence for tooltips and help.
     pub description: &'static str,
@@ -51,10 +51,10 @@ pub const NEEDS_SAMPLES: &str =
 
 /// A method that computes a map of the whole array from the samples of the two ends.
 ///
-/// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
+/// A method implements [`Reconstructor::info`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
 pub trait Reconstructor: Send + Sync {
     /// Name and description of the method.
-    fn about(&self) -> About;
+    fn info(&self) -> MethodInfo;
 
     fn family(&self) -> Family {
         Family::Classical
@@ -205,19 +205,19 @@ pub trait Reconstructor: Send + Sync {
         None
     }
 
-    /// The method's [`About::name`].
+    /// The method's [`MethodInfo::name`].
     fn name(&self) -> &'static str {
-        self.about().name
+        self.info().name
     }
 
-    /// The method's [`About::description`].
+    /// The method's [`MethodInfo::description`].
     fn description(&self) -> &'static str {
-        self.about().description
+        self.info().description
     }
 
-    /// The method's [`About::eta`].
+    /// The method's [`MethodInfo::eta`].
     fn eta(&self) -> f32 {
-        self.about().eta
+        self.info().eta
     }
 
     /// Whether every answer has a threshold of its own; other methods' answers have one only where noise reaches the method's.
@@ -230,7 +230,7 @@ pub trait Reconstructor: Send + Sync {
         !matches!(self.family(), Family::Own | Family::Network)
     }
 
-    /// The threshold for an answer of this method: its own, or [`About::eta`].
+    /// The threshold for an answer of this method: its own, or [`MethodInfo::eta`].
     fn eta_of(&self, answer: &Reconstruction) -> f32 {
         answer.eta.unwrap_or_else(|| self.eta())
     }
@@ -331,8 +331,8 @@ mod tests {
     struct Echo;
 
     impl Reconstructor for Echo {
-        fn about(&self) -> About {
-            About { name: "echo", description: "for tests", prior_knowledge: "nothing", eta: 0.5 }
+        fn info(&self) -> MethodInfo {
+            MethodInfo { name: "echo", description: "for tests", prior_knowledge: "nothing", eta: 0.5 }
         }
 
         fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::reconstruct::{About, Baseline, ReconstructError, Reconstruction};
+use crate::reconstruct::{Baseline, MethodInfo, ReconstructError, Reconstruction};
 use crate::scene::generate::Kind;
 use crate::signal::TwoEnds;
 
@@ -33,8 +33,8 @@ fn rows_tell_what_the_detector_makes_of_every_output() {
 struct Refuses;
 
 impl Reconstructor for Refuses {
-    fn about(&self) -> About {
-        About { name: "refuses", ..Baseline.about() }
+    fn info(&self) -> MethodInfo {
+        MethodInfo { name: "refuses", ..Baseline.info() }
     }
 
     fn estimate(&self, _: &Radar, _: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
-use crate::reconstruct::{About, ReconstructError, Reconstruction};
+use crate::reconstruct::{MethodInfo, ReconstructError, Reconstruction};
 use crate::signal::TwoEnds;
 
 fn radar() -> Radar {
@@ -12,8 +12,13 @@ fn radar() -> Radar {
 struct ShortSighted;
 
 impl Reconstructor for ShortSighted {
-    fn about(&self) -> About {
-        About { name: "short-sighted", description: "sees near objects only", prior_knowledge: "nothing", eta: 0.8 }
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
+            name: "short-sighted",
+            description: "sees near objects only",
+            prior_knowledge: "nothing",
+            eta: 0.8,
+        }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -82,8 +87,8 @@ fn a_stopped_search_keeps_what_it_has() {
 struct Dazzled;
 
 impl Reconstructor for Dazzled {
-    fn about(&self) -> About {
-        About { name: "dazzled", description: "is dazzled by glints", prior_knowledge: "nothing", eta: 0.8 }
+    fn info(&self) -> MethodInfo {
+        MethodInfo { name: "dazzled", description: "is dazzled by glints", prior_knowledge: "nothing", eta: 0.8 }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {

@@ -12,7 +12,7 @@ use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
 use crate::reconstruct::noise_model::NoiseModel;
-use crate::reconstruct::reconstructor::{About, LayoutSupport, Reconstructor};
+use crate::reconstruct::reconstructor::{LayoutSupport, MethodInfo, Reconstructor};
 use crate::reconstruct::seen::no_plane_waves;
 use crate::signal::TwoEnds;
 use crate::task::Task;
@@ -30,13 +30,13 @@ const SAME_PEAK: (f64, f64) = (1.0, 0.75);
 /// Largest length of the array, range bins: it has as many sectors.
 const MAX_SECTORS: f64 = 1000.0;
 
-/// [`About::prior_knowledge`](crate::reconstruct::About::prior_knowledge) of the coherent methods.
+/// [`MethodInfo::prior_knowledge`](crate::reconstruct::MethodInfo::prior_knowledge) of the coherent methods.
 pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor; it measures the noise itself";
 
 /// A method that finds the powers of steering vectors of both ends together.
 #[derive(Debug, Clone, Copy)]
 pub struct CoherentMethod {
-    pub(super) about: About,
+    pub(super) about: MethodInfo,
     pub(super) update: Update,
     /// Least power of a reflector over the largest of its model.
     pub(super) min_peak_part: f64,
@@ -47,7 +47,7 @@ impl Reconstructor for CoherentMethod {
         Family::Sparse
     }
 
-    fn about(&self) -> About {
+    fn info(&self) -> MethodInfo {
         self.about
     }
 

@@ -8,7 +8,7 @@ use crate::reconstruct::error::Result;
 use crate::reconstruct::noise_model::ends_noise_variance;
 use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
-use crate::reconstruct::{About, Family, LayoutSupport, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{Family, LayoutSupport, MethodInfo, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
 use ndarray::{Array2, Zip};
@@ -215,8 +215,8 @@ impl Reconstructor for Fista {
         Family::Sparse
     }
 
-    fn about(&self) -> About {
-        About {
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
             name: "fista",
             description: "sparse fit with an l1 penalty on the near-field polar grid, among the cells heard most, and its exact map",
             prior_knowledge: "that a scene holds few reflectors, each in one of the 1024 cells from which both ends heard most or of at most 1024 more that \

@@ -7,7 +7,7 @@ use crate::reconstruct::error::Result;
 use crate::reconstruct::noise_model::ends_noise_variance;
 use crate::reconstruct::power::{focused_gain, of_power};
 use crate::reconstruct::seen::too_many_folds;
-use crate::reconstruct::{About, LayoutSupport, Reconstruction, Reconstructor, Request, layout_matched_filter};
+use crate::reconstruct::{LayoutSupport, MethodInfo, Reconstruction, Reconstructor, Request, layout_matched_filter};
 use crate::signal::TwoEnds;
 use ndarray::Zip;
 
@@ -24,7 +24,7 @@ pub enum MatchedFilter {
 }
 
 impl Reconstructor for MatchedFilter {
-    fn about(&self) -> About {
+    fn info(&self) -> MethodInfo {
         // Thresholds by examples/choose_eta.rs.
         let (name, description, eta) = match self {
             MatchedFilter::Coherent => {
@@ -35,7 +35,7 @@ impl Reconstructor for MatchedFilter {
                 ("matched-filter-incoherent", "both ends projected back onto the scene, powers added", 0.960)
             }
         };
-        About {
+        MethodInfo {
             name,
             description,
             prior_knowledge: "nothing about the scene or the floor; it measures the noise itself",

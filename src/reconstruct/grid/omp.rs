@@ -9,7 +9,7 @@ use crate::reconstruct::error::Result;
 use crate::reconstruct::noise_model::ends_noise_variance;
 use crate::reconstruct::seen::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
-use crate::reconstruct::{About, Family, LayoutSupport, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{Family, LayoutSupport, MethodInfo, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip, s};
 use num_complex::Complex64;
@@ -130,8 +130,8 @@ impl Reconstructor for Omp {
         Family::Sparse
     }
 
-    fn about(&self) -> About {
-        About {
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
             name: "omp",
             description: "greedy sparse fit of exact near-field echoes, each moved off the polar grid to where it explains most, and their exact map",
             prior_knowledge: "that a scene holds single reflectors, 64 at most; it measures the noise itself",

@@ -12,7 +12,7 @@ use crate::reconstruct::error::Result;
 use crate::reconstruct::noise_model::{NoiseModel, ends_noise_variance};
 use crate::reconstruct::power::of_power;
 use crate::reconstruct::seen::{Direction, directions, no_plane_waves, row_ranges_metres, too_many_folds};
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{MethodInfo, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Power of a row relative to the strongest below which the row has only side lobes: plain beamforming draws it.
 const ACTIVE_ROW: f64 = 1e-12;
 
-/// [`About::prior_knowledge`] of the methods that draw a spectrum.
+/// [`MethodInfo::prior_knowledge`] of the methods that draw a spectrum.
 const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
     It does not use the phase between the ends";
 
@@ -56,7 +56,7 @@ const LEAST_PEAK_OVER_NOISE: f64 = 10.0;
 pub struct RowMethod {
     pub(super) name: &'static str,
     pub(super) description: &'static str,
-    /// [`About::eta`].
+    /// [`MethodInfo::eta`].
     pub(super) eta: f32,
     /// Power over angle, one value a column in the order of the transform, or `None` to leave the row to plain beamforming.
     pub(super) estimate: fn(&RowSnapshot<'_>) -> Option<Vec<f64>>,
@@ -64,9 +64,9 @@ pub struct RowMethod {
 }
 
 impl Reconstructor for RowMethod {
-    fn about(&self) -> About {
+    fn info(&self) -> MethodInfo {
         let RowMethod { name, description, eta, render, .. } = *self;
-        About {
+        MethodInfo {
             name,
             description,
             prior_knowledge: if render == Render::Peaks { PEAK_ASSUMPTIONS } else { ASSUMPTIONS },
