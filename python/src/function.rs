@@ -64,7 +64,7 @@ impl Function {
             "" => otherwise,
             text => &*text.to_owned().leak(),
         };
-        let about = MethodInfo {
+        let info = MethodInfo {
             name: name.to_owned().leak(),
             description: text(description, "a function of your own"),
             prior_knowledge: text(told, "its author doesn't say"),
@@ -74,7 +74,7 @@ impl Function {
         let partial = function.py().import("functools")?.getattr("partial")?;
         let called = function.py().import("apertura.serve")?.getattr("called")?;
         let called = partial.call1((called, function))?.unbind();
-        Ok(Function { about, weights, is_decades: answers == "decades", called, raised: Mutex::new(None) })
+        Ok(Function { info, weights, is_decades: answers == "decades", called, raised: Mutex::new(None) })
     }
 
     /// Whether rows tell its weights from others.

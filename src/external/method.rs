@@ -56,9 +56,9 @@ pub fn start(command: CommandLine, limit: Duration, task: &Task) -> Result<Exter
         ProcessFailure::Cancelled => fails("cancelled".to_owned()),
         ProcessFailure::Broken(reason) => fails(reason),
     })?;
-    let (about, weights) = who(line).map_err(|why| fails(process.with_last_words(why, Duration::ZERO)))?;
+    let (info, weights) = who(line).map_err(|why| fails(process.with_last_words(why, Duration::ZERO)))?;
     let state = State { process: Some(process), asked: 0 };
-    Ok(ExternalMethod { command, about, weights, limit, process: Mutex::new(state) })
+    Ok(ExternalMethod { command, info, weights, limit, process: Mutex::new(state) })
 }
 
 fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<AnswerHeader, ProcessFailure> {
@@ -90,14 +90,14 @@ fn who(line: AnswerHeader) -> Result<(MethodInfo, Option<Weights>), String> {
         "" => otherwise,
         text => &*text.chars().take(LONGEST_TEXT).collect::<String>().leak(),
     };
-    let about = MethodInfo {
+    let info = MethodInfo {
         name: name.leak(),
         description: text(description, "a program of your own"),
         prior_knowledge: text(told, "its program doesn't say"),
         eta,
     };
     let weights = (!weights.is_empty()).then(|| Weights { sha256: weights, optimiser: String::new() });
-    Ok((about, weights))
+    Ok((info, weights))
 }
 
 fn check_eta(eta: f32) -> Result<(), String> {
