@@ -1,7 +1,7 @@
 //! The cells of the whole array's polar grid: every range bin by every direction of the radar.
 
 use crate::radar::Radar;
-use crate::reconstruct::seen::{Direction, directions, row_ranges_metres};
+use crate::reconstruct::polar::{Direction, directions, row_ranges_metres};
 use crate::scene::{Reflector, touched_element};
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::Array2;

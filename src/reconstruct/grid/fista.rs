@@ -6,7 +6,7 @@ use crate::radar::Radar;
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::Result;
 use crate::reconstruct::noise_model::ends_noise_variance;
-use crate::reconstruct::seen::too_many_folds;
+use crate::reconstruct::polar::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
 use crate::reconstruct::{Family, LayoutSupport, MethodInfo, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{ArrayEcho, TwoEnds};
