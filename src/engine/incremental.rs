@@ -16,7 +16,7 @@ use crate::scattering::SeenObject;
 use crate::scene::{Scene, SceneError};
 use crate::signal::plan::Sum;
 use crate::signal::simd::{LANES_F32, LANES_F64};
-use crate::signal::{Algorithm, Made, Plan, Precision, Rows, Unfinished, simulate_ends_for};
+use crate::signal::{Algorithm, Plan, Precision, Rows, SimulationError, SimulationResult, simulate_ends_for};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -93,13 +93,13 @@ impl Engine {
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn update(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
-        self.update_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
+        self.update_for(&Task::default(), scene, wanted).map_err(SimulationError::of_scene)
     }
 
     /// [`Engine::update`] that `task` can cancel. After that, the next update starts from scratch.
     /// # Errors
-    /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
+    /// [`SimulationError`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
+    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> SimulationResult<EngineFrame> {
         let begin = Instant::now();
         let is_focused = self.radar.focus_off_line && !self.radar.is_on_line();
         if is_focused || !scene.disturbances.is_none_to(&self.radar) {
@@ -120,13 +120,13 @@ impl Engine {
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn settle(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
-        self.settle_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
+        self.settle_for(&Task::default(), scene, wanted).map_err(SimulationError::of_scene)
     }
 
     /// [`Engine::settle`] that `task` can cancel. Later updates are not affected.
     /// # Errors
-    /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
+    /// [`SimulationError`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
+    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> SimulationResult<EngineFrame> {
         let begin = Instant::now();
         let mut report = EngineReport::default();
         let settled = match self.settled.take().filter(|settled| settled.has(scene, wanted)) {
@@ -138,7 +138,7 @@ impl Engine {
         Ok(frame)
     }
 
-    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
+    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> SimulationResult<EngineFrame> {
         let mut report = EngineReport::default();
         let visible = wanted.visible();
         let mut shown = self.recall(scene, wanted);

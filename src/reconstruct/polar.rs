@@ -107,7 +107,7 @@ pub(super) fn too_many_folds(radar: &Radar) -> Option<String> {
         let wavelengths = radar.element_spacing_metres / radar.wavelength_metres();
         format!(
             "elements stand {wavelengths:.3} wavelengths apart, so that each column stands for {folds} directions; at most \
-             {MOST_FOLDS} are told apart"
+             {MAX_FOLDS} are told apart"
         )
     })
 }

@@ -13,7 +13,7 @@ use super::path::Path;
 use super::phase::{Echo, EchoModel};
 use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::{BeatSignal, Floor, Made, Plan, floor};
+use super::{BeatSignal, Floor, Plan, SimulationResult, floor};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::{Echoing, PathEcho, SeenObject, Sources};
 use crate::scene::{Object, Scene, SceneError};
@@ -60,8 +60,14 @@ pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
 
 /// Samples of every chirp of `radar` over `floor`, with noise by `seed`.
 /// # Errors
-/// [`Unfinished`](super::Unfinished) when the scene can't be simulated, at the first chirp or at the last, and after a cancellation of `task`.
-pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<ChirpSamples> {
+/// [`SimulationError`](super::Unfinished) when the scene can't be simulated, at the first chirp or at the last, and after a cancellation of `task`.
+pub fn simulate_chirps_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+) -> SimulationResult<ChirpSamples> {
     scene.validate(radar)?;
     let array = &*scene.disturbances.elements_of(radar);
     array.validate(radar).map_err(SceneError::Elements)?;

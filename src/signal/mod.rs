@@ -39,9 +39,9 @@ mod run;
 mod samples;
 pub mod simd;
 mod simulate;
+mod simulation_error;
 pub mod split;
 pub mod synthesis;
-mod unfinished;
 
 pub use algorithm::{Algorithm, Precision};
 pub use built::{add_interference, apply_responses, simulate_built};
@@ -54,4 +54,4 @@ pub use rows::Rows;
 pub use run::beat_signal;
 pub use samples::{BeatSignal, LayoutSamples, TwoEnds};
 pub use simulate::{simulate, simulate_ends_for, simulate_for};
-pub use unfinished::{Made, Unfinished};
+pub use simulation_error::{SimulationError, SimulationResult};

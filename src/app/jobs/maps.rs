@@ -4,7 +4,7 @@ use super::rest::Rest;
 use super::scene_maps::{MapsRequest, MapsResult, MapsState};
 use crate::engine::EngineStage;
 use crate::platform::Instant;
-use crate::signal::Unfinished;
+use crate::signal::SimulationError;
 use crate::task::{Reply, Task, Worker};
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(400);
 
 /// The worker of the maps, its last request and its last result.
 pub struct MapsJob {
-    worker: Worker<MapsRequest, Result<MapsResult, Unfinished>>,
+    worker: Worker<MapsRequest, Result<MapsResult, SimulationError>>,
     /// The task of all requests at rest, until the scene changes.
     settling: Task,
     /// Whether maps were cancelled since the last ones arrived. The next ones are then finished, so that the user sees some.
@@ -62,9 +62,11 @@ impl MapsJob {
                     result.took = elapsed;
                     self.take_in(result, &mut on_maps);
                 }
-                Reply::Done { result: Err(Unfinished::Scene(error)), .. } => self.scene_error = Some(error.to_string()),
+                Reply::Done { result: Err(SimulationError::Scene(error)), .. } => {
+                    self.scene_error = Some(error.to_string())
+                }
                 // The newer request is on its way.
-                Reply::Done { result: Err(Unfinished::Cancelled(_)), .. } => {}
+                Reply::Done { result: Err(SimulationError::Cancelled(_)), .. } => {}
                 Reply::Panicked { message, .. } => {
                     self.waiting.get_or_insert_with(Instant::now);
                     messages.push(format!(

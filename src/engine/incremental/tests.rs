@@ -251,7 +251,8 @@ fn what_is_cancelled_leaves_nothing_half_made() {
     let (before, after) = (Scene::of_points([(0.3, 1.0), (-0.4, 1.7)]), Scene::of_points([(0.3, 1.0), (0.1, 1.2)]));
     let cancelled = Task::default();
     cancelled.cancel();
-    let is_cancelled = |frame: Result<EngineFrame, Unfinished>| matches!(frame, Err(Unfinished::Cancelled(_)));
+    let is_cancelled =
+        |frame: Result<EngineFrame, SimulationError>| matches!(frame, Err(SimulationError::Cancelled(_)));
     // Without the samples of the ends the cancellation happens among the range profiles.
     for ends in [true, false] {
         let wanted = MapRequest { ends, ..MapRequest::default() };
