@@ -9,7 +9,7 @@ use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::scene::{Line, MIN_ELEMENT_DISTANCE_METRES, Object, Point, Reflector, Scene};
 use crate::signal::plan::{self, BEST_TOLERANCE, amplitude_bound};
-use crate::signal::{Algorithm, Floor, Plan, Precision, beat_signal};
+use crate::signal::{Algorithm, Floor, Precision, SynthesisPlan, beat_signal};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 
@@ -119,7 +119,7 @@ impl<'a> Case<'a> {
     }
 
     fn plain(&self, name: &str, algorithm: Algorithm) -> Outcome {
-        let plan = Plan::cheapest(0, 0.0, BEST_TOLERANCE).with_algorithm(algorithm);
+        let plan = SynthesisPlan::cheapest(0, 0.0, BEST_TOLERANCE).with_algorithm(algorithm);
         let noise = UnitNoise::new(self.radar);
         let reflectors = self.scene.reflectors();
         let signal = beat_signal(self.radar, &reflectors, &plan);

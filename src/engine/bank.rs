@@ -9,7 +9,7 @@ use crate::scattering::{Echoing, SeenObject};
 use crate::scene::Scene;
 use crate::signal::simd::{Lanes, Real, Simd};
 use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
-use crate::signal::{Algorithm, Floor, Plan, Rows, floor, plan};
+use crate::signal::{Algorithm, Floor, Rows, SynthesisPlan, floor, plan};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 
@@ -20,7 +20,7 @@ pub(super) struct BankUpdate<'a> {
     /// Objects of the scene, each with those that hide it.
     pub seen: &'a [SeenObject],
     pub wanted: &'a MapRequest,
-    pub plan: Plan,
+    pub plan: SynthesisPlan,
     pub forced: Option<Algorithm>,
     pub amplitude: f64,
     pub missing: [bool; 3],
@@ -173,7 +173,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     fn synthesis(&mut self, job: &BankUpdate<'_>, count: usize) -> usize {
-        let mut plan = Plan::cheapest(count, job.amplitude, job.plan.tolerance);
+        let mut plan = SynthesisPlan::cheapest(count, job.amplitude, job.plan.tolerance);
         if job.wanted.floor == Floor::Exact {
             plan = plan.on_few_rows(job.radar, count);
         }

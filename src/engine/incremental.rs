@@ -14,9 +14,9 @@ use crate::platform::Instant;
 use crate::radar::Radar;
 use crate::scattering::SeenObject;
 use crate::scene::{Scene, SceneError};
-use crate::signal::plan::Sum;
+use crate::signal::plan::SumSize;
 use crate::signal::simd::{LANES_F32, LANES_F64};
-use crate::signal::{Algorithm, Plan, Precision, Rows, SimulationError, SimulationResult, simulate_ends_for};
+use crate::signal::{Algorithm, Precision, Rows, SimulationError, SimulationResult, SynthesisPlan, simulate_ends_for};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -176,7 +176,7 @@ impl Engine {
     fn recall(&mut self, scene: &Scene, wanted: &MapRequest) -> ShownMaps {
         let tolerance = self.tolerance(wanted);
         // Maps accurate enough for a fixed range may show rounding when normalised by their minimum.
-        let nothing = Sum { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
+        let nothing = SumSize { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
         let trap = self.last == Some(Precision::F32)
             && tolerance::refusal(Precision::F32, &nothing, wanted.floor, wanted.normalisation).is_some();
         let same = |s: &ShownMaps| !trap && s.tolerance <= tolerance && s.of.is(scene, wanted);
@@ -197,10 +197,10 @@ impl Engine {
     ) -> Result<(), Cancelled> {
         let seen = SeenObject::all(&self.radar, scene);
         let amplitude = self.amplitudes.bound(&self.radar, &seen);
-        let mut chosen = Plan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
+        let mut chosen = SynthesisPlan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {
             let algorithm = self.forced.algorithm.unwrap_or(chosen.algorithm);
-            let sum = Sum { algorithm, reflectors: scene.echo_count(), amplitude };
+            let sum = SumSize { algorithm, reflectors: scene.echo_count(), amplitude };
             let refusal = tolerance::refusal(forced, &sum, wanted.floor, wanted.normalisation);
             chosen.precision = if refusal.is_some() { Precision::F64 } else { forced };
             refusal

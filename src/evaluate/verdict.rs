@@ -16,7 +16,7 @@ use crate::radar::{BuiltArray, Radar};
 use crate::scattering::{Echoing, SeenObject};
 use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan::amplitude_bound;
-use crate::signal::{Plan, beat_signal};
+use crate::signal::{SynthesisPlan, beat_signal};
 use ndarray::Axis;
 
 /// Least part of a footprint, 0 to 1, that must be detected for the object to count as found.
@@ -293,7 +293,7 @@ fn shifted_column(column: usize, by: i32, columns: usize) -> usize {
 fn footprint(radar: &Radar, seen: &SeenObject, level: f64) -> Vec<CellIndex> {
     let echoing = Echoing::seen(radar, std::slice::from_ref(seen));
     let amplitude = amplitude_bound(radar, &echoing);
-    let plan = Plan::cheapest(echoing.len(), amplitude, SIMULATION_TOLERANCE);
+    let plan = SynthesisPlan::cheapest(echoing.len(), amplitude, SIMULATION_TOLERANCE);
     let signal = beat_signal(radar, &echoing, &plan);
     if radar.focus_off_line && !radar.is_on_line() {
         let map = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).cells;

@@ -32,7 +32,7 @@ pub fn refusal(precision: Precision, sum: &Sum, floor: Floor, normalisation: Nor
 mod tests {
     use super::*;
     use crate::radar::Decibels;
-    use crate::signal::{Algorithm, Plan};
+    use crate::signal::{Algorithm, SynthesisPlan};
 
     #[test]
     fn f32_never_meets_min_max_over_a_rounding_floor() {
@@ -44,11 +44,11 @@ mod tests {
             (Floor::Exact, Normalisation::DynamicRange(Decibels(60.0)), Precision::F32),
             (Floor::Exact, Normalisation::DynamicRange(Decibels(200.0)), Precision::F64),
         ] {
-            let recipe = Plan::cheapest(10, 1.0, tolerance_for(floor, normalisation));
+            let recipe = SynthesisPlan::cheapest(10, 1.0, tolerance_for(floor, normalisation));
             assert_eq!(recipe.precision, precision, "{floor} {normalisation}");
         }
-        let exact = Plan::cheapest(1000, 1.0, tolerance_for(Floor::Exact, Normalisation::MinMax));
+        let exact = SynthesisPlan::cheapest(1000, 1.0, tolerance_for(Floor::Exact, Normalisation::MinMax));
         assert_eq!(exact.algorithm, Algorithm::Split, "without a floor, gridding's own error would show");
-        assert_eq!(Plan::cheapest(10, 1e30, 1e-6).precision, Precision::F64, "squares of 1e30 overflow f32");
+        assert_eq!(SynthesisPlan::cheapest(10, 1e30, 1e-6).precision, Precision::F64, "squares of 1e30 overflow f32");
     }
 }

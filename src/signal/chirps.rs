@@ -13,7 +13,7 @@ use super::path::Path;
 use super::phase::{Echo, EchoModel};
 use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::{BeatSignal, Floor, Plan, SimulationResult, floor};
+use super::{BeatSignal, Floor, SimulationResult, SynthesisPlan, floor};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::{Echoing, PathEcho, SeenObject, Sources};
 use crate::scene::{Object, Scene, SceneError};
@@ -158,7 +158,7 @@ fn rest_samples(
     floor: Floor,
     ranges: &[Range<usize>; 2],
 ) -> Array2<Complex64> {
-    let plan = Plan::cheapest(rest.len(), amplitude_bound(radar, rest), tolerance(floor));
+    let plan = SynthesisPlan::cheapest(rest.len(), amplitude_bound(radar, rest), tolerance(floor));
     let array = &*scene.disturbances.elements_of(radar);
     let of = |range: Range<usize>| samples_of(radar, array, rest.into(), &plan, range, task);
     let [first, last] = if scene.disturbances.is_none_to(radar) {

@@ -224,7 +224,7 @@ fn far<T: Real, const W: usize, const FMA: bool>(distance: Lanes<T, W>, bins: f6
 mod tests {
     use super::super::algorithm::{Algorithm, Precision};
     use super::super::exact;
-    use super::super::plan::Plan;
+    use super::super::plan::SynthesisPlan;
     use super::super::simd::{LANES_F32, LANES_F64, Simd};
     use super::super::synthesis::{BlockProfiles, Synthesis};
     use super::*;
@@ -247,7 +247,7 @@ mod tests {
     }
 
     /// Largest error of a cell relative to the largest cell, by either precision.
-    fn error<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: Plan) -> f64 {
+    fn error<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: SynthesisPlan) -> f64 {
         let reflectors = sources.into();
         let expected = profiles_of(radar, exact::beat_signal(radar, reflectors).samples);
         let peak = expected.iter().fold(0.0f64, |m, v| m.max(v.norm()));
@@ -269,8 +269,8 @@ mod tests {
         }
     }
 
-    fn plan(tolerance: f64, simd: Simd) -> Plan {
-        Plan { simd, ..Plan::cheapest(1, 1.0, tolerance) }.with_algorithm(Algorithm::ClosedForm)
+    fn plan(tolerance: f64, simd: Simd) -> SynthesisPlan {
+        SynthesisPlan { simd, ..SynthesisPlan::cheapest(1, 1.0, tolerance) }.with_algorithm(Algorithm::ClosedForm)
     }
 
     #[test]
@@ -350,7 +350,7 @@ mod tests {
     fn other_windows_have_none() {
         let radar = Radar { window: WindowFunction::Blackman, elements: 16, end_elements: 3, ..Radar::default() };
         let reflectors = Scene::of_points([(0.5, 9.0)]).reflectors();
-        assert_eq!(Plan::cheapest(1, 1.0, 1e-3).on_few_rows(&radar, 1).algorithm, Algorithm::Split);
+        assert_eq!(SynthesisPlan::cheapest(1, 1.0, 1e-3).on_few_rows(&radar, 1).algorithm, Algorithm::Split);
         let e = error(&radar, &reflectors, plan(1e-3, Simd::best()));
         assert!(e < 1e-6, "forced, it is evaluated by phasor split: {e:e}");
     }

@@ -12,7 +12,7 @@
 //! [`Sources`](crate::scattering::Sources) are the scatterers: points, and bodies with their shadows.
 //!
 //! * [`path`] (range and amplitude of an echo at a pair of antennas) and [`phase`] are the forward model of every simulation, fit and bound.
-//! * A [`Plan`] has algorithm and precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
+//! * A [`SynthesisPlan`] has algorithm and precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
 //! * [`simulate`] goes from a scene to samples over a [`floor`]: the thesis' rounding noise, none, or thermal noise.
 //! * [`built`] adds element errors and interference; [`calibration`] estimates gains and phases; [`chirps`] has moving objects.
 //! * [`echo`] is one reflector's echo as a value, the dictionary atom of sparse methods.
@@ -49,7 +49,7 @@ pub use calibration::{Calibration, calibrate};
 pub use chirps::{ChirpSamples, simulate_chirps_for};
 pub use echo::ArrayEcho;
 pub use floor::Floor;
-pub use plan::Plan;
+pub use plan::SynthesisPlan;
 pub use rows::Rows;
 pub use run::beat_signal;
 pub use samples::{BeatSignal, LayoutSamples, TwoEnds};

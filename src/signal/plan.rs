@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// Algorithm, precision, tolerance and instructions of a simulation by [`super::beat_signal`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Plan {
+pub struct SynthesisPlan {
     pub algorithm: Algorithm,
     pub precision: Precision,
     /// Largest error of a sample, relative to the sum of the reflectors' amplitudes.
@@ -43,18 +43,18 @@ fn max_f32_reflectors(algorithm: Algorithm) -> usize {
     }
 }
 
-impl Plan {
+impl SynthesisPlan {
     /// The cheapest way to evaluate `count` reflectors whose amplitudes sum to at most `amplitude`, within `tolerance`.
-    pub fn cheapest(count: usize, amplitude: f64, tolerance: f64) -> Plan {
+    pub fn cheapest(count: usize, amplitude: f64, tolerance: f64) -> SynthesisPlan {
         let gridded = count >= MIN_GRIDDED_REFLECTORS && tolerance >= FLOOR_TOLERANCE;
         let algorithm = if gridded { Algorithm::Gridded } else { Algorithm::Split };
         let single = tolerance >= MIN_F32_TOLERANCE && holds(amplitude) && count <= max_f32_reflectors(algorithm);
         let precision = if single { Precision::F32 } else { Precision::F64 };
-        Plan { algorithm, precision, tolerance, simd: Simd::chosen() }
+        SynthesisPlan { algorithm, precision, tolerance, simd: Simd::chosen() }
     }
 
     /// The plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.
-    pub fn on_few_rows(self, radar: &Radar, count: usize) -> Plan {
+    pub fn on_few_rows(self, radar: &Radar, count: usize) -> SynthesisPlan {
         let cells = count.saturating_mul(2 * closed_form::reach(self.tolerance));
         let holds = self.precision == Precision::F64 || count <= max_f32_reflectors(Algorithm::ClosedForm);
         if cells <= MAX_CLOSED_FORM_CELLS && holds && closed_form::applies(radar) {
@@ -64,14 +64,14 @@ impl Plan {
         }
     }
 
-    pub fn with_algorithm(self, algorithm: Algorithm) -> Plan {
-        Plan { algorithm, ..self }
+    pub fn with_algorithm(self, algorithm: Algorithm) -> SynthesisPlan {
+        SynthesisPlan { algorithm, ..self }
     }
 }
 
 /// The size of a sum over reflectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sum {
+pub struct SumSize {
     pub algorithm: Algorithm,
     pub reflectors: usize,
     /// Bound of the sum of their amplitudes ([`amplitude_bound`]).
@@ -79,7 +79,7 @@ pub struct Sum {
 }
 
 /// The reason for which f32 must not be used for `sum`: too large or too small amplitudes, or too many reflectors. `None` where it may be used.
-pub fn refusal(sum: &Sum) -> Option<&'static str> {
+pub fn refusal(sum: &SumSize) -> Option<&'static str> {
     if !holds(sum.amplitude) {
         Some("f64 although f32 was asked for: f32 can't hold such amplitudes")
     } else if sum.reflectors > max_f32_reflectors(sum.algorithm) {

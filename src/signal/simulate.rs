@@ -3,7 +3,7 @@
 use super::built::{simulate_built_for, tolerance};
 use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::{BeatSignal, Floor, Plan, SimulationError, SimulationResult, TwoEnds, floor};
+use super::{BeatSignal, Floor, SimulationError, SimulationResult, SynthesisPlan, TwoEnds, floor};
 use crate::radar::{BuiltArray, End, Radar};
 use crate::scattering::Echoing;
 use crate::scene::{Scene, SceneError};
@@ -48,7 +48,7 @@ pub fn simulate_ends_for(
     }
     scene.validate(radar)?;
     let echoing = Echoing::of(radar, scene);
-    let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
+    let plan = SynthesisPlan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
     let variance = floor::noise_variance(radar, &echoing, floor);
     let [first, last] = End::BOTH.map(|end| {
         let elements = radar.end_range(end);
