@@ -1,6 +1,6 @@
 //! The TOML of a recording, with the files that it names.
 
-use super::capture::Plan;
+use super::capture::CapturePlan;
 use super::chain::{Open, Source};
 use super::doubts::doubts;
 use super::layout::stream::CaptureStream;
@@ -158,7 +158,7 @@ impl<'a> RecordingText<'a> {
         let count = || -> Result<u64, Fault> {
             let Some(capture) = &table.capture else { return self.count_frames() };
             let stream = CaptureStream::new(self.open_capture(capture)?)?;
-            Ok(Plan::new(capture, profile.as_ref(), stream.bytes())?.frames.max(1))
+            Ok(CapturePlan::new(capture, profile.as_ref(), stream.bytes())?.frames.max(1))
         };
         let repeats = |kind: &AxisKind| matches!(kind, AxisKind::Frame | AxisKind::Chirp);
         if table.capture.is_none() && !table.axes.iter().flatten().any(repeats) {

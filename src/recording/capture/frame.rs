@@ -1,6 +1,6 @@
 //! One frame of a capture.
 
-use super::plan::Plan;
+use super::plan::CapturePlan;
 use super::quality::Quality;
 use super::table::{Capture, Treatment};
 use crate::recording::Fault;
@@ -20,8 +20,12 @@ pub(in crate::recording) struct Frame {
 
 impl Frame {
     /// Reads the loops of the plan, and subtracts constant part and static clutter where `capture` says so.
-    pub fn read<R: Read + Seek>(stream: &mut CaptureStream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, Fault> {
-        let Plan { samples, receivers, chirps, loops, layout, .. } = *plan;
+    pub fn read<R: Read + Seek>(
+        stream: &mut CaptureStream<R>,
+        capture: &Capture,
+        plan: &CapturePlan,
+    ) -> Result<Frame, Fault> {
+        let CapturePlan { samples, receivers, chirps, loops, layout, .. } = *plan;
         let size = layout.chirp_bytes(samples, receivers);
         let mut all = Array4::zeros((loops, chirps, receivers, samples));
         let mut quality = Quality::new(loops * chirps);

@@ -21,7 +21,7 @@ mod table;
 mod tests;
 
 pub(super) use frame::Frame;
-pub(super) use plan::Plan;
+pub(super) use plan::CapturePlan;
 pub use table::{Capture, Treatment};
 
 use super::Fault;
@@ -52,9 +52,9 @@ impl Capture {
         &self,
         file: impl Read + Seek,
         profile: Option<&RadarProfile>,
-    ) -> Result<(Vec<usize>, Frame, Plan), Fault> {
+    ) -> Result<(Vec<usize>, Frame, CapturePlan), Fault> {
         let mut stream = CaptureStream::new(file)?;
-        let plan = Plan::new(self, profile, stream.bytes())?;
+        let plan = CapturePlan::new(self, profile, stream.bytes())?;
         Ok((plan.chosen_chirps(self)?, Frame::read(&mut stream, self, &plan)?, plan))
     }
 

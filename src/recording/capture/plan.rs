@@ -15,7 +15,7 @@ const MAX_COUNT: usize = 1 << 16;
 
 #[derive(Debug, Clone, PartialEq)]
 /// Counts of a capture, and the bytes of the file that are read.
-pub(in crate::recording) struct Plan {
+pub(in crate::recording) struct CapturePlan {
     pub layout: Layout,
     /// Samples of a chirp in the file.
     pub samples: usize,
@@ -31,8 +31,8 @@ pub(in crate::recording) struct Plan {
     pub notes: Vec<String>,
 }
 
-impl Plan {
-    pub fn new(capture: &Capture, profile: Option<&RadarProfile>, bytes: u64) -> Result<Plan, Fault> {
+impl CapturePlan {
+    pub fn new(capture: &Capture, profile: Option<&RadarProfile>, bytes: u64) -> Result<CapturePlan, Fault> {
         let layout = layout(capture)?;
         let [samples, receivers, chirps, all_loops] = counts(capture, profile)?;
         let lanes = layout.part_order.group();
@@ -50,7 +50,7 @@ impl Plan {
         let frame_numbers = profile.map_or(0, |p| p.frame_numbers as u64).max(numbers as u64 * all_loops as u64);
         let before = size(profile.map_or(0, |p| p.numbers_before as u64));
         let frame_bytes = size(frame_numbers);
-        let mut plan = Plan {
+        let mut plan = CapturePlan {
             layout,
             samples,
             receivers,
@@ -76,7 +76,7 @@ impl Plan {
         let [loop_bytes, frame_bytes, before] = sizes;
         let file_loops = bytes.saturating_sub(before) / loop_bytes.max(1);
         if file_loops == 0 {
-            let Plan { chirps, receivers, samples, .. } = *self;
+            let CapturePlan { chirps, receivers, samples, .. } = *self;
             let expected = before + loop_bytes;
             return Err(Fault::Data(format!(
                 "has {bytes} bytes; expected at least {expected}: a loop has {chirps} chirps of {receivers} receivers and {samples} samples"

@@ -1,6 +1,6 @@
 //! Doubts about a frame: zeros of lost packets, saturation, constant parts, real samples stored as complex.
 
-use super::plan::Plan;
+use super::plan::CapturePlan;
 use crate::recording::layout::{Layout, PartOrder};
 use ndarray::{Array4, Axis};
 use num_complex::Complex64;
@@ -73,7 +73,7 @@ impl Quality {
     }
 
     /// Doubts about the frame, a sentence each; `is_out` where the constant part was subtracted.
-    pub fn sentences(&self, plan: &Plan, is_out: bool) -> Vec<String> {
+    pub fn sentences(&self, plan: &CapturePlan, is_out: bool) -> Vec<String> {
         let chirps_with_zeros: Vec<usize> = (0..self.zeros.len()).filter(|n| self.zeros[*n]).collect();
         let lost = chirps_with_zeros.first().zip(chirps_with_zeros.last()).map(|(first, last)| {
             let (chirps, many) = (self.zeros.len(), chirps_with_zeros.len());

@@ -1,7 +1,7 @@
 //! The first frame of a capture: the constant part, and the order of a cascade's chips.
 
 use super::boards::{self, Board};
-use crate::recording::capture::{Capture, Frame, Plan};
+use crate::recording::capture::{Capture, CapturePlan, Frame};
 use crate::recording::layout::stream::CaptureStream;
 use crate::recording::profile::RadarProfile;
 use ndarray::{Array1, Array2, ArrayView1, Axis};
@@ -34,7 +34,7 @@ impl FirstFrame {
         capture: &Capture,
         profile: Option<&RadarProfile>,
     ) -> FirstFrame {
-        let Ok(plan) = Plan::new(capture, profile, stream.bytes()) else { return FirstFrame::default() };
+        let Ok(plan) = CapturePlan::new(capture, profile, stream.bytes()) else { return FirstFrame::default() };
         let Ok(Frame { samples, quality }) = Frame::read(stream, capture, &plan) else {
             return FirstFrame { frames: plan.frames, ..FirstFrame::default() };
         };
