@@ -9,7 +9,7 @@ mod tests;
 
 pub use super::shard::Shard;
 pub use elements::Elements;
-pub use error::{CampaignError, Unfit};
+pub use error::{CampaignError, MethodFailure};
 
 use super::Target;
 use super::rows::{FORMAT, Row, Text, Whole};
@@ -114,11 +114,11 @@ impl Campaign {
         methods: &[&dyn Reconstructor],
         task: &Task,
         on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
-    ) -> Result<(Vec<Row>, Vec<Unfit>), CampaignError> {
+    ) -> Result<(Vec<Row>, Vec<MethodFailure>), CampaignError> {
         let empty = self.empty_rows(sets, methods)?;
-        let mut unfit: Vec<Unfit> = Vec::new();
+        let mut unfit: Vec<MethodFailure> = Vec::new();
         let rows = self.run_through(sets, methods, &empty, &|_, _, _| false, task, on_row, |error| {
-            Unfit::note(&mut unfit, error)
+            MethodFailure::note(&mut unfit, error)
         })?;
         Ok((rows, unfit))
     }

@@ -50,6 +50,6 @@ fn a_campaign_goes_on_without_a_method_that_refuses_its_scenes() {
     assert!(campaign.run(&sets, &methods, &Task::default(), |_| ()).is_err());
     let (rows, unfit) = campaign.run_fit(&sets, &methods, &Task::default(), |_, _, _| ()).unwrap();
     assert_eq!(rows.iter().map(|row| &*row.method).collect::<Vec<_>>(), ["baseline"; 2]);
-    let [Unfit { method: "refuses", set, scenes: 2, reason }] = &unfit[..] else { panic!("{unfit:?}") };
+    let [MethodFailure { method: "refuses", set, scenes: 2, reason }] = &unfit[..] else { panic!("{unfit:?}") };
     assert!(set == "set 1" && reason.contains("made for no radar"), "{reason}");
 }
