@@ -12,7 +12,7 @@ pub use elements::Elements;
 pub use error::{CampaignError, MethodFailure};
 
 use super::Target;
-use super::rows::{FORMAT, Row, Text, Whole};
+use super::rows::{FORMAT, Row, Text, WholeRun};
 use super::sets::{Case, SceneSet};
 use super::trial::{TimedAnswer, Trial};
 use crate::maps::Normalisation;
@@ -139,7 +139,7 @@ impl Campaign {
         }
         let counted = |set: &SceneSet| (set.to_string(), set.len().unwrap_or(self.count));
         let names = methods.iter().map(|method| method.name().to_owned()).collect();
-        let whole = Whole::new(sets.iter().map(counted).collect(), names).map_err(CampaignError::Refused)?;
+        let whole = WholeRun::new(sets.iter().map(counted).collect(), names).map_err(CampaignError::Refused)?;
         let of_all = Row {
             version: Some(FORMAT),
             program: env!("CARGO_PKG_VERSION").into(),

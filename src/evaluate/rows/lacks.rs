@@ -1,6 +1,6 @@
 //! Rows that are missing from a whole run.
 
-use super::{Row, Text, Whole};
+use super::{Row, Text, WholeRun};
 use crate::evaluate::shard::Shard;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -43,7 +43,7 @@ impl fmt::Display for Lack {
 pub fn lacks(rows: &[Row]) -> Vec<Lack> {
     let mut present: BTreeMap<(&str, &str), BTreeSet<u32>> = BTreeMap::new();
     let mut runs: Vec<(&Text, &Text)> = Vec::new();
-    let mut wholes: Vec<Whole> = Vec::new();
+    let mut wholes: Vec<WholeRun> = Vec::new();
     let mut shards: Vec<Shard> = Vec::new();
     let mut guessed: BTreeMap<&Text, (u32, BTreeSet<&Text>)> = BTreeMap::new();
     for row in rows {

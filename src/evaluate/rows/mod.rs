@@ -19,7 +19,7 @@ pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
 pub use merge::merge;
 pub use order::{Histogram, estimate, sorted_by};
-pub use whole::Whole;
+pub use whole::WholeRun;
 
 use super::echoes::{EchoCounts, EchoTally};
 use super::shard::Shard;
@@ -198,8 +198,8 @@ impl Row {
     }
 
     /// The run of the row; `None` where the row doesn't record it.
-    pub fn whole_run(&self) -> Option<Whole> {
-        self.version.and_then(|_| Whole::read(&self.whole, &self.methods))
+    pub fn whole_run(&self) -> Option<WholeRun> {
+        self.version.and_then(|_| WholeRun::read(&self.whole, &self.methods))
     }
 
     fn check(&self) -> Result<(), (Column, &'static str)> {
@@ -233,7 +233,7 @@ impl Row {
         )?;
         expected(self.reading.is_some() == is_generated, Column::Reading, "program or text, beside a carrier")?;
         expected(self.shard.is_some(), Column::Shard, "I/N with I from 0 to N - 1")?;
-        let is_whole = Whole::read(&self.whole, &self.methods).is_some();
+        let is_whole = WholeRun::read(&self.whole, &self.methods).is_some();
         expected(
             is_whole,
             Column::Whole,
