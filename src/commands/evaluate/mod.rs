@@ -12,7 +12,8 @@ use super::radar_arg::RadarArg;
 use super::{CommandError, print, print_json};
 use crate::evaluate::campaign::{Campaign, Shard};
 use crate::evaluate::rows::{
-    KeptError, Key, Lack, Row, RowFile, RunRows, WHY_NO_OTHER_FORMAT, key, lacks, merge, read_table, write_merged,
+    KeptError, Key, MissingRows, Row, RowFile, RunRows, WHY_NO_OTHER_FORMAT, key, merge, missing_rows, read_table,
+    write_merged,
 };
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::maps::cfar::Cfar;
@@ -236,7 +237,7 @@ impl Args {
         done
     }
 
-    fn merged(&self) -> Result<(Vec<Row>, Vec<Lack>), CommandError> {
+    fn merged(&self) -> Result<(Vec<Row>, Vec<MissingRows>), CommandError> {
         let (mut tables, mut problems) = (Vec::new(), Vec::new());
         for path in &self.merge {
             let on_file = CommandError::on(path);
@@ -251,7 +252,7 @@ impl Args {
             tables.push((path.display().to_string(), table.rows));
         }
         let rows = merge(tables).map_err(CommandError)?;
-        let missing = lacks(&rows);
+        let missing = missing_rows(&rows);
         problems.extend(missing.iter().map(|lack| format!("missing: {lack}")));
         if rows.is_empty() || !(problems.is_empty() || self.partial) {
             let listed = problems.join("\n  ");

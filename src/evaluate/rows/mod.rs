@@ -6,18 +6,18 @@ mod cell;
 mod columns;
 mod file;
 mod kept;
-mod lacks;
 mod lines;
 mod merge;
+mod missing_rows;
 mod order;
 mod whole;
 
 pub use cell::{CellKind, Text, Value};
 pub use file::{RowTable, header, read_rows, read_table, row_writer, write_rows};
 pub use kept::{KeptError, Key, RowFile, RunRows, key, write_merged};
-pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
 pub use merge::merge;
+pub use missing_rows::{MissingRows, missing_rows};
 pub use order::{Histogram, estimate, sorted_by};
 pub use whole::WholeRun;
 
