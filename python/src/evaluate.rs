@@ -9,7 +9,7 @@ use crate::rows::{dict_of, list_of};
 use crate::scene::{Scene, purpose_of, reading_of, set_name};
 use crate::work::{self, Progress};
 use apertura::evaluate::campaign::{Campaign, CampaignError, Elements};
-use apertura::evaluate::rows::{KeptError, Row, RowFile, RunRows};
+use apertura::evaluate::rows::{RowFileError, Row, RowFile, RunRows};
 use apertura::evaluate::sets::{Case, Listed, SceneSet};
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::Reconstructor;
@@ -284,13 +284,13 @@ fn elements_of(any: &Bound<'_, PyAny>) -> PyResult<Elements> {
     Err(argument(any.py(), message))
 }
 
-fn kept(error: KeptError) -> PyErr {
+fn kept(error: RowFileError) -> PyErr {
     match &error {
-        KeptError::File { source, .. } => system(source, &error),
-        KeptError::Other { .. } => {
+        RowFileError::File { source, .. } => system(source, &error),
+        RowFileError::Other { .. } => {
             value(format!("{error}; name another file, or write over this one with overwrite=True"))
         }
-        KeptError::Busy(_) | KeptError::Merge(_) => value(error),
+        RowFileError::Busy(_) | RowFileError::Merge(_) => value(error),
     }
 }
 

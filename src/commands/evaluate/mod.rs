@@ -12,8 +12,8 @@ use super::radar_arg::RadarArg;
 use super::{CommandError, print, print_json};
 use crate::evaluate::campaign::{Campaign, Shard};
 use crate::evaluate::rows::{
-    KeptError, Key, MissingRows, Row, RowFile, RunRows, WHY_NO_OTHER_FORMAT, key, merge, missing_rows, read_table,
-    write_merged,
+    MissingRows, Row, RowFile, RowFileError, RowIdentity, RunRows, WHY_NO_OTHER_FORMAT, merge, missing_rows,
+    read_table, row_identity, write_merged,
 };
 use crate::evaluate::sets::{Folder, SceneSet};
 use crate::maps::cfar::Cfar;
@@ -225,8 +225,8 @@ impl Args {
         }
     }
 
-    fn done(&self, file: Option<&RowFile>, maps: u64) -> HashSet<Key> {
-        let done: HashSet<Key> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
+    fn done(&self, file: Option<&RowFile>, maps: u64) -> HashSet<RowIdentity> {
+        let done: HashSet<RowIdentity> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
         if let (Some(path), false) = (&self.rows, done.is_empty()) {
             let (path, there) = (path.display(), done.len());
             match there as u64 == maps {
@@ -295,9 +295,9 @@ fn hearing<'a>(
     }
 }
 
-fn told(error: KeptError) -> CommandError {
+fn told(error: RowFileError) -> CommandError {
     let help = match error {
-        KeptError::Other { .. } => "; name another file, or write over this one with --overwrite",
+        RowFileError::Other { .. } => "; name another file, or write over this one with --overwrite",
         _ => "",
     };
     CommandError(format!("{error}{help}"))

@@ -5,20 +5,20 @@
 mod cell;
 mod columns;
 mod file;
-mod kept;
 mod lines;
 mod merge;
 mod missing_rows;
 mod order;
+mod row_file;
 mod whole;
 
 pub use cell::{CellKind, Text, Value};
 pub use file::{RowTable, header, read_rows, read_table, row_writer, write_rows};
-pub use kept::{KeptError, Key, RowFile, RunRows, key, write_merged};
 pub use lines::MAX_ROWS;
 pub use merge::merge;
 pub use missing_rows::{MissingRows, missing_rows};
 pub use order::{Histogram, estimate, sorted_by};
+pub use row_file::{RowFile, RowFileError, RowIdentity, RunRows, row_identity, write_merged};
 pub use whole::WholeRun;
 
 use super::echoes::{EchoCounts, EchoTally};
@@ -129,7 +129,7 @@ columns! {
         /// The shard of the scenes that this run tried.
         #[serde(with = "by_text")]
         shard: Option<Shard> = Shard,
-        /// The sets of the whole run with their numbers of scenes, as [`Whole`] writes them.
+        /// The sets of the whole run with their numbers of scenes, as [`WholeRun`] writes them.
         whole: Text = Whole,
         /// The methods of the whole run.
         methods: Text = Methods,
