@@ -8,7 +8,7 @@
 mod candidate;
 mod wanted;
 
-pub use wanted::{Aim, Finding, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
+pub use wanted::{Finding, WorseningGoal, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
 
 use super::Target;
 use super::trial::Trial;
@@ -84,7 +84,7 @@ impl WorseningSearch {
     }
 
     fn is_reached(&self, state: &WorseningState) -> bool {
-        self.aim == Aim::Repair && state.path.len() == 1 && self.is_right(&state.path[0], &state.path[0])
+        self.goal == WorseningGoal::Repair && state.path.len() == 1 && self.is_right(&state.path[0], &state.path[0])
     }
 
     fn trial(&self, scene: &Scene) -> Result<Trial, SceneError> {
@@ -119,14 +119,14 @@ impl WorseningSearch {
     fn is_better(&self, found: &Finding, path: &[Finding]) -> bool {
         let [start, .., last] = path else {
             let start = &path[0];
-            return match self.aim {
-                Aim::Worsen => self.measure.of(found) > self.measure.of(start),
-                Aim::Repair => self.is_right(found, start),
+            return match self.goal {
+                WorseningGoal::Worsen => self.measure.of(found) > self.measure.of(start),
+                WorseningGoal::Repair => self.is_right(found, start),
             };
         };
-        match self.aim {
-            Aim::Worsen => self.measure.of(found) > self.measure.of(last),
-            Aim::Repair => self.is_right(found, start) && found.moved_metres < last.moved_metres,
+        match self.goal {
+            WorseningGoal::Worsen => self.measure.of(found) > self.measure.of(last),
+            WorseningGoal::Repair => self.is_right(found, start) && found.moved_metres < last.moved_metres,
         }
     }
 

@@ -32,8 +32,8 @@ impl Reconstructor for ShortSighted {
     }
 }
 
-fn search(aim: Aim, measure: WorseningMeasure) -> WorseningSearch {
-    WorseningSearch { radar: radar(), aim, measure, tries: 80, seed: 4, ..WorseningSearch::default() }
+fn search(goal: WorseningGoal, measure: WorseningMeasure) -> WorseningSearch {
+    WorseningSearch { radar: radar(), goal, measure, tries: 80, seed: 4, ..WorseningSearch::default() }
 }
 
 fn run(search: &WorseningSearch, y_metres: f64) -> WorseningOutcome {
@@ -45,7 +45,7 @@ fn run(search: &WorseningSearch, y_metres: f64) -> WorseningOutcome {
 #[test]
 fn a_search_finds_where_the_method_stops_seeing() {
     for measure in WorseningMeasure::ALL.into_iter().take(2) {
-        let search = search(Aim::Worsen, measure);
+        let search = search(WorseningGoal::Worsen, measure);
         let found = run(&search, 1.7);
         let (start, worst) = found.ends().unwrap();
         let worst = worst.unwrap();
@@ -58,14 +58,14 @@ fn a_search_finds_where_the_method_stops_seeing() {
 
 #[test]
 fn a_repair_is_the_smallest_move_that_helps() {
-    let found = run(&search(Aim::Repair, WorseningMeasure::Missed), 3.0);
+    let found = run(&search(WorseningGoal::Repair, WorseningMeasure::Missed), 3.0);
     let (start, end) = found.ends().unwrap();
     let end = end.unwrap();
     assert_eq!((start.verdicts.missed(), end.verdicts.missed()), (1, 0));
     // From 3.0 m to where the bin's middle is nearer than that of half the range, 2.44 m.
     assert!((0.5..0.75).contains(&end.moved_metres), "{}", end.moved_metres);
     assert!(found.path[1..].is_sorted_by(|a, b| a.moved_metres > b.moved_metres));
-    assert_eq!(run(&search(Aim::Repair, WorseningMeasure::Missed), 1.7).tries, 0, "nothing to repair");
+    assert_eq!(run(&search(WorseningGoal::Repair, WorseningMeasure::Missed), 1.7).tries, 0, "nothing to repair");
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn a_stopped_search_keeps_what_it_has() {
     let refuse = |search: &WorseningSearch, scene: &Scene| {
         search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err()
     };
-    let worsen = search(Aim::Worsen, WorseningMeasure::SquaredError);
+    let worsen = search(WorseningGoal::Worsen, WorseningMeasure::SquaredError);
     assert!(refuse(&worsen, &Scene::default()).contains("the scene is empty"));
     let far = WorseningSearch { within_metres: f64::NAN, ..worsen.clone() };
     assert!(refuse(&far, &Scene::of_points([(0.0, 2.0)])).contains("a reach of NaN m"));
@@ -103,14 +103,15 @@ impl Reconstructor for Dazzled {
 fn a_wall_is_turned_until_it_shines() {
     let wall = crate::scene::Wall::new(0.0, 1.6, 0.6, 25.0);
     let scene = Scene { objects: vec![crate::scene::Object::Wall(wall)], ..Scene::default() };
-    let search = WorseningSearch { within_metres: 1e-3, ..search(Aim::Worsen, WorseningMeasure::SquaredError) };
+    let search =
+        WorseningSearch { within_metres: 1e-3, ..search(WorseningGoal::Worsen, WorseningMeasure::SquaredError) };
     let found = search.run(&scene, &Dazzled, &Task::default(), |_, _| true).unwrap();
     let (start, worst) = found.ends().unwrap();
     let worst = worst.unwrap();
     assert!(worst.metrics.squared_error > start.metrics.squared_error);
     let turned = worst.scene.objects[0].turned_degrees(&scene.objects[0]);
     assert!((-45.0..-10.0).contains(&turned), "it faces the array: {turned}");
-    let repair = WorseningSearch { aim: Aim::Repair, ..search };
+    let repair = WorseningSearch { goal: WorseningGoal::Repair, ..search };
     let path = repair.run(&worst.scene, &Dazzled, &Task::default(), |_, _| true).unwrap().path;
     let holds = path.iter().all(|f| f.scene.objects[0].turned_degrees(&worst.scene.objects[0]) == 0.0);
     assert!(holds, "repairs only move");

@@ -50,7 +50,7 @@ impl FromStr for WorseningMeasure {
 
 /// The aim of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Aim {
+pub enum WorseningGoal {
     /// The worst scene.
     #[default]
     Worsen,
@@ -70,7 +70,7 @@ pub struct WorseningSearch {
     /// Numbers of the elements whose samples the method gets in place of the two ends.
     pub layout: Option<Vec<usize>>,
     /// The aim.
-    pub aim: Aim,
+    pub goal: WorseningGoal,
     /// The measure that the search compares scenes by.
     pub measure: WorseningMeasure,
     /// Largest distance that an object may move, metres.
@@ -88,7 +88,7 @@ impl Default for WorseningSearch {
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
             layout: None,
-            aim: Aim::default(),
+            goal: WorseningGoal::default(),
             measure: WorseningMeasure::default(),
             within_metres: 2.0,
             tries: 256,

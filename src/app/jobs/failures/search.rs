@@ -3,7 +3,7 @@
 use crate::app::jobs::derived::Failure;
 use crate::app::jobs::rows::{Plan, RowJob, Teller};
 use crate::app::state::State;
-use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningSearch};
+use crate::evaluate::worsen::{Finding, WorseningGoal, WorseningMeasure, WorseningSearch};
 use crate::radar::counted;
 use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
@@ -100,7 +100,7 @@ impl Search {
         let SearchPlan { search, method, .. } = self.job.plan()?;
         let method = method.name();
         let [start, .., end] = self.job.rows() else {
-            let nothing = if search.aim == Aim::Repair { "right" } else { "worse" };
+            let nothing = if search.goal == WorseningGoal::Repair { "right" } else { "worse" };
             return (self.job.progress().is_none() && self.job.note().is_none())
                 .then(|| format!("No scene {nothing} for {method} within {} m.", search.within_metres));
         };

@@ -5,7 +5,7 @@ use crate::app::state::{Command, Purpose, RowsCommand};
 use crate::app::widgets::{NumberField, choice, labelled, percent, press, progress, warning};
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
-use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};
+use crate::evaluate::worsen::{WorseningGoal, WorseningMeasure, WorseningSearch};
 use eframe::egui::{Button, Grid, TextEdit, Ui};
 
 /// Settings of the search, and the note for a kept scene.
@@ -92,8 +92,8 @@ fn search(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut
         labelled(ui, "in", "", NumberField::new(&mut memory.search.tries).range(1..=100_000).suffix(" tries"));
         let worse = "Look near the scene on screen for one that the method in use does worse on; the way there is drawn on the scene";
         let repair = "Look for the smallest move of its objects after which the method in use is right";
-        for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
-            let search = Box::new(WorseningSearch { aim, ..memory.search.clone() });
+        for (title, tip, goal) in [("Worse", worse, WorseningGoal::Worsen), ("Repair", repair, WorseningGoal::Repair)] {
+            let search = Box::new(WorseningSearch { goal, ..memory.search.clone() });
             press(ui, title, tip, RowsCommand::Search(search), asked);
         }
     }
