@@ -48,7 +48,7 @@ impl FromStr for WorseningMeasure {
     }
 }
 
-/// The aim of a search.
+/// The goal of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WorseningGoal {
     /// The worst scene.
@@ -69,7 +69,7 @@ pub struct WorseningSearch {
     pub normalisation: Normalisation,
     /// Numbers of the elements whose samples the method gets in place of the two ends.
     pub layout: Option<Vec<usize>>,
-    /// The aim.
+    /// The goal.
     pub goal: WorseningGoal,
     /// The measure that the search compares scenes by.
     pub measure: WorseningMeasure,
@@ -115,7 +115,7 @@ pub struct Finding {
 /// The result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorseningOutcome {
-    /// The start, and every scene that was better for the aim than all before it.
+    /// The start, and every scene that was better by the goal than all before it.
     pub path: Vec<Finding>,
     /// Scenes tried.
     pub tries: u32,

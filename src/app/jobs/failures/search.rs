@@ -40,7 +40,7 @@ impl Plan for SearchPlan {
 
 /// The worker of searches, and the path of the last one.
 pub struct Search {
-    /// Its rows are the path: the first scene, and every later one that was better for the aim than all before it.
+    /// Its rows are the path: the first scene, and every later one that was better by the goal than all before it.
     pub job: RowJob<SearchPlan>,
     /// Whether `poll` has reported the end of the search.
     told: bool,
