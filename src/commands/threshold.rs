@@ -119,7 +119,7 @@ impl Args {
             tried,
             left_to_scenes: search.left_to_scenes(tried.scenes),
             scenes_within_a_tenth: search.scenes_within_a_tenth(),
-            told_left: search.told_left(tried.scenes),
+            told_left: search.margin_sentence(tried.scenes),
             check,
         };
         if self.json { print_json(&report) } else { print(&report.text()) }

@@ -262,7 +262,7 @@ impl SetReport {
         }
         self.write_cfar(width, text);
         for Against { first, second, paired } in &self.against {
-            let _ = writeln!(text, "{}", paired.told(first, second));
+            let _ = writeln!(text, "{}", paired.sentence(first, second));
         }
     }
 
