@@ -3,7 +3,7 @@
 
 use super::front::MapConvention;
 use super::front::reference::{JudgedProfiles, SEED, UnitNoise, maps_of, profile};
-use crate::engine::{Engine, Forced, MapRequest};
+use crate::engine::{Engine, MapRequest, PlanOverrides};
 use crate::maps::tolerance::tolerance_for;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
@@ -100,7 +100,11 @@ impl<'a> Case<'a> {
 
     fn fast(&self, name: &str, algorithm: Algorithm, precision: Precision, tolerance: f64) -> Outcome {
         let mut engine = Engine::new(self.radar.clone());
-        engine.force(Forced { algorithm: Some(algorithm), precision: Some(precision), tolerance: Some(tolerance) });
+        engine.force(PlanOverrides {
+            algorithm: Some(algorithm),
+            precision: Some(precision),
+            tolerance: Some(tolerance),
+        });
         let mut outcome = Outcome { algorithm, signal_error: 0.0 };
         for convention in CONVENTIONS {
             let MapConvention { floor, normalisation } = convention;

@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// The engine of one radar, which keeps its results and recomputes only those that a change affects.
 pub struct Engine {
     radar: Radar,
-    forced: Forced,
+    forced: PlanOverrides,
     single: Option<Bank<f32, LANES_F32>>,
     double: Option<Bank<f64, LANES_F64>>,
     last: Option<Precision>,
@@ -35,7 +35,7 @@ pub struct Engine {
 
 /// Overrides of the planner's choices; `None` leaves a choice to the planner.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Forced {
+pub struct PlanOverrides {
     /// Algorithm for every sum; [`Algorithm::Direct`] and [`Algorithm::Exact`] have no fast path and are evaluated by phasor split.
     pub algorithm: Option<Algorithm>,
     /// Precision. Double is used where the rounding of single precision would show in the maps, and the report says so ([`tolerance::refusal`]).
@@ -47,12 +47,12 @@ pub struct Forced {
 impl Engine {
     /// An engine without results. The radar must be valid ([`Radar::validate`]).
     pub fn new(radar: Radar) -> Self {
-        let (forced, amplitudes) = (Forced::default(), Amplitudes::default());
+        let (forced, amplitudes) = (PlanOverrides::default(), Amplitudes::default());
         Engine { radar, forced, single: None, double: None, last: None, shown: None, settled: None, amplitudes }
     }
 
     /// Overrides the planner's choices and drops every cache.
-    pub fn force(&mut self, forced: Forced) {
+    pub fn force(&mut self, forced: PlanOverrides) {
         self.forced = forced;
         self.forget();
     }

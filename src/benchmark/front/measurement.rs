@@ -3,7 +3,7 @@
 use super::super::times::{bare_ms, quantile};
 use super::reference::{Reference, SEED, maps_of, profile};
 use super::{Entrant, Front, FrontRequest, FrontRow, FrontTask, LambdaError, MapConvention};
-use crate::engine::{Engine, Forced, MapRequest};
+use crate::engine::{Engine, MapRequest, PlanOverrides};
 use crate::maps::tolerance;
 use crate::platform::Instant;
 use crate::radar::Radar;
@@ -133,7 +133,7 @@ fn fast_row(
 ) -> Result<FrontRow, SceneError> {
     let convention = MapConvention::for_tolerance(job.plan.tolerance);
     let mut engine = Engine::new(radar.clone());
-    engine.force(Forced {
+    engine.force(PlanOverrides {
         algorithm: match job.entrant {
             Entrant::Planned => None,
             Entrant::Forced(algorithm) => Some(algorithm),
