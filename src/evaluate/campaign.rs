@@ -13,7 +13,7 @@ pub use error::{CampaignError, MethodFailure};
 
 use super::Target;
 use super::rows::{FORMAT, Row, Text, WholeRun};
-use super::sets::{Case, SceneSet};
+use super::sets::{SceneCase, SceneSet};
 use super::trial::{TimedAnswer, Trial};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
@@ -253,7 +253,7 @@ impl Campaign {
             let count = set.len().unwrap_or(self.count);
             let mut said = vec![(0, None); trained.len()];
             for index in (0..count).filter(|&n| self.shard.contains(n)) {
-                let Case { radar, scene } = set.case(&self.radar, &generator, index)?;
+                let SceneCase { radar, scene } = set.case(&self.radar, &generator, index)?;
                 let echoing = Echoing::of(&radar, &scene);
                 for (said, method) in said.iter_mut().zip(&trained) {
                     if let Some(why) = untrained_noise(**method, &radar, &echoing, floor) {
@@ -277,7 +277,7 @@ impl Campaign {
     /// # Errors
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
-        let Case { radar, mut scene } = set.case(&self.radar, generator, index)?;
+        let SceneCase { radar, mut scene } = set.case(&self.radar, generator, index)?;
         let fits = |layout: &Vec<usize>| check_layout(layout, radar.elements).map_err(CampaignError::Refused);
         self.layout.as_ref().map_or(Ok(()), fits)?;
         if let Some(elements) = self.elements.of(&radar, self.seed, index) {

@@ -2,7 +2,7 @@
 
 use crate::session::*;
 use apertura::evaluate::rows::Row;
-use apertura::evaluate::sets::Folder;
+use apertura::evaluate::sets::SceneFolder;
 use apertura::evaluate::worsen::WorseningSearch;
 
 fn methods() -> Vec<Arc<dyn Reconstructor>> {
@@ -96,7 +96,7 @@ fn the_worst_row_can_be_found_changed_kept() {
     let file = s.editor().document().to_file();
     s.ask(RowsCommand::KeepScene("Moved a little.".to_owned()));
     let own = s.path("data/scenes");
-    let kept = apertura::scene::file::load(Folder::open(&own).unwrap().file(0).unwrap()).unwrap();
+    let kept = apertura::scene::file::load(SceneFolder::open(&own).unwrap().file(0).unwrap()).unwrap();
     assert_eq!((kept.scene.objects, kept.radar), (file.scene.objects, file.radar));
     assert_eq!(kept.scene.notes, "Moved a little.");
     s.ask_and_wait(Command::Rows(RowsCommand::Try(choice(Vec::new(), true))));

@@ -15,7 +15,7 @@ use crate::evaluate::rows::{
     MissingRows, Row, RowFile, RowFileError, RowIdentity, RunRows, WHY_NO_OTHER_FORMAT, merge, missing_rows,
     read_table, row_identity, write_merged,
 };
-use crate::evaluate::sets::{Folder, SceneSet};
+use crate::evaluate::sets::{SceneFolder, SceneSet};
 use crate::maps::cfar::Cfar;
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
@@ -153,7 +153,7 @@ impl Args {
 
     fn sets(&self) -> Result<Vec<SceneSet>, CommandError> {
         match &self.scenes {
-            Some(folder) => Ok(vec![SceneSet::Folder(Folder::open(folder)?)]),
+            Some(folder) => Ok(vec![SceneSet::Folder(SceneFolder::open(folder)?)]),
             None => Ok(self.set.iter().copied().map(SceneSet::Generated).collect()),
         }
     }
