@@ -60,7 +60,7 @@ pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
 
 /// Samples of every chirp of `radar` over `floor`, with noise by `seed`.
 /// # Errors
-/// [`SimulationError`](super::Unfinished) when the scene can't be simulated, at the first chirp or at the last, and after a cancellation of `task`.
+/// [`SimulationError`](super::SimulationError) when the scene can't be simulated, at the first chirp or at the last, and after a cancellation of `task`.
 pub fn simulate_chirps_for(
     task: &Task,
     radar: &Radar,
