@@ -12,7 +12,7 @@ use super::{EngineFrame, EngineReport, EngineStage, MapRequest};
 use crate::maps::tolerance;
 use crate::platform::Instant;
 use crate::radar::Radar;
-use crate::scattering::SeenObject;
+use crate::scattering::ObjectWithOccluders;
 use crate::scene::{Scene, SceneError};
 use crate::signal::plan::SumSize;
 use crate::signal::simd::{LANES_F32, LANES_F64};
@@ -195,7 +195,7 @@ impl Engine {
         shown: &mut ShownMaps,
         report: &mut EngineReport,
     ) -> Result<(), Cancelled> {
-        let seen = SeenObject::all(&self.radar, scene);
+        let seen = ObjectWithOccluders::all(&self.radar, scene);
         let amplitude = self.amplitudes.bound(&self.radar, &seen);
         let mut chosen = SynthesisPlan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {

@@ -19,7 +19,7 @@ use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
 use crate::radar::{Radar, check_layout, ranges};
 use crate::reconstruct::{Reconstructor, Request, Weights, untrained_noise};
-use crate::scattering::Echoing;
+use crate::scattering::EchoSources;
 use crate::scene::generate::{Generator, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
@@ -254,7 +254,7 @@ impl Campaign {
             let mut said = vec![(0, None); trained.len()];
             for index in (0..count).filter(|&n| self.shard.contains(n)) {
                 let SceneCase { radar, scene } = set.case(&self.radar, &generator, index)?;
-                let echoing = Echoing::of(&radar, &scene);
+                let echoing = EchoSources::of(&radar, &scene);
                 for (said, method) in said.iter_mut().zip(&trained) {
                     if let Some(why) = untrained_noise(**method, &radar, &echoing, floor) {
                         *said = (said.0 + 1, said.1.take().or(Some(why)));

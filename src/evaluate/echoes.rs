@@ -5,7 +5,7 @@
 
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{End, Pair, Radar};
-use crate::scattering::{EchoKind, Echoing, PathEcho, Sources, array_centre_echoes};
+use crate::scattering::{EchoKind, EchoSources, PathEcho, Sources, array_centre_echoes};
 use crate::scene::Scene;
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -85,7 +85,7 @@ struct Shown {
 
 /// Places of the echoes of `scene` in a map, without those of rough surfaces, which have no place of their own.
 fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
-    let echoing = Echoing::of(radar, scene);
+    let echoing = EchoSources::of(radar, scene);
     let mut heard = Vec::new();
     Sources::from(&echoing).scattered(Pair::at(0.0), &mut heard);
     let points = echoing.points.iter().map(|r| {

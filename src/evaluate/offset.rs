@@ -4,7 +4,7 @@ use super::estimate::upper_median;
 use super::verdict::{ObjectVerdict, OutputVerdicts};
 use crate::bounds::cramer_rao;
 use crate::radar::{Layout, Radar};
-use crate::scattering::Echoing;
+use crate::scattering::EchoSources;
 use crate::scene::{Object, Point, Reflector, Scene};
 use crate::signal::Floor;
 use crate::signal::floor::noise_variance;
@@ -28,7 +28,7 @@ pub fn median_bound_metres(
     verdicts: &OutputVerdicts,
     floor: Floor,
 ) -> Option<f64> {
-    let variances = noise_variance(radar, &Echoing::of(radar, scene), floor)?;
+    let variances = noise_variance(radar, &EchoSources::of(radar, scene), floor)?;
     let variance = variances.iter().sum::<f64>() / variances.len().max(1) as f64;
     let bound = |point: &Point| {
         let Point { x_metres, y_metres, reflectivity, .. } = *point;

@@ -13,7 +13,7 @@ use super::echoes::of_bodies;
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::{Echoing, SeenObject};
+use crate::scattering::{EchoSources, ObjectWithOccluders};
 use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan::amplitude_bound;
 use crate::signal::{SynthesisPlan, beat_signal};
@@ -137,7 +137,7 @@ impl Footprints {
         let level = 10f64.powf(scale.floor + f64::from(TARGET_ETA) * (scale.peak - scale.floor));
         let echoes = of_bodies(radar, scene, target, &scale);
         let mut objects: Vec<Vec<CellIndex>> =
-            SeenObject::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
+            ObjectWithOccluders::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
         for (cells, echoes) in objects.iter_mut().zip(&echoes).filter(|(_, echoes)| !echoes.is_empty()) {
             cells.extend(echoes.iter().flatten());
             cells.sort_unstable();
@@ -290,8 +290,8 @@ fn shifted_column(column: usize, by: i32, columns: usize) -> usize {
 
 /// The cells where the whole array's map of an object alone exceeds the magnitude `level`, without noise. The parts of the object that other bodies
 /// hide don't count.
-fn footprint(radar: &Radar, seen: &SeenObject, level: f64) -> Vec<CellIndex> {
-    let echoing = Echoing::seen(radar, std::slice::from_ref(seen));
+fn footprint(radar: &Radar, seen: &ObjectWithOccluders, level: f64) -> Vec<CellIndex> {
+    let echoing = EchoSources::of_objects(radar, std::slice::from_ref(seen));
     let amplitude = amplitude_bound(radar, &echoing);
     let plan = SynthesisPlan::cheapest(echoing.len(), amplitude, SIMULATION_TOLERANCE);
     let signal = beat_signal(radar, &echoing, &plan);

@@ -4,7 +4,7 @@ use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, amplitude_bound};
 use super::run::samples_of;
 use super::{BeatSignal, Floor, SimulationError, SimulationResult, SynthesisPlan, floor};
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::Echoing;
+use crate::scattering::EchoSources;
 use crate::scene::{Interferer, Scene, SceneError};
 use crate::task::Task;
 use num_complex::Complex64;
@@ -36,7 +36,7 @@ pub(super) fn simulate_built_for(
 ) -> SimulationResult<BeatSignal> {
     scene.validate(radar)?;
     array.validate(radar).map_err(SceneError::Elements)?;
-    let echoing = Echoing::of(radar, scene);
+    let echoing = EchoSources::of(radar, scene);
     let plan = SynthesisPlan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
     let mut signal =
         BeatSignal { samples: samples_of(radar, array, (&echoing).into(), &plan, 0..radar.elements, task) };

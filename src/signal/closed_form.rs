@@ -228,7 +228,7 @@ mod tests {
     use super::super::simd::{LANES_F32, LANES_F64, Simd};
     use super::super::synthesis::{BlockProfiles, Synthesis};
     use super::*;
-    use crate::scattering::{Echoing, Sources};
+    use crate::scattering::{EchoSources, Sources};
     use crate::scene::{Block, Object, Point, Post, Scene};
     use crate::task::Task;
     use ndarray::{Array1, Array2};
@@ -296,7 +296,7 @@ mod tests {
             Object::Post(Post::new(-2.0, 12.0, 0.2)),
             Object::Point(Point::new(1.5, 25.0)),
         ];
-        let echoing = Echoing::of(&radar, &Scene { objects, ..Scene::default() });
+        let echoing = EchoSources::of(&radar, &Scene { objects, ..Scene::default() });
         for tolerance in [1e-3, 1e-6, 1e-12] {
             let e = error(&radar, &echoing, plan(tolerance, Simd::best()));
             assert!(e < tolerance, "{tolerance:e}: {e:e}");
@@ -311,7 +311,7 @@ mod tests {
             Object::Point(Point { reflectivity: 1e-4, ..Point::new(0.5, 6.0) }),
             Object::Box(Block::new([1.0, 20.0], [1.5, 0.8], 80.0)),
         ];
-        let echoing = Echoing::of(&radar, &Scene { objects, ..Scene::default() });
+        let echoing = EchoSources::of(&radar, &Scene { objects, ..Scene::default() });
         let amplitude = crate::signal::plan::amplitude_bound(&radar, &echoing);
         let quiet = amplitude / echoing.len() as f64;
         for tolerance in [1e-3, 1e-6] {

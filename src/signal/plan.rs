@@ -4,7 +4,7 @@ use super::path::largest_amplitude;
 use super::simd::Simd;
 use super::{Algorithm, Precision, closed_form};
 use crate::radar::Radar;
-use crate::scattering::{Echoing, SeenObject, Sources};
+use crate::scattering::{EchoSources, ObjectWithOccluders, Sources};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -114,8 +114,10 @@ pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f6
 }
 
 /// [`amplitude_bound`] of each of these objects.
-pub fn amplitude_bounds<'a>(radar: &Radar, seen: impl Iterator<Item = &'a SeenObject>) -> Vec<f64> {
-    let seen: Vec<&SeenObject> = seen.collect();
-    let bound = |one: &&SeenObject| amplitude_bound(radar, &Echoing::seen(radar, std::slice::from_ref(*one)));
+pub fn amplitude_bounds<'a>(radar: &Radar, seen: impl Iterator<Item = &'a ObjectWithOccluders>) -> Vec<f64> {
+    let seen: Vec<&ObjectWithOccluders> = seen.collect();
+    let bound = |one: &&ObjectWithOccluders| {
+        amplitude_bound(radar, &EchoSources::of_objects(radar, std::slice::from_ref(*one)))
+    };
     seen.par_iter().with_min_len(4).map(bound).collect()
 }

@@ -51,7 +51,7 @@ mod tests {
     use super::super::simd::Simd;
     use super::*;
     use crate::radar::Carrier;
-    use crate::scattering::Echoing;
+    use crate::scattering::EchoSources;
     use crate::scene::{Block, Object, Point, Post, Reflector, Scene, Wall};
 
     fn worst_error(radar: &Radar, reflectors: &[Reflector], chosen: &SynthesisPlan) -> f64 {
@@ -109,7 +109,7 @@ mod tests {
     fn every_algorithm_keeps_its_promise_for_bodies() {
         for carrier in [Carrier::OneWay, Carrier::TwoWay] {
             let radar = Radar { elements: 64, carrier, ..Radar::default() };
-            let echoing = Echoing::of(&radar, &bodies());
+            let echoing = EchoSources::of(&radar, &bodies());
             let scale = crate::signal::plan::amplitude_bound(&radar, &echoing);
             let expected = judge::beat_signal(&radar, &echoing).samples;
             for algorithm in [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded] {

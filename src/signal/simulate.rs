@@ -5,7 +5,7 @@ use super::plan::amplitude_bound;
 use super::run::samples_of;
 use super::{BeatSignal, Floor, SimulationError, SimulationResult, SynthesisPlan, TwoEnds, floor};
 use crate::radar::{BuiltArray, End, Radar};
-use crate::scattering::Echoing;
+use crate::scattering::EchoSources;
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
 
@@ -47,7 +47,7 @@ pub fn simulate_ends_for(
         return Ok(simulate_for(task, radar, scene, floor, seed)?.two_ends(radar));
     }
     scene.validate(radar)?;
-    let echoing = Echoing::of(radar, scene);
+    let echoing = EchoSources::of(radar, scene);
     let plan = SynthesisPlan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
     let variance = floor::noise_variance(radar, &echoing, floor);
     let [first, last] = End::BOTH.map(|end| {
