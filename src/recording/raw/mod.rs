@@ -33,7 +33,7 @@ use super::layout::stream::CaptureStream;
 use super::layout::{Candidate, Certainty, EvidenceKind, Found, config_claims, find};
 use super::profile::RadarProfile;
 use super::recording_text::{open_file, read_config_text};
-use super::{Fault, Offer, Origin, Recording, RecordingError};
+use super::{Fault, Origin, ReadingOption, Recording, RecordingError};
 use crate::files::ends_in;
 use boards::Board;
 use first_frame::FirstFrame;
@@ -184,7 +184,7 @@ fn import_stream<R: Read + io::Seek>(
         let about = text::Subject { data: &files.data, profile, line: &line, sentences: &sentences };
         let (description, power) = (candidate.description(), candidate.power.clone());
         let toml = text::of_capture(&capture, candidate.counts.samples, &about);
-        Offer { description, log_odds: candidate.log_odds(), power, toml }
+        ReadingOption { description, log_odds: candidate.log_odds(), power, toml }
     };
     let offers = found.candidates.iter().take(MAX_OFFERS).map(offer).collect();
     let (board, frames) = (line.board, frame.frames);
