@@ -1,7 +1,7 @@
 //! The precision of a signal whose numerical errors are invisible in its map.
 
 use super::lambda::Normalisation;
-use crate::signal::plan::{self, BEST_TOLERANCE, FLOOR_TOLERANCE, Sum};
+use crate::signal::plan::{self, BEST_TOLERANCE, FLOOR_TOLERANCE, SumSize};
 use crate::signal::{Floor, Precision};
 
 /// The largest error of a signal, relative to its amplitudes, that is invisible in a map over `floor` with this normalisation.
@@ -18,7 +18,12 @@ pub fn tolerance_for(floor: Floor, normalisation: Normalisation) -> f64 {
 }
 
 /// The reason for which maps of this floor and normalisation must not be computed in `precision`, as in [`plan::refusal`]. `None` where they may be.
-pub fn refusal(precision: Precision, sum: &Sum, floor: Floor, normalisation: Normalisation) -> Option<&'static str> {
+pub fn refusal(
+    precision: Precision,
+    sum: &SumSize,
+    floor: Floor,
+    normalisation: Normalisation,
+) -> Option<&'static str> {
     match (precision, floor, normalisation) {
         (Precision::F64, ..) => None,
         (Precision::F32, Floor::Exact, Normalisation::MinMax) => {

@@ -94,7 +94,7 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
                 (Entrant::Forced(algorithm), Precision::F64) => (algorithm, &[Precision::F64]),
             };
             for precision in precisions {
-                let sum = plan::Sum { algorithm, reflectors: count, amplitude };
+                let sum = plan::SumSize { algorithm, reflectors: count, amplitude };
                 let MapConvention { floor, normalisation } = MapConvention::for_tolerance(*tolerance);
                 if tolerance::refusal(*precision, &sum, floor, normalisation).is_some() {
                     continue;

@@ -106,8 +106,8 @@ impl Search {
         };
         let told = |finding: &Finding| match search.measure {
             WorseningMeasure::SquaredError => format!("SE {:.1}", finding.metrics.squared_error),
-            WorseningMeasure::Missed => format!("{} missed", finding.failures.missed()),
-            WorseningMeasure::Ghosts => counted(finding.failures.ghosts.len(), "false alarm", "false alarms"),
+            WorseningMeasure::Missed => format!("{} missed", finding.verdicts.missed()),
+            WorseningMeasure::Ghosts => counted(finding.verdicts.ghosts.len(), "false alarm", "false alarms"),
         };
         Some(format!("{method}: {} here, {} after {:.2} m", told(start), told(end), end.moved_metres))
     }
