@@ -34,8 +34,6 @@ const MIN_CLIPPED_LINE_PART: f64 = 0.75;
 const MIN_PEAK_HEIGHT_NEPERS: f64 = 3.0;
 /// Number of receivers of most radars.
 const USUAL_RECEIVERS: usize = 4;
-/// A file is saturated where more than this many times as many words have the limits of their type as have the values next to the limits.
-const SATURATION_RATIO: usize = 8;
 /// Number of the file's first numbers from which the order of parts and the length of rows are found.
 const SEARCHED_NUMBERS: usize = 1 << 16;
 /// Lengths of rows whose spectra decide on the order of parts, in complex numbers.
@@ -113,7 +111,7 @@ pub(super) fn search<R: Read + Seek>(
 ) -> io::Result<(Vec<LikelyCounts>, bool)> {
     let bytes = sample_bytes(stream, marks, 4 * SEARCHED_NUMBERS)?;
     let chirp_bytes = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
-    let encoding = likely_encoding(&bytes);
+    let encoding = NumberEncoding::likely(&bytes);
     let mut all = Vec::new();
     for part_order in PartOrder::ALL {
         let layout = layout_of(encoding, part_order);
@@ -178,11 +176,8 @@ fn cuts(layout: Layout, numbers: &[Complex64], file_bytes: u64, chirp_bytes: Opt
 /// A length whose largest odd divisor is `n` fits by chance in one file of `n`.
 fn length_log_odds(layout: &Layout, length: usize, file_bytes: u64) -> f64 {
     let odd = (length >> length.trailing_zeros()) as f64;
-    let fills = if file_bytes.is_multiple_of((length * layout.part_order.bytes()) as u64) {
-        odd.ln()
-    } else {
-        UNFILLED_LOG_ODDS
-    };
+    let row_bytes = (length * layout.part_order.bytes()) as u64;
+    let fills = if file_bytes.is_multiple_of(row_bytes) { odd.ln() } else { UNFILLED_LOG_ODDS };
     let is_usual = USUAL_SAMPLES.contains(&length)
         || INTERLEAVED_RECEIVERS.iter().any(|r| length.is_multiple_of(*r) && USUAL_SAMPLES.contains(&(length / r)));
     fills + if is_usual { USUAL_LENGTH_LOG_ODDS } else { 0.0 }
@@ -303,33 +298,6 @@ fn sample_bytes<R: Read + Seek>(
     }
     bytes.truncate(most);
     Ok(bytes)
-}
-
-/// The encoding by which the numbers have the least variance. By a wrong one they jump between large and small values.
-fn likely_encoding(bytes: &[u8]) -> NumberEncoding {
-    let words = || bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
-    // By offset binary, saturated samples would be the smallest numbers. Small numbers come with the values next to them, saturated ones don't.
-    let count = |of: [u16; 2]| words().filter(|w| of.contains(w)).count();
-    let is_saturated = count([0x7fff, 0x8000]) > SATURATION_RATIO * count([0x7ffe, 0x8001]).max(1);
-    let power = |of: NumberEncoding| {
-        let counts = move |b: &&[u8]| !is_saturated || ![[0xff, 0x7f], [0x00, 0x80]].contains(&[b[0], b[1]]);
-        let numbers = || bytes.chunks_exact(2).filter(counts).map(move |b| f64::from(of.number([b[0], b[1]])));
-        let count = numbers().count().max(1) as f64;
-        let mean = numbers().sum::<f64>() / count;
-        numbers().map(|v| (v - mean).powi(2)).sum::<f64>() / count
-    };
-    let [plain, offset, swapped, twelve] =
-        [NumberEncoding::Int16, NumberEncoding::OffsetBinary, NumberEncoding::BigEndian, NumberEncoding::TwelveBits]
-            .map(power);
-    if words().all(|w| w < 0x1000) && twelve < 0.5 * plain {
-        NumberEncoding::TwelveBits
-    } else if offset < 0.5 * plain && offset <= swapped {
-        NumberEncoding::OffsetBinary
-    } else if swapped < 0.5 * plain {
-        NumberEncoding::BigEndian
-    } else {
-        NumberEncoding::Int16
-    }
 }
 
 /// A sentence of doubt about the counts of a `.cfg`, `None` where they are right: the rows of `bytes` have another length by linear prediction, or

@@ -4,6 +4,9 @@ use ndarray::Array2;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
+/// A file is saturated where more than this many times as many words have the limits of their type as have the values next to the limits.
+const SATURATION_RATIO: usize = 8;
+
 /// The encoding of a number in 16 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -38,6 +41,31 @@ impl NumberEncoding {
     /// The largest number of the encoding.
     pub fn max_value(self) -> i16 {
         if self == NumberEncoding::TwelveBits { 2047 } else { i16::MAX }
+    }
+
+    /// The encoding by which the numbers have the least variance. By a wrong one they jump between large and small values.
+    pub(super) fn likely(bytes: &[u8]) -> NumberEncoding {
+        let words = || bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
+        // By offset binary, saturated samples would be the smallest numbers. Small numbers come with the values next to them, saturated ones don't.
+        let count = |of: [u16; 2]| words().filter(|w| of.contains(w)).count();
+        let is_saturated = count([0x7fff, 0x8000]) > SATURATION_RATIO * count([0x7ffe, 0x8001]).max(1);
+        let power = |of: NumberEncoding| {
+            let counts = move |b: &&[u8]| !is_saturated || ![[0xff, 0x7f], [0x00, 0x80]].contains(&[b[0], b[1]]);
+            let numbers = || bytes.chunks_exact(2).filter(counts).map(move |b| f64::from(of.number([b[0], b[1]])));
+            let count = numbers().count().max(1) as f64;
+            let mean = numbers().sum::<f64>() / count;
+            numbers().map(|v| (v - mean).powi(2)).sum::<f64>() / count
+        };
+        let [plain, offset, swapped, twelve] = NumberEncoding::ALL.map(power);
+        if words().all(|w| w < 0x1000) && twelve < 0.5 * plain {
+            NumberEncoding::TwelveBits
+        } else if offset < 0.5 * plain && offset <= swapped {
+            NumberEncoding::OffsetBinary
+        } else if swapped < 0.5 * plain {
+            NumberEncoding::BigEndian
+        } else {
+            NumberEncoding::Int16
+        }
     }
 
     /// The encoding, as a part of a sentence.
