@@ -1,6 +1,7 @@
 //! The input of a subcommand: a scene that is simulated, or a recording.
 
 use super::CommandError;
+use crate::platform::console::note;
 use crate::recording::raw::boards::{self, Board};
 use crate::recording::{self, Recording};
 use crate::scene::file::{self, SceneFile};
@@ -54,7 +55,7 @@ pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, C
 
 /// Prints the doubts about the file `path` on standard error.
 pub fn print_doubts(path: &Path, doubts: &[String]) {
-    doubts.iter().for_each(|doubt| eprintln!("note: {}: {doubt}", path.display()));
+    doubts.iter().for_each(|doubt| note(&format!("note: {}: {doubt}", path.display())));
 }
 
 pub fn load_board(name: &str) -> Result<&'static Board, CommandError> {

@@ -6,6 +6,7 @@ use super::{CommandError, picture_format, print, write_file};
 use crate::maps::Normalisation;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
 use crate::picture::{ColourMap, PictureFormat, compose_range_doppler};
+use crate::platform::console::note;
 use crate::radar::{Decibels, MAX_CHIRPS, Radar};
 use crate::recording::FrameLoops;
 use crate::recording::file::is_recording_at;
@@ -91,7 +92,7 @@ impl Args {
         let seed = self.seed.unwrap_or(scene.noise_seed);
         let map = range_doppler(&radar, &scene, self.floor.floor, seed).map_err(CommandError::on(&self.input))?;
         if let Some(sentence) = folded(&radar, &scene) {
-            eprintln!("note: {sentence}");
+            note(&format!("note: {sentence}"));
         }
         self.write(&radar, &scene, &map, format)
     }
@@ -112,7 +113,7 @@ impl Args {
         };
         let FrameLoops { radar, mut samples, knows_interval } = origin.loops()?;
         if !knows_interval {
-            eprintln!("note: {}: {UNKNOWN_INTERVAL}", self.input.display());
+            note(&format!("note: {}: {UNKNOWN_INTERVAL}", self.input.display()));
         }
         if self.static_clutter_out {
             samples.remove_static();

@@ -128,3 +128,21 @@ fn a_full_disk_is_told_in_one_sentence() {
     assert_eq!((done.status.code(), told.lines().count()), (Some(1), 1), "{told}");
     assert!(told.contains("standard output: No space left on device"), "{told}");
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn notes_that_cannot_be_written_end_no_command() {
+    let rows = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/program-0.1.0/rows.csv");
+    let merge = |stderr: Option<File>| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
+        command.args(["evaluate", "--merge"]).arg(&rows);
+        if let Some(file) = stderr {
+            command.stderr(file);
+        }
+        command.output().unwrap()
+    };
+    let told = merge(None);
+    assert!(told.status.success() && String::from_utf8_lossy(&told.stderr).contains("note: "), "{told:?}");
+    let full = merge(Some(File::options().write(true).open("/dev/full").unwrap()));
+    assert!(full.status.success() && full.stdout == told.stdout, "{full:?}");
+}
