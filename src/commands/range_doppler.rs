@@ -1,7 +1,7 @@
 //! `apertura range-doppler`: range against radial velocity of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs, real, whole};
-use super::input::{ConfigArg, InputArgs, load_recording};
+use super::input::{ConfigArg, InputArgs, check_kept, load_recording};
 use super::{CommandError, picture_format, print, write_file};
 use crate::maps::Normalisation;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
@@ -77,6 +77,7 @@ const CHIRPS: usize = 128;
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let format = picture_format(&self.output, &["npz"], ".npz, .png or .svg")?;
+        check_kept(&self.input, &self.output)?;
         if is_recording_at(&self.input) {
             return self.of_recording(format);
         }

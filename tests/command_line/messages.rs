@@ -146,3 +146,23 @@ fn notes_that_cannot_be_written_end_no_command() {
     let full = merge(Some(File::options().write(true).open("/dev/full").unwrap()));
     assert!(full.status.success() && full.stdout == told.stdout, "{full:?}");
 }
+
+#[test]
+fn no_command_writes_over_what_it_reads() {
+    let folder = folder();
+    call(&folder, "scenes --set 1 --index 0 -o s.toml").assert().success();
+    call(&folder, "maps s.toml -o in.npz").assert().success();
+    std::fs::write(folder.path().join("rec.toml"), "[recording]\nfile = \"in.npz\"\n").unwrap();
+    let samples = std::fs::read(folder.path().join("in.npz")).unwrap();
+    for arguments in [
+        "reconstruct in.npz -o in.npz --method baseline",
+        "reconstruct rec.toml -o in.npz",
+        "maps in.npz -o ./in.npz",
+        "maps rec.toml -o in.npz",
+        "range-doppler rec.toml -o in.npz",
+    ] {
+        let told = "in.npz: holds what this command reads; expected another name";
+        call(&folder, arguments).assert().failure().stderr(contains(told));
+        assert_eq!(std::fs::read(folder.path().join("in.npz")).unwrap(), samples, "{arguments}");
+    }
+}
