@@ -166,3 +166,15 @@ fn no_command_writes_over_what_it_reads() {
         assert_eq!(std::fs::read(folder.path().join("in.npz")).unwrap(), samples, "{arguments}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_refused_before_they_are_opened() {
+    let folder = folder();
+    for name in ["pipe.bin", "pipe.npz", "pipe.toml"] {
+        let made = std::process::Command::new("mkfifo").arg(folder.path().join(name)).status().unwrap();
+        assert!(made.success());
+        let mut command = call(&folder, &format!("maps {name} -o out.png"));
+        command.timeout(std::time::Duration::from_secs(60)).assert().failure().stderr(contains("pipe; expected"));
+    }
+}
