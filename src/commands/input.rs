@@ -1,6 +1,7 @@
 //! The input of a subcommand: a scene that is simulated, or a recording.
 
 use super::CommandError;
+use crate::platform::console::note;
 use crate::recording::raw::boards::{self, Board};
 use crate::recording::{self, Recording};
 use crate::scene::file::{self, SceneFile};
@@ -31,6 +32,20 @@ impl InputArgs {
     }
 }
 
+/// Refuses to write over the file `input`, or over the samples that a recording's TOML names: a measurement can't be made again.
+///
+/// # Errors
+/// [`CommandError`] names `output`.
+pub fn check_kept(input: &Path, output: &Path) -> Result<(), CommandError> {
+    let Ok(there) = std::fs::canonicalize(output) else { return Ok(()) };
+    let data = recording::file::data_path(input);
+    let is_read = |path: &Path| std::fs::canonicalize(path).is_ok_and(|path| path == there);
+    match is_read(input) || data.is_some_and(|path| is_read(&path)) {
+        true => Err(CommandError::on(output)("holds what this command reads; expected another name to write to")),
+        false => Ok(()),
+    }
+}
+
 /// The `.cfg` of a raw capture.
 #[derive(Debug, clap::Args)]
 pub struct ConfigArg {
@@ -54,7 +69,7 @@ pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, C
 
 /// Prints the doubts about the file `path` on standard error.
 pub fn print_doubts(path: &Path, doubts: &[String]) {
-    doubts.iter().for_each(|doubt| eprintln!("note: {}: {doubt}", path.display()));
+    doubts.iter().for_each(|doubt| note(&format!("note: {}: {doubt}", path.display())));
 }
 
 pub fn load_board(name: &str) -> Result<&'static Board, CommandError> {

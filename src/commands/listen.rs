@@ -9,7 +9,7 @@ use crate::recording::packets::CardFrame;
 use crate::recording::{Origin, raw};
 use std::fs::File;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{TrySendError, sync_channel};
 use std::time::Duration;
 
@@ -33,7 +33,7 @@ pub struct Args {
     #[arg(long, value_name = "xWR1642|xWR1443|xWR1843|xWR6843ISK|cascade")]
     board: Option<String>,
 
-    /// Capture to write
+    /// Capture to write; no file with content is written over
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
 
@@ -55,8 +55,7 @@ impl Args {
         let frame_bytes = raw::frame_bytes(&self.config)?;
         let failed = |source: io::Error| CommandError(format!("port {}: {source}", self.port));
         let mut card = Card::listen(self.port, frame_bytes).map_err(failed)?;
-        let created = |path: &PathBuf| File::create(path).map_err(CommandError::on(path));
-        card.log = self.log.as_ref().map(created).transpose()?;
+        card.log = self.log.as_deref().map(begin_log).transpose()?;
         card.max_frames = self.frames;
         card.silence = self.silence.map(|s| Duration::from_secs(s.into()));
         print(&format!("listening on port {}, {frame_bytes} bytes a frame", self.port))?;
@@ -83,6 +82,14 @@ impl Args {
         let ended = thread.join().unwrap_or_else(|_| Err(io::Error::other("the receiving thread ended early")));
         print(&ended.map_err(failed)?.sentence())
     }
+}
+
+/// Begins a log, but not over an earlier one: a measurement can't be made again.
+fn begin_log(path: &Path) -> Result<File, CommandError> {
+    if std::fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0) {
+        return Err(CommandError::on(path)("is there already; expected a new name for the log"));
+    }
+    File::create(path).map_err(CommandError::on(path))
 }
 
 /// A line on a frame: its strongest echo, and its lost bytes.

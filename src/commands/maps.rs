@@ -1,7 +1,7 @@
 //! `apertura maps`: the maps of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs};
-use super::input::{ConfigArg, InputArgs};
+use super::input::{ConfigArg, InputArgs, check_kept};
 use super::layout_arg::LayoutArg;
 use super::own_method::OwnMethodArgs;
 use super::{CommandError, frames, picture_format, print, write_file};
@@ -98,6 +98,7 @@ pub struct Args {
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let format = picture_format(&self.output, &["npz", "gif"], ".npz, .png, .svg or .gif")?;
+        check_kept(&self.input, &self.output)?;
         let of_frames = self.all_frames || ends_in(&self.output, &["gif"]);
         self.own.start()?;
         let mut input = InputArgs::load_with(&self.input, self.capture.config.as_deref())?;

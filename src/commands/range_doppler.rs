@@ -1,11 +1,12 @@
 //! `apertura range-doppler`: range against radial velocity of one scene or recording, as numbers or as a picture.
 
 use super::arguments::{self, FloorArgs, real, whole};
-use super::input::{ConfigArg, InputArgs, load_recording};
+use super::input::{ConfigArg, InputArgs, check_kept, load_recording};
 use super::{CommandError, picture_format, print, write_file};
 use crate::maps::Normalisation;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
 use crate::picture::{ColourMap, PictureFormat, compose_range_doppler};
+use crate::platform::console::note;
 use crate::radar::{Decibels, MAX_CHIRPS, Radar};
 use crate::recording::FrameLoops;
 use crate::recording::file::is_recording_at;
@@ -77,6 +78,7 @@ const CHIRPS: usize = 128;
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let format = picture_format(&self.output, &["npz"], ".npz, .png or .svg")?;
+        check_kept(&self.input, &self.output)?;
         if is_recording_at(&self.input) {
             return self.of_recording(format);
         }
@@ -92,7 +94,7 @@ impl Args {
         let seed = self.seed.unwrap_or(scene.noise_seed);
         let map = range_doppler(&radar, &scene, self.floor.floor, seed).map_err(CommandError::on(&self.input))?;
         if let Some(sentence) = folded(&radar, &scene) {
-            eprintln!("note: {sentence}");
+            note(&format!("note: {sentence}"));
         }
         self.write(&radar, &scene, &map, format)
     }
@@ -113,7 +115,7 @@ impl Args {
         };
         let FrameLoops { radar, mut samples, knows_interval } = origin.loops()?;
         if !knows_interval {
-            eprintln!("note: {}: {UNKNOWN_INTERVAL}", self.input.display());
+            note(&format!("note: {}: {UNKNOWN_INTERVAL}", self.input.display()));
         }
         if self.static_clutter_out {
             samples.remove_static();

@@ -1,7 +1,7 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
-use super::input::{ConfigArg, load_recording, shared_text};
+use super::input::{ConfigArg, check_kept, load_recording, shared_text};
 use super::layout_arg::LayoutArg;
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
@@ -74,6 +74,7 @@ impl Args {
         if !ends_in(&self.output, &["npz"]) {
             return Err(CommandError::on(&self.output)("an archive is written; expected a name ending in .npz"));
         }
+        check_kept(&self.input, &self.output)?;
         let own = self.network.start_own()?;
         // A wrong name is reported before any file is read.
         let asked = self.method.as_deref().or(own.first().copied()).map(|name| self.method(name)).transpose()?;

@@ -2,7 +2,7 @@
 
 use super::arguments::{real, whole};
 use super::{CommandError, print};
-use crate::files::sha256;
+use crate::files::{read_bounded, sha256};
 use crate::network::backend::Backend;
 use crate::network::checkpoint;
 use crate::network::recipe::{Network, Recipe, SHIPPED};
@@ -58,6 +58,9 @@ pub struct Args {
 /// A year.
 const MAX_MINUTES: f64 = 525_600.0;
 
+/// Most bytes of a recipe's text.
+const MAX_RECIPE_BYTES: u64 = 1 << 20;
+
 const CHECKPOINT: &str = "checkpoint";
 
 impl Args {
@@ -98,7 +101,8 @@ impl Args {
             let message = format!("\"{name}\" is neither a file nor a shipped recipe; shipped: {}", known.join(", "));
             return Err(CommandError(message));
         }
-        let text = std::fs::read_to_string(&path).map_err(CommandError::on(&path))?;
+        let bytes = read_bounded(&path, MAX_RECIPE_BYTES).map_err(CommandError::on(&path))?;
+        let text = String::from_utf8(bytes).map_err(CommandError::on(&path))?;
         Ok(Recipe::parse(name, &text)?)
     }
 }

@@ -7,9 +7,10 @@ const TAIL_BYTES: u64 = 65_535 + 22 + 76;
 
 const ENTRY_BYTES: u64 = 46;
 
-/// Checks that the list at the end of an archive can hold as many entries as it claims; leaves `file` at its beginning.
+/// Checks that an archive ends in a list that can hold as many entries as it claims; leaves `file` at its beginning. Without the list the archive's
+/// reader would look for it in all of the file, which takes minutes where that has gigabytes.
 /// # Errors
-/// [`io::ErrorKind::InvalidData`] where it can't, and errors of the file.
+/// [`io::ErrorKind::InvalidData`] where it has none, or can't hold them, and errors of the file.
 pub fn check_entries(file: &mut (impl Read + Seek)) -> io::Result<()> {
     let length = file.seek(SeekFrom::End(0))?;
     file.seek(SeekFrom::Start(length.saturating_sub(TAIL_BYTES)))?;
@@ -20,6 +21,9 @@ pub fn check_entries(file: &mut (impl Read + Seek)) -> io::Result<()> {
         let bytes = tail.get(at..at + width)?;
         Some(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))
     };
+    if !tail.windows(4).any(|bytes| bytes == b"PK\x05\x06") {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "it does not end in a list of entries"));
+    }
     let has_longer_record = tail.windows(4).any(|bytes| bytes == b"PK\x06\x06");
     for at in 0..tail.len().saturating_sub(3) {
         let claimed = match &tail[at..at + 4] {
@@ -52,10 +56,13 @@ mod tests {
         };
         assert_eq!(record(2), Ok(()));
         assert!(record(16_386).unwrap_err().contains("16386 entries"));
-        let mut long = vec![0; 10];
+        let mut long = b"PK\x05\x06".to_vec();
+        long.extend([0; 18]);
         long.extend(b"PK\x06\x06");
         long.extend([0; 28]);
         long.extend(u64::MAX.to_le_bytes());
-        assert!(check_entries(&mut Cursor::new(long)).is_err());
+        assert!(check_entries(&mut Cursor::new(long)).unwrap_err().to_string().contains("entries, more than"));
+        let none = check_entries(&mut Cursor::new(vec![0; 1 << 20])).unwrap_err().to_string();
+        assert_eq!(none, "it does not end in a list of entries");
     }
 }

@@ -11,6 +11,11 @@ pub fn kind_at(path: &Path) -> Option<&'static str> {
     kind_of(&read_start(path, START_BYTES).ok()?)
 }
 
+/// The kind of text at `path`, as [`kind_at`] has it; `None` for other files.
+pub fn text_kind_at(path: &Path) -> Option<&'static str> {
+    text_kind(&read_start(path, START_BYTES).ok().filter(|bytes| !bytes.is_empty())?)
+}
+
 /// The kind of a file that begins with `bytes`.
 pub fn kind_of(bytes: &[u8]) -> Option<&'static str> {
     let begins = |start: &[u8]| bytes.starts_with(start);
@@ -105,6 +110,7 @@ mod tests {
             found,
             [Some("weights (.safetensors)"), Some("a PyTorch checkpoint (.pt)"), Some("a scene (.toml)")]
         );
+        assert_eq!(kinds.map(|path| text_kind_at(Path::new(path))), [None, None, Some("a scene (.toml)")]);
         assert_eq!(kind_at(Path::new("none/such")), None);
         assert_eq!(kind_at(Path::new("src")), None);
     }

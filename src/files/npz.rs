@@ -3,7 +3,7 @@
 use super::entries::check_entries;
 use super::npy::NpyHeader;
 use super::{Numbers, write_atomically};
-use crate::platform::fs::{Draft, File};
+use crate::platform::fs::{self, Draft, File};
 use ndarray::{Array, Array2, ArrayD, ArrayRef, Dimension, ShapeError};
 use ndarray_npy::npy::header::{Header, Layout};
 use ndarray_npy::{NpzWriter, WritableElement, WriteNpyError, WriteNpyExt, WriteNpzError};
@@ -54,12 +54,11 @@ impl Npz {
     /// # Errors
     /// [`NpzError::Io`] or [`NpzError::Archive`].
     pub fn open(path: &Path) -> Result<Npz, NpzError> {
-        let file = File::open(path)?;
-        if !file.metadata()?.is_file() {
+        if !fs::metadata(path)?.is_file() {
             let message = "is a folder, device or pipe; expected an .npz file";
             return Err(io::Error::new(io::ErrorKind::InvalidInput, message).into());
         }
-        Npz::of(BufReader::new(file))
+        Npz::of(BufReader::new(File::open(path)?))
     }
 }
 

@@ -1,5 +1,7 @@
 //! The console that the program was started from, if any.
 
+use std::io::Write;
+
 /// Takes the console of the parent process. On Windows a program with a window has none of its own.
 pub fn join() {
     #[cfg(windows)]
@@ -17,5 +19,10 @@ pub fn say(sentence: &str) {
         rfd::MessageDialog::new().set_title("apertura").set_description(sentence).show();
         return;
     }
-    eprintln!("{sentence}");
+    note(sentence);
+}
+
+/// Writes a line to standard error, or nothing where that can't be written: a full disk, or a reader that has gone away, ends no command.
+pub fn note(line: &str) {
+    let _unwritten = writeln!(std::io::stderr(), "{line}");
 }

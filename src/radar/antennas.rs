@@ -233,13 +233,16 @@ fn apart(places: &[f64]) -> usize {
     sorted.len()
 }
 
+/// Largest distance of an antenna from x = 0, metres, either way.
+const MAX_PLACE_METRES: f64 = 1e12;
+
 fn check_places(list: &str, places: &[f64]) -> Result<(), String> {
-    let found = match places.iter().find(|x| !x.is_finite()) {
-        Some(x) => x.to_string(),
+    let found = match places.iter().find(|x| x.is_nan() || x.abs() > MAX_PLACE_METRES) {
+        Some(x) => format!("{x:?}"),
         None if places.is_empty() => "no numbers".to_owned(),
         None => return Ok(()),
     };
-    Err(format!("{list} has {found}; expected finite numbers, at least one"))
+    Err(format!("{list} has {found}; expected numbers from -1e12 to 1e12 m, at least one"))
 }
 
 impl Radar {
@@ -339,6 +342,9 @@ mod tests {
         let told = |t: &[f64], r: &[f64]| Antennas::new(t, r).unwrap_err().to_string();
         assert!(told(&[], &[1.0]).contains("transmitter_x_metres has no numbers"));
         assert!(told(&[0.0], &[f64::NAN]).contains("receiver_x_metres has NaN"));
+        assert!(
+            told(&[0.0, 1e308], &[0.0, 1e308]).contains("transmitter_x_metres has 1e308; expected numbers from -1e12")
+        );
         assert!(told(&[0.0], &[0.5]).contains("make 1 elements; expected 2 to 65536"));
         let uneven = told(&[0.0, 1.0], &[0.0, 0.2, 0.437]);
         assert!(uneven.contains("off the even line"), "{uneven}");

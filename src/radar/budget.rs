@@ -80,8 +80,8 @@ impl LinkBudget {
             (
                 "half_power_width_degrees",
                 width,
-                width > 0.0 && width < 180.0,
-                "above 0 and below 180 degrees, or no such key for isotropic elements: an element of width 0 would see nothing",
+                (MIN_WIDTH_DEGREES..180.0).contains(&width),
+                "0.001 to below 180 degrees, or no such key for isotropic elements: an element of width 0 would see nothing",
             ),
         ] {
             if !is_usable {
@@ -103,6 +103,9 @@ impl LinkBudget {
 pub struct Pattern {
     exponent: f64,
 }
+
+/// Smallest width of an element's pattern: the cosine of half of a much smaller one rounds to 1, whose pattern is NaN.
+const MIN_WIDTH_DEGREES: f64 = 1e-3;
 
 /// Lower bound of a one-way amplitude, -100 dB: no direction is silent.
 const MIN_ONE_WAY_AMPLITUDE: f64 = 1e-5;
@@ -293,8 +296,12 @@ mod tests {
             (LinkBudget { noise_figure_db: -3.0, ..usual }, "radar.budget.noise_figure_db is -3; expected 0 to 100 dB"),
             (LinkBudget { antenna_gain_dbi: f64::NAN, ..usual }, "antenna_gain_dbi is NaN; expected -50 to 100 dBi"),
             (LinkBudget { transmit_power_dbm: 151.0, ..usual }, "expected -100 to 150 dBm"),
-            (LinkBudget { half_power_width_degrees: Some(0.0), ..usual }, "is 0; expected above 0 and below 180"),
-            (LinkBudget { half_power_width_degrees: Some(180.5), ..usual }, "is 180.5; expected above 0 and below 180"),
+            (LinkBudget { half_power_width_degrees: Some(0.0), ..usual }, "is 0; expected 0.001 to below 180"),
+            (
+                LinkBudget { half_power_width_degrees: Some(1e-9), ..usual },
+                "is 0.000000001; expected 0.001 to below 180",
+            ),
+            (LinkBudget { half_power_width_degrees: Some(180.5), ..usual }, "is 180.5; expected 0.001 to below 180"),
         ] {
             let error = radar(budget).validate().unwrap_err();
             assert!(error.to_string().contains(told) && error.field() == "budget", "{error}");

@@ -129,6 +129,9 @@ impl TryFrom<Lists> for BuiltArray {
 
     fn try_from(lists: Lists) -> Result<Self, String> {
         let Lists { count, gain_db, phase_degrees, position_millimetres, forward_millimetres, dead } = lists;
+        // A text may leave the count out: the lists have it.
+        let longest = [&gain_db, &phase_degrees, &position_millimetres, &forward_millimetres].map(Vec::len);
+        let count = if count == 0 { longest.into_iter().max().unwrap_or(0) } else { count };
         if count > MAX_ELEMENTS {
             return Err(format!("elements: count is {count}; at most {MAX_ELEMENTS} are read"));
         }
@@ -140,13 +143,15 @@ impl TryFrom<Lists> for BuiltArray {
         ] {
             if !list.is_empty() && list.len() != count {
                 return Err(format!(
-                    "elements: {name} has {} numbers; expected none or {count}, as count says",
+                    "elements: {name} has {} numbers; expected none or {count}, the number of elements",
                     list.len()
                 ));
             }
         }
         if let Some(n) = dead.iter().find(|n| **n >= count) {
-            return Err(format!("elements: element {n} is dead, of {count}; they are counted from 0"));
+            return Err(format!(
+                "elements: element {n} is dead, of {count} (the key count says so); they are counted from 0"
+            ));
         }
         let of = |list: &[f64], n: usize| list.get(n).copied().unwrap_or(0.0);
         let mut elements: Vec<ElementError> = (0..count)
@@ -263,7 +268,7 @@ impl BuiltArray {
         }
         for (element, e) in self.elements.iter().enumerate() {
             for (field, value, most) in [
-                ("gain", e.gain.0, MAX_GAIN_DB),
+                ("gain_db", e.gain.0, MAX_GAIN_DB),
                 ("phase_degrees", e.phase_degrees, MAX_PHASE_DEGREES),
                 ("position_millimetres", e.position_millimetres, MAX_POSITION_MILLIMETRES),
                 ("forward_millimetres", e.forward_millimetres, MAX_POSITION_MILLIMETRES),
@@ -359,6 +364,8 @@ mod tests {
             let error = toml::from_str::<BuiltArray>(text).unwrap_err().to_string();
             assert!(error.contains(told), "{error}");
         }
+        let uncounted: BuiltArray = toml::from_str("forward_millimetres = [0.5, -0.5]\ndead = [1]").unwrap();
+        assert_eq!((uncounted.elements.len(), uncounted.dead()), (2, 1));
         assert_eq!(array.fitted(20).elements.len(), 20);
         assert!(BuiltArray::default().fitted(20).elements.is_empty() && BuiltArray::default().is_ideal());
     }

@@ -35,13 +35,16 @@ pub use units::{Bytes, DecibelMilliwatts, Decibels, capitalised, counted};
 pub use window::{WindowFunction, chirp_window, hann, hann_at};
 
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 /// Speed of light in vacuum, metres per second.
 pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
 /// Duration of a chirp where a text gives none, seconds: 512 samples at 20 MHz.
 pub const CHIRP_SECONDS: f64 = 25.6e-6;
+
+/// Constants that a radar may have, each in its unit: their products and squares stay finite, so that no sample is NaN.
+const USABLE: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Most chirps that a radar may send one after another.
 pub const MAX_CHIRPS: usize = 4096;
@@ -150,7 +153,7 @@ impl RadarError {
 impl Radar {
     /// Checks every field.
     /// # Errors
-    /// [`RadarError`] names the first field that is not finite and positive, or a count out of range
+    /// [`RadarError`] names the first field that is not from 1e-30 to 1e30, or a count out of range
     /// (1 to 65536 samples, 2 to 65536 elements, each end between 1 element and half the array, 1 to 4096 chirps), elements or a spacing
     /// other than those that the pairs of antennas make, a budget that can't be, or counts that together ask for more than
     /// [`MAX_MEMORY_BYTES`].
@@ -163,8 +166,9 @@ impl Radar {
             ("element_spacing_metres", self.element_spacing_metres),
             ("chirp_interval_seconds", self.chirp_interval_seconds),
         ] {
-            if !(value.is_finite() && value > 0.0) {
-                let told = format!(" is {value}; it must be a finite number above 0");
+            if !USABLE.contains(&value) {
+                let (least, most) = (USABLE.start(), USABLE.end());
+                let told = format!(" is {value:?}; it must be a number above 0, from {least:e} to {most:e}");
                 return Err(RadarError { field, told });
             }
         }
@@ -253,5 +257,25 @@ impl Radar {
     pub fn end_centre_metres(&self, end: End) -> f64 {
         let r = self.end_range(end);
         (self.element_x_metres(r.start) + self.element_x_metres(r.end - 1)) / 2.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constants_beyond_all_radars_are_named() {
+        let usual = Radar::default();
+        for (radar, part) in [
+            (Radar { carrier_hz: 1e308, ..usual.clone() }, "radar.carrier_hz is 1e308; it must be a number above 0"),
+            (Radar { carrier_hz: 1e-308, ..usual.clone() }, "radar.carrier_hz is 1e-308"),
+            (Radar { bandwidth_hz: 1e308, ..usual.clone() }, "from 1e-30 to 1e30"),
+            (Radar { transmit_power_watts: f64::INFINITY, ..usual.clone() }, "transmit_power_watts is inf"),
+            (Radar { element_spacing_metres: 1e300, ..usual }, "element_spacing_metres is 1e300"),
+        ] {
+            let told = radar.validate().unwrap_err().to_string();
+            assert!(told.contains(part), "{told}");
+        }
     }
 }

@@ -9,7 +9,7 @@ use super::radar_table::radar_of_table;
 use super::recording_table::RecordingTable;
 use super::signs::{FORMAT, Signs, first_format};
 use super::{AxisKind, Fault, RadarProfile, Recording, RecordingError, layout};
-use crate::platform::fs::File;
+use crate::platform::fs::{self, File};
 use crate::radar::Radar;
 use crate::scene::file::SceneTextError;
 use crate::signal::ChirpSamples;
@@ -32,11 +32,10 @@ struct Document {
     recording: RecordingTable,
 }
 
-/// Opens a file, but no folder, device or pipe.
+/// Opens a file, but no folder, device or pipe: opening a pipe would wait for its writer.
 pub(super) fn open_file(path: &Path) -> io::Result<File> {
-    let file = File::open(path)?;
-    if file.metadata()?.is_file() {
-        Ok(file)
+    if fs::metadata(path)?.is_file() {
+        File::open(path)
     } else {
         Err(io::Error::new(io::ErrorKind::InvalidInput, "is a folder, device or pipe; expected a file"))
     }

@@ -128,3 +128,53 @@ fn a_full_disk_is_told_in_one_sentence() {
     assert_eq!((done.status.code(), told.lines().count()), (Some(1), 1), "{told}");
     assert!(told.contains("standard output: No space left on device"), "{told}");
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn notes_that_cannot_be_written_end_no_command() {
+    let rows = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/program-0.1.0/rows.csv");
+    let merge = |stderr: Option<File>| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
+        command.args(["evaluate", "--merge"]).arg(&rows);
+        if let Some(file) = stderr {
+            command.stderr(file);
+        }
+        command.output().unwrap()
+    };
+    let told = merge(None);
+    assert!(told.status.success() && String::from_utf8_lossy(&told.stderr).contains("note: "), "{told:?}");
+    let full = merge(Some(File::options().write(true).open("/dev/full").unwrap()));
+    assert!(full.status.success() && full.stdout == told.stdout, "{full:?}");
+}
+
+#[test]
+fn no_command_writes_over_what_it_reads() {
+    let folder = folder();
+    call(&folder, "scenes --set 1 --index 0 -o s.toml").assert().success();
+    call(&folder, "maps s.toml -o in.npz").assert().success();
+    std::fs::write(folder.path().join("rec.toml"), "[recording]\nfile = \"in.npz\"\n").unwrap();
+    let samples = std::fs::read(folder.path().join("in.npz")).unwrap();
+    for arguments in [
+        "reconstruct in.npz -o in.npz --method baseline",
+        "reconstruct rec.toml -o in.npz",
+        "maps in.npz -o ./in.npz",
+        "maps rec.toml -o in.npz",
+        "range-doppler rec.toml -o in.npz",
+    ] {
+        let told = "in.npz: holds what this command reads; expected another name";
+        call(&folder, arguments).assert().failure().stderr(contains(told));
+        assert_eq!(std::fs::read(folder.path().join("in.npz")).unwrap(), samples, "{arguments}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_refused_before_they_are_opened() {
+    let folder = folder();
+    for name in ["pipe.bin", "pipe.npz", "pipe.toml"] {
+        let made = std::process::Command::new("mkfifo").arg(folder.path().join(name)).status().unwrap();
+        assert!(made.success());
+        let mut command = call(&folder, &format!("maps {name} -o out.png"));
+        command.timeout(std::time::Duration::from_secs(60)).assert().failure().stderr(contains("pipe; expected"));
+    }
+}

@@ -88,4 +88,7 @@ fn weights_from_a_file_are_used_or_refused() {
 fn unknown_recipes_are_refused() {
     program(&[]).args(["train", "--list"]).assert().success().stdout(contains("experiment-2-small"));
     program(&[]).args(["train", "no-such"]).assert().failure().stderr(contains("neither a file nor a shipped recipe"));
+    let folder = folder();
+    std::fs::write(folder.path().join("long.toml"), vec![b'#'; (1 << 20) + 1]).unwrap();
+    call(&folder, "train long.toml").assert().failure().stderr(contains("long.toml: has 1048577 bytes"));
 }

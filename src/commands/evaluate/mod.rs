@@ -17,6 +17,7 @@ use crate::evaluate::rows::{
 };
 use crate::evaluate::sets::{SceneFolder, SceneSet};
 use crate::maps::cfar::Cfar;
+use crate::platform::console::note;
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::{Kind, Reading};
@@ -197,7 +198,7 @@ impl Args {
             return Err(CommandError(message));
         }
         for said in campaign.untrained(&sets, &methods)? {
-            eprintln!("apertura: {said}");
+            note(&format!("apertura: {said}"));
         }
         let wanted = RunRows::new(&empty);
         let open = |path: &PathBuf| RowFile::open(path, &wanted, self.overwrite);
@@ -230,8 +231,10 @@ impl Args {
         if let (Some(path), false) = (&self.rows, done.is_empty()) {
             let (path, there) = (path.display(), done.len());
             match there as u64 == maps {
-                true => eprintln!("{path} holds all {maps} rows of this run already"),
-                false => eprintln!("{path} holds {there} of {maps} rows of this run already: going on with the rest"),
+                true => note(&format!("{path} holds all {maps} rows of this run already")),
+                false => {
+                    note(&format!("{path} holds {there} of {maps} rows of this run already: going on with the rest"))
+                }
             }
         }
         done
@@ -261,14 +264,12 @@ impl Args {
             );
             return Err(CommandError(message));
         }
-        problems.iter().for_each(|problem| eprintln!("note: {problem}"));
+        problems.iter().for_each(|problem| note(&format!("note: {problem}")));
         if rows.iter().any(|row| row.version == Some(1)) {
-            eprintln!("note: {WHY_NO_OTHER_FORMAT}; these rows are of format 1");
+            note(&format!("note: {WHY_NO_OTHER_FORMAT}; these rows are of format 1"));
         }
         if rows.iter().any(|row| row.version.is_none()) {
-            eprintln!(
-                "note: an older program wrote these rows; they don't say what made them, nor what the whole run was"
-            );
+            note("note: an older program wrote these rows; they don't say what made them, nor what the whole run was");
         }
         if let Some(path) = &self.rows {
             write_merged(path, &rows, self.overwrite).map_err(told)?;
@@ -289,7 +290,7 @@ fn hearing<'a>(
     match refusals.pop() {
         Some(refusal) if hearing.is_empty() => Err(refusal.into()),
         last => {
-            refusals.iter().chain(&last).for_each(|refusal| eprintln!("apertura: left out: {refusal}"));
+            refusals.iter().chain(&last).for_each(|refusal| note(&format!("apertura: left out: {refusal}")));
             Ok(hearing)
         }
     }

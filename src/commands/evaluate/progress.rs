@@ -1,6 +1,7 @@
 //! The progress of an evaluation: a bar on a terminal, now and then a line elsewhere.
 
 use crate::evaluate::rows::Row;
+use crate::platform::console::note;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -31,7 +32,7 @@ impl MapProgress {
         self.bar.inc(1);
         if self.every.is_some_and(|every| self.told.elapsed() >= every) && self.done < self.total {
             self.told = Instant::now();
-            eprintln!("{}", self.line(&row.set, self.begun.elapsed()));
+            note(&self.line(&row.set, self.begun.elapsed()));
         }
     }
 

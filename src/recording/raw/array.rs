@@ -83,6 +83,10 @@ fn largest(data: &Path) -> Result<(Option<String>, Numbers), Fault> {
         "mat" => hdf5::mat_shapes(open()?)?,
         _ => hdf5::h5_shapes(open()?)?,
     };
+    if ending == "npz" && holds_own(&all) {
+        let expected = "samples alone; `apertura maps` and `apertura reconstruct` read archives of their own";
+        return Err(Fault::key("the archive", "holds a scene or maps of this program", expected));
+    }
     let count = |shape: &[usize]| shape.iter().fold(1usize, |n, len| n.saturating_mul(*len));
     let (key, _) = all
         .into_iter()
@@ -103,7 +107,11 @@ const RESERVED_KEYS: [&str; 8] =
 /// Whether an `.npz` holds samples: an array of two axes or more, and none of a scene or of maps.
 pub(super) fn has_samples(path: &Path) -> bool {
     let all = open_file(path).ok().and_then(|file| numpy::shapes(BufReader::new(file)).ok()).unwrap_or_default();
-    all.iter().all(|(key, _)| !RESERVED_KEYS.contains(&key.as_str())) && all.iter().any(|(_, shape)| shape.len() > 1)
+    !holds_own(&all) && all.iter().any(|(_, shape)| shape.len() > 1)
+}
+
+fn holds_own(all: &[(String, Vec<usize>)]) -> bool {
+    all.iter().any(|(key, _)| RESERVED_KEYS.contains(&key.as_str()))
 }
 
 /// Number of transmitters that send in turn along the axis of chirps by the `.cfg`; `None` where the axes don't fit that.
@@ -139,10 +147,11 @@ fn line_of(
 
 #[cfg(test)]
 mod tests {
+    use crate::files::npz::write_npz;
     use crate::radar::SPEED_OF_LIGHT;
     use crate::recording::file::load;
     use crate::recording::raw::tests::{CFG, folder};
-    use ndarray::{Array4, ArrayD};
+    use ndarray::{Array2, Array4, ArrayD};
     use ndarray_npy::WriteNpyExt;
     use num_complex::Complex64;
     use std::f64::consts::TAU;
@@ -160,6 +169,15 @@ mod tests {
         let mut bytes = Vec::new();
         values.write_npy(&mut bytes).unwrap();
         bytes
+    }
+
+    #[test]
+    fn archives_of_this_program_are_no_samples() {
+        let folder = folder(&[]);
+        let path = folder.path().join("found.npz");
+        write_npz(&path, |out| out.add("net_output", &Array2::<f32>::zeros((64, 8)))).unwrap();
+        let told = super::super::import(&path, None, None).unwrap_err().to_string();
+        assert!(told.contains("found.npz: the archive holds a scene or maps of this program"), "{told}");
     }
 
     #[test]

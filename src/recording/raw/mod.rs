@@ -35,6 +35,7 @@ use super::profile::RadarProfile;
 use super::recording_text::{open_file, read_config_text};
 use super::{Fault, Origin, ReadingOption, Recording, RecordingError};
 use crate::files::ends_in;
+use crate::files::kind::text_kind_at;
 use boards::Board;
 use first_frame::FirstFrame;
 use std::io::{self, BufReader, Cursor, Read};
@@ -72,6 +73,10 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
     let profile = config.as_deref().map(read_config).transpose()?;
     if ends_in(&data, &array::ENDINGS) {
         return array::import(&data, config, profile.as_ref(), board);
+    }
+    if let Some(kind) = text_kind_at(&data) {
+        let expected = "a capture of 16-bit samples, an array, or the .cfg beside it";
+        return Err(Fault::key("the file", format!("is {kind}"), expected).of(&data));
     }
     let (chips, _) = beside::chips(&data);
     let files = match <[PathBuf; 4]>::try_from(chips) {

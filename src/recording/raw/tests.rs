@@ -137,6 +137,8 @@ fn files_of_no_capture_are_refused() {
         ("b.cfg", b"{ \"mmWaveDevices\": [] }"),
         ("empty.bin", b""),
         ("odd.dat", &[7; 999]),
+        ("rows.raw", b"set,index,squared_error\n1,0,210.5\n"),
+        ("scene.bin", b"[[object]]\nkind = \"point\"\n"),
     ]);
     let told = |path: &str, config: Option<&str>| {
         let config = config.map(|c| folder.path().join(c));
@@ -146,6 +148,8 @@ fn files_of_no_capture_are_refused() {
     let short = "empty.bin: has 0 bytes; expected at least one chirp, 1024 bytes as the .cfg says";
     assert!(told("empty.bin", Some("a.cfg")).contains(short) && told("empty.bin", None).contains("has 0 bytes"));
     assert!(told("odd.dat", Some("b.cfg")).contains("b.cfg: is a text of another dialect, mmWave Studio's JSON"));
+    assert!(told("rows.raw", None).contains("rows.raw: the file is a text file; expected a capture of 16-bit samples"));
+    assert!(told("scene.bin", Some("a.cfg")).contains("scene.bin: the file is a scene (.toml)"));
     assert!(told("no.bin", Some("a.cfg")).contains("no.bin: No such file"));
     fs::create_dir(folder.path().join("folder.bin")).unwrap();
     assert!(told("folder.bin", Some("a.cfg")).contains("is a folder"));

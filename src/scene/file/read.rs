@@ -131,7 +131,7 @@ fn check_format(text: &str, document: &DeTable<'_>) -> Result<(), SceneTextError
 
 /// The place of a field of a table, or of the object with this index under `key`, in a text that was read before; that of the table where it has
 /// no such field. It is looked up for errors only.
-fn span_of(text: &str, key: &str, index: Option<usize>, field: &str) -> Range<usize> {
+pub(super) fn span_of(text: &str, key: &str, index: Option<usize>, field: &str) -> Range<usize> {
     let document = table(text).ok();
     let value = document.as_ref().and_then(|document| document.get_ref().get(key));
     let value = value.and_then(|value| match index {
@@ -145,7 +145,7 @@ fn span_of(text: &str, key: &str, index: Option<usize>, field: &str) -> Range<us
     field.or(value).map_or(0..0, Spanned::span)
 }
 
-fn of_toml(text: &str, error: &toml::de::Error, otherwise: usize) -> SceneTextError {
+pub(super) fn of_toml(text: &str, error: &toml::de::Error, otherwise: usize) -> SceneTextError {
     SceneTextError::at(text, error.span().map_or(otherwise, |s| s.start), one_line(error.message()))
 }
 
