@@ -72,7 +72,7 @@ open() {
 fill() {
     open "$1" env XDG_DATA_HOME="$(mktemp -d -p "$work")" XDG_CONFIG_HOME="$(mktemp -d -p "$work")" "$@"
     xdotool windowmove "$window" 0 0 windowsize "$window" 1440 900
-    sleep 3
+    sleep "$(paced 3)"
     xdotool windowfocus "$window"
 }
 
@@ -118,8 +118,11 @@ on_clipboard() {
     fail "$1: \"$2\" is not on the clipboard; it holds: $text"
 }
 
+# paced SECONDS: as many on a quiet machine, PACE times as many on a busy one, where the window takes seconds for a frame.
+paced() { awk -v seconds="$1" -v pace="${PACE:-1}" 'BEGIN { print seconds * pace }'; }
+
 # press KEY...: each with a pause after it.
-press() { for key; do xdotool key --clearmodifiers "$key" sleep 1; done; }
+press() { for key; do xdotool key --clearmodifiers "$key" sleep "$(paced 1)"; done; }
 
 # share_clipboard FIRST: copies everything in the window, where a point stands at y_metres = FIRST, then pastes a point of another program.
 share_clipboard() {

@@ -4,7 +4,7 @@ use crate::app::content::Content;
 use crate::app::jobs::{ChirpQuery, ChirpResult};
 use crate::app::state::{ChirpSettings, Command, RadarCommand, State, ViewCommand};
 use crate::app::widgets::legend::{self, Sign};
-use crate::app::widgets::{Axis, Chart, Computed, Drawn, Inks, NumberField, axes, labelled, padded};
+use crate::app::widgets::{Axis, Chart, Computed, Drawn, Inks, NumberField, axes, labelled, padded, plain};
 use crate::radar::{Carrier, Radar};
 use crate::scene::Interferer;
 use crate::theory::chirp::{BeatTone, ChirpShape, beat_tones, delay_seconds};
@@ -295,7 +295,7 @@ impl Shown<'_> {
             let level = result.spectrum.get(bin as usize).map_or(-SPECTRUM_DB, decibels);
             let beat = bin / self.chirp.duration_seconds / 1e6;
             let range = self.state.radar().range_of_bin_metres(bin);
-            Some(format!("range bin {bin:.0}: {range:.2} m, beat {beat:.3} MHz\n{level:.1} dB"))
+            Some(format!("range bin {bin:.0}: {range:.2} m, beat {beat:.3} MHz\n{} dB", plain(level, 1)))
         });
     }
 }

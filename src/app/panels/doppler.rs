@@ -6,7 +6,7 @@ use crate::app::jobs::{DopplerQuery, DopplerResult};
 use crate::app::state::{Command, DocumentCommand, RadarCommand, State, TIMELINE_SECONDS, ViewCommand};
 use crate::app::widgets::{
     Axis, Bar, Chart, Computed, Drawn, MARK, MARK_EDGE, NumberField, Texture, Tick, axes, colour_table, computed,
-    edged, labelled, padded, press, tick, warning,
+    edged, labelled, padded, plain, press, tick, warning, with_minuses,
 };
 use crate::maps::Normalisation;
 use crate::radar::{MAX_CHIRPS, Radar};
@@ -135,7 +135,7 @@ fn said(ui: &mut Ui, state: &State, result: Computed<'_, DopplerResult>, asked: 
     } else if !state.scene().is_moving() {
         ui.weak("Nothing moves: everything stands at 0 m/s. The Inspector sets velocities.");
     } else {
-        warning(ui, folded(state.radar(), state.scene()).as_deref());
+        warning(ui, folded(state.radar(), state.scene()).map(|told| with_minuses(&told)).as_deref());
     }
 }
 
@@ -207,7 +207,7 @@ fn told(result: &DopplerResult, velocity: f64, range: f64) -> Option<String> {
         _ => "",
     };
     let (range, below) = (radar.range_of_bin_metres(bin), -20.0 * level);
-    Some(format!("{velocity:.2} m/s{towards}\nrange {range:.2} m\n{below:.1} dB below the peak"))
+    Some(format!("{} m/s{towards}\nrange {range:.2} m\n{below:.1} dB below the peak", plain(velocity, 2)))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use crate::app::state::{Command, PhasorMap, PhasorSettings, State, ViewCommand};
 use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{
     Axis, Chart, Computed, Drawn, Inks, MARK, computed, direction, edged, empty_text, labelled, padded, plain,
+    scientific, significant,
 };
 use crate::radar::{End, Radar};
 use crate::theory::Phasors;
@@ -113,9 +114,13 @@ fn said(ui: &mut Ui, radar: &Radar, result: &PhasorsResult) {
     let (sum, length) = (result.measured.sum(), whole_length(&result.measured));
     let part = if length > 0.0 { 100.0 * sum.norm() / length } else { 0.0 };
     let (way, range) = (direction(radar.cos_of_column(column as f64), 1), radar.range_of_bin_metres(bin as f64));
-    let (amplitude, phase) = (sum.norm(), plain(sum.arg().to_degrees(), 0));
+    let phase = plain(sum.arg().to_degrees(), 0);
+    let amplitude = match sum.norm() {
+        usual if (1e-3..1e5).contains(&usual) => significant(usual),
+        other => scientific(other, 2),
+    };
     let share = format!("{part:.1} % of the length of all contributions");
-    ui.label(format!("{way}, {range:.2} m: amplitude {amplitude:.3e}, phase {phase}°; {share}"))
+    ui.label(format!("{way}, {range:.2} m: amplitude {amplitude}, phase {phase}°; {share}"))
         .on_hover_text("100 % where all contributions have one phase, 0 % where they cancel");
 }
 
@@ -227,7 +232,7 @@ mod tests {
     fn the_cell_is_told_in_numbers_or_an_error_is_said() {
         let panel = panel(Some(Ok(result())));
         // 1 + j - 1 = j: a third of the length of three contributions.
-        let _told = panel.get_by_label_contains("amplitude 1.000e0, phase 90°; 33.3 %");
+        let _told = panel.get_by_label_contains("amplitude 1.00, phase 90°; 33.3 %");
         let _chart = panel.get_by_label("Phasors in the complex plane");
         let _said = self::panel(Some(Err("The two ends alone."))).get_by_label("The two ends alone.");
     }

@@ -286,7 +286,7 @@ fn choices(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences,
         });
     });
     let text = match follows.range_width_metres {
-        Some(width) => format!("range resolution (-3 dB): {}", metres(width)),
+        Some(width) => format!("range resolution (−3 dB): {}", metres(width)),
         None => "no range resolution".to_owned(),
     };
     table.row(ui, (WINDOWS, "Weights of samples and elements in the two transforms"), &text, |ui, label| {

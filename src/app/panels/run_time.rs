@@ -3,7 +3,7 @@
 use crate::app::content::{Content, Cx};
 use crate::app::state::{Command, WorkCommand};
 use crate::app::widgets::legend::{self, Entry, Sign};
-use crate::app::widgets::{Axis, Chart, Tick, bar, choice, padded, start_or_cancel, warning};
+use crate::app::widgets::{Axis, Chart, Tick, bar, choice, padded, scientific, start_or_cancel, warning};
 use crate::benchmark::front::{Entrant, FrontRow, FrontTask};
 use crate::radar::Radar;
 use crate::signal::{Algorithm, Precision};
@@ -164,7 +164,7 @@ fn plot(ui: &mut Ui, input: &Input<'_>, memory: &RunTimeMemory) {
         chart.add(points.radius(if is_planned { 6.5 } else { 3.5 }).color(colour));
     }
     let drawn = chart.show(ui, ui.available_rect_before_wrap(), Sense::click_and_drag());
-    drawn.tell(|[error, time]| Some(format!("error {:.1e}\n{:.3} ms", 10f64.powf(error), 10f64.powf(time))));
+    drawn.tell(|[error, time]| Some(format!("error {}\n{:.3} ms", scientific(10f64.powf(error), 1), 10f64.powf(time))));
 }
 
 fn power_of_ten(exponent: i32) -> String {

@@ -5,7 +5,8 @@ use crate::app::content::Content;
 use crate::app::jobs::Small;
 use crate::app::state::{Command, MapKind, Parameter, Projection, RadarCommand, Several, State, Variant, ViewCommand};
 use crate::app::widgets::{
-    Bar, NumberField, Texture, axes, choice, colour_table, labelled, member_box, method_lines, padded, ticking_menu,
+    Bar, Inks, NumberField, Texture, axes, choice, colour_table, labelled, member_box, method_lines, padded,
+    ticking_menu,
 };
 use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, TextureOptions, Ui, Vec2, pos2, vec2};
 
@@ -117,7 +118,7 @@ fn tile(
     let name = format!("{}: {label}", parameter.name());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     let painter = ui.painter().with_clip_rect(place);
-    painter.rect_filled(picture, 0.0, ui.visuals().extreme_bg_color);
+    painter.rect_filled(picture, 0.0, Inks::of(ui.visuals()).beyond);
     let is_met = response.hovered() || response.has_focus();
     let ink = if is_met { ui.visuals().strong_text_color() } else { ui.visuals().text_color() };
     painter.text(place.left_top(), Align2::LEFT_TOP, label, FontId::proportional(12.5), ink);

@@ -4,7 +4,7 @@ use crate::app::content::{Content, Cx};
 use crate::app::jobs::{LOG_INTERVAL, Log, LogQuery, Watched};
 use crate::app::state::{Command, Purpose};
 use crate::app::widgets::legend::{self, Sign};
-use crate::app::widgets::{Axis, Chart, Computed, button, padded, theme, warning};
+use crate::app::widgets::{Axis, Chart, Computed, button, padded, scientific, theme, warning};
 use eframe::egui::{Color32, Grid, Sense, Stroke, Ui};
 use egui_plot::LineStyle;
 use std::path::Path;
@@ -49,7 +49,7 @@ fn curves(ui: &mut Ui, log: &Log) {
             ui.weak(name.replace('_', " "));
             // A whole number has all digits, others have five.
             ui.monospace(match value.parse::<f64>() {
-                Ok(number) if number != number.trunc() || number.abs() >= 1e9 => format!("{number:.4e}"),
+                Ok(number) if number != number.trunc() || number.abs() >= 1e9 => scientific(number, 4),
                 Ok(number) => number.to_string(),
                 Err(_) => value.clone(),
             });
@@ -76,7 +76,7 @@ fn curves(ui: &mut Ui, log: &Log) {
     chart.line(loss.iter().copied(), Stroke::new(1.0, Color32::GRAY), LineStyle::Solid);
     chart.line(log10(&log.smoothed), Stroke::new(1.8, lines[1].1), LineStyle::Solid);
     let drawn = chart.show(ui, ui.available_rect_before_wrap(), Sense::click_and_drag());
-    drawn.tell(|[step, power]| Some(format!("step {step:.0}\nloss {:.3e}", 10f64.powf(power))));
+    drawn.tell(|[step, power]| Some(format!("step {step:.0}\nloss {}", scientific(10f64.powf(power), 3))));
 }
 
 #[cfg(test)]

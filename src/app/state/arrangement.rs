@@ -239,10 +239,13 @@ impl Arrangement {
         }
     }
 
-    /// Adds a tab for a panel without a tile, beside the settings, the inspector or the scene.
+    /// Adds a tab for a panel without a tile: beside those whose tabs it shares in the task's own arrangement, else beside the settings, the inspector or the
+    /// scene.
     fn insert(&mut self, panel: Panel) {
+        let beside = task_layouts::beside(&self.task.tree(), panel);
         let tiles = &mut self.tree.tiles;
-        let like = [Panel::Controls, Panel::Inspector, Panel::Scene].iter().find_map(|p| tiles.find_pane(p));
+        let like = beside.iter().chain(&[Panel::Controls, Panel::Inspector, Panel::Scene]);
+        let like = like.filter(|p| **p != panel).find_map(|p| tiles.find_pane(p));
         let tabs = like.and_then(|id| tiles.parent_of(id)).or(self.tree.root);
         let id = tiles.insert_pane(panel);
         if let Some(tabs) = tabs {

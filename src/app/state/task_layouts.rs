@@ -4,7 +4,7 @@ use super::panel::{MapKind, Panel};
 use MapKind::{Difference, Doubt, Input0, Input1, Output, OutputAbove, Target, TargetAbove, Unexplained};
 use Panel::Map;
 use eframe::egui;
-use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
+use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
 named! {
@@ -120,6 +120,13 @@ pub fn presentation() -> Tree<Panel> {
     let upper = side_by_side(&[Map(Target), Map(Output)]);
     let lower = side_by_side(&[Panel::Scene, Map(Input0), Map(Input1)]);
     tree("presentation", column([(1.0, upper), (1.0, lower)]), [])
+}
+
+/// The panels whose tabs a panel shares in a tree, itself among them; none where it has no tile.
+pub fn beside(tree: &Tree<Panel>, panel: Panel) -> Vec<Panel> {
+    let tabs = tree.tiles.find_pane(&panel).and_then(|id| tree.tiles.parent_of(id));
+    let Some(Tile::Container(tabs)) = tabs.and_then(|id| tree.tiles.get(id)) else { return Vec::new() };
+    tabs.children().filter_map(|id| tree.tiles.get_pane(id).copied()).collect()
 }
 
 fn tabs(panels: impl IntoIterator<Item = Panel>) -> Part {

@@ -6,7 +6,9 @@ use eframe::egui::{Context, LayerId, Rect, Stroke, StrokeKind};
 /// Layer and rectangle of the control with the focus; `None` where none has it or it is out of sight.
 pub fn place(ctx: &Context) -> Option<(LayerId, Rect)> {
     let id = ctx.memory(|m| m.focused())?;
-    let response = ctx.read_response(id)?;
+    // A control that went with its dialog keeps the focus for a pass.
+    let is_drawn = ctx.viewport(|viewport| viewport.this_pass.widgets.contains(id));
+    let response = ctx.read_response(id).filter(|_| is_drawn)?;
     Some((response.layer_id, response.interact_rect)).filter(|(_, rect)| rect.is_positive())
 }
 
@@ -27,12 +29,30 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    fn rings(harness: &Harness<'_, ()>) -> Vec<Rect> {
+    fn rings<S>(harness: &Harness<'_, S>) -> Vec<Rect> {
         let shapes = harness.output().shapes.iter().filter_map(|s| match &s.shape {
             Shape::Rect(r) if [true, false].map(focus).contains(&r.stroke.color) => Some(r.rect),
             _ => None,
         });
         shapes.collect()
+    }
+
+    #[test]
+    fn the_ring_goes_away_with_its_control() {
+        let mut panel = Harness::new_ui_state(
+            |ui, is_there: &mut bool| {
+                if *is_there {
+                    _ = ui.button("one");
+                }
+                draw(ui.ctx());
+            },
+            true,
+        );
+        panel.presses(&[Key::Tab]);
+        assert_eq!(rings(&panel).len(), 1);
+        *panel.state_mut() = false;
+        panel.step();
+        assert!(rings(&panel).is_empty(), "in the first pass without it");
     }
 
     #[test]

@@ -37,8 +37,8 @@ pub use method_menu::{
 pub use nudge::{focus_after_click, focused_steps, keep_arrows, list_keys, nudge, pan_keys, zoom_keys};
 pub use number_field::{NumberField, Wanted};
 pub use numbers::{
-    CONVENTION, angle_degrees, angle_of_place_degrees, difference, direction, level, lowest_db, percent, plain, signed,
-    significant, with_unit,
+    CONVENTION, angle_degrees, angle_of_place_degrees, difference, direction, level, lowest_db, percent, plain,
+    scientific, signed, significant, with_minuses, with_unit,
 };
 pub use padded::{
     Computed, computed, empty_text, group, headings, padded, rarely, right_aligned, row, row_of, scrolled,

@@ -35,6 +35,24 @@ pub fn significant(value: f64) -> String {
     format!("{value:.digits$}").replace('-', "−")
 }
 
+/// A number with a power of ten, like "1.2e−7".
+pub fn scientific(value: f64, digits: usize) -> String {
+    format!("{value:.digits$e}").replace('-', "−")
+}
+
+/// A sentence of the library, whose negative numbers have a hyphen, with a minus in its place. Hyphens within words and ranges stay.
+pub fn with_minuses(sentence: &str) -> String {
+    let mut before = ' ';
+    let mut following = sentence.chars().skip(1);
+    let sign = |letter: char| {
+        let is_number = following.next().is_some_and(|c| c.is_ascii_digit());
+        let is_sign = letter == '-' && is_number && !before.is_alphanumeric();
+        before = letter;
+        if is_sign { '−' } else { letter }
+    };
+    sentence.chars().map(sign).collect()
+}
+
 /// Lowest level that is shown, decibels relative to the peak. Samples of 24 bits reach 144 dB, and the transforms of 512 x 1024 samples add 57 dB. Lower
 /// values of a map are rounding, not echoes.
 pub const LOWEST_DB: f64 = -200.0;
@@ -99,6 +117,13 @@ mod tests {
         assert_eq!([signed(1.25, 1), signed(-0.5, 1), signed(-0.01, 1)], ["+1.2", "−0.5", "±0.0"]);
         assert_eq!([plain(1.25, 1), plain(-0.5, 1), plain(-0.01, 1)], ["1.2", "−0.5", "0.0"]);
         assert_eq!([12345.6, 12.3456, 0.0012345, -0.5].map(significant), ["12346", "12.3", "0.00123", "−0.500"]);
+        assert_eq!([scientific(1.234e-7, 1), scientific(-52.0, 2)], ["1.2e−7", "−5.20e1"]);
+    }
+
+    #[test]
+    fn a_sign_of_a_number_is_a_minus_and_a_hyphen_stays() {
+        let told = with_minuses("A well-known net-2 shows it at -18.2 m/s (-3 dB) - by 10-20 cells, -x");
+        assert_eq!(told, "A well-known net-2 shows it at −18.2 m/s (−3 dB) - by 10-20 cells, -x");
     }
 
     #[test]

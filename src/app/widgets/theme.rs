@@ -105,20 +105,20 @@ pub fn apply(ctx: &Context, theme: ThemePreference) {
     ctx.set_theme(theme);
 }
 
+/// Contrast of two opaque colours as the WCAG defines it, 1 to 21.
+#[cfg(test)]
+pub fn contrast(a: Color32, b: Color32) -> f32 {
+    let luminance = |colour: Color32| {
+        let linear = egui::Rgba::from(colour);
+        0.2126 * linear.r() + 0.7152 * linear.g() + 0.0722 * linear.b()
+    };
+    let (a, b) = (luminance(a), luminance(b));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::Rgba;
-
-    /// Contrast of two opaque colours as the WCAG defines it, 1 to 21.
-    fn contrast(a: Color32, b: Color32) -> f32 {
-        let luminance = |colour: Color32| {
-            let linear = Rgba::from(colour);
-            0.2126 * linear.r() + 0.7152 * linear.g() + 0.0722 * linear.b()
-        };
-        let (a, b) = (luminance(a), luminance(b));
-        (a.max(b) + 0.05) / (a.min(b) + 0.05)
-    }
 
     #[test]
     fn a_box_that_is_not_ticked_is_seen_in_dark_and_light() {

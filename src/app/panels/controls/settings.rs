@@ -1,7 +1,7 @@
 //! Rows of settings: maps, display, and a detector in place of thresholds.
 
 use crate::app::state::{Command, Directions, EditCommand, RadarCommand, Settings, State, Units, ViewCommand};
-use crate::app::widgets::{NumberField, choices, rarely, row, row_of, tick};
+use crate::app::widgets::{NumberField, choices, rarely, row, row_of, scientific, tick};
 use crate::interact::Snap;
 use crate::maps::Normalisation;
 use crate::maps::cfar::{Cfar, MAX_CELLS, Statistic};
@@ -206,7 +206,7 @@ fn rate(ui: &mut Ui, false_alarm: &mut f64) {
                    cell: a window function makes neighbours alike.";
     row(ui, "P_FA", tooltip, |ui| {
         let rate = *false_alarm;
-        let text = if rate < 1e-3 { format!("{rate:.1e}") } else { format!("{rate:.3}") };
+        let text = if rate < 1e-3 { scientific(rate, 1) } else { format!("{rate:.3}") };
         let speed = 0.02 * *false_alarm;
         ui.add(NumberField::new(false_alarm).range(1e-12..=0.9).speed(speed).standing_for(&text))
     });

@@ -1,7 +1,7 @@
 //! The strip of elements side by side, for clicks and drags.
 
 use crate::app::state::State;
-use crate::app::widgets::{Inks, cross, keep_arrows};
+use crate::app::widgets::{Inks, cross, keep_arrows, signed};
 use crate::radar::{BuiltArray, ElementError, End, Radar};
 use eframe::egui::{
     self, Color32, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, pos2, vec2,
@@ -144,10 +144,9 @@ impl Strip<'_> {
     fn tip(&self, x: f32) -> String {
         let n = self.under(x);
         let e = self.elements.element(n);
-        let state = if e.dead { "dead".to_owned() } else { format!("{:+.2} dB, {:+.1}°", e.gain.0, e.phase_degrees) };
-        let [along, forward] = [e.position_millimetres, e.forward_millimetres];
-        format!(
-            "element {n}: {state}, {along:+.2} mm along, {forward:+.2} mm forward\nclick: dead or alive; drag: move"
-        )
+        let gain_and_phase = || format!("{} dB, {}°", signed(e.gain.0, 2), signed(e.phase_degrees, 1));
+        let state = if e.dead { "dead".to_owned() } else { gain_and_phase() };
+        let [along, forward] = [e.position_millimetres, e.forward_millimetres].map(|offset| signed(offset, 2));
+        format!("element {n}: {state}, {along} mm along, {forward} mm forward\nclick: dead or alive; drag: move")
     }
 }

@@ -4,7 +4,7 @@ use crate::app::state::{Command, LessonCommand, LessonRun};
 use crate::app::widgets::{LARGE_TEXT_RATIO, NumberField, Texture, Wanted, cross, inline, large, press, theme};
 use crate::lesson::question::{Answer, number_text};
 use crate::lesson::{Challenge, Guess, Judgement, Measured, Question, Truth};
-use eframe::egui::{self, Color32, Id, Sense, Slider, Stroke, TextEdit, TextureId, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Color32, Id, RichText, Sense, Slider, Stroke, TextEdit, TextureId, Ui, Vec2, pos2, vec2};
 
 /// Answers that were typed but not sent, and the state of the layout.
 #[derive(Default)]
@@ -114,17 +114,7 @@ pub fn answered(ui: &mut Ui, question: &Question, guess: Guess, judged: Option<&
         (Answer::Choice { options, .. }, Guess::Choice(chosen)) => {
             let right = if let Some(Truth::Choice(right)) = truth { Some(right) } else { None };
             for (option, number) in options.iter().zip(1..) {
-                let said = match (number == chosen, right == Some(number)) {
-                    (true, true) => "your answer, right",
-                    (true, false) if right.is_some() => "your answer, wrong",
-                    (true, false) => "your answer",
-                    (false, true) => "the right answer",
-                    (false, false) => "",
-                };
-                ui.horizontal(|ui| {
-                    ui.add_enabled(false, egui::Button::new(option));
-                    ui.label(said);
-                });
+                answered_option(ui, option, number == chosen, right.map(|right| right == number));
             }
         }
         (Answer::Number { unit, .. }, Guess::Number(number)) => {
@@ -138,6 +128,26 @@ pub fn answered(ui: &mut Ui, question: &Question, guess: Guess, judged: Option<&
         }
         _ => {}
     }
+}
+
+/// Draws an option of an answered question. The right one is the most visible; it and a wrong choice have a symbol.
+fn answered_option(ui: &mut Ui, option: &str, is_chosen: bool, is_right: Option<bool>) {
+    let (text, said, symbol) = match (is_chosen, is_right) {
+        (true, Some(true)) => (large(ui, option).strong(), "your answer, right", Some(Symbol::Tick)),
+        (false, Some(true)) => (large(ui, option).strong(), "the right answer", Some(Symbol::Tick)),
+        (true, Some(false)) => (RichText::new(option), "your answer, wrong", Some(Symbol::Cross)),
+        (true, None) => (RichText::new(option), "your answer", None),
+        (false, _) => (RichText::new(option).weak(), "", None),
+    };
+    let ink = theme::verdict(ui.visuals(), is_right == Some(true));
+    ui.horizontal_wrapped(|ui| {
+        let (place, _) = ui.allocate_exact_size(Vec2::splat(16.0), Sense::hover());
+        if let Some(symbol) = symbol {
+            symbol.draw(ui.painter(), place.center(), 6.0, Stroke::new(2.4, ink));
+        }
+        ui.label(text);
+        ui.label(if symbol.is_some() { RichText::new(said).color(ink) } else { said.into() });
+    });
 }
 
 /// Draws the chosen threshold on a scale from 0 to 1, with the range of right ones.

@@ -189,6 +189,30 @@ fn an_answer_stands_beside_the_right_one() {
 }
 
 #[test]
+fn the_right_option_is_the_most_visible() {
+    let mut panel = harness(Some(answered_run("range-and-bandwidth", 3, Guess::Choice(1))));
+    theme::apply(&panel.ctx, egui::ThemePreference::Dark);
+    for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        panel.ctx.set_theme(theme);
+        panel.run_steps(2);
+        let visuals = panel.ctx.style_of(theme).visuals.clone();
+        let ground = visuals.panel_fill;
+        let ink = |option: &str| {
+            panel.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) if text.galley.text() == option => {
+                    let ink = text.galley.job.sections[0].format.color;
+                    Some(if ink == egui::Color32::PLACEHOLDER { text.fallback_color } else { ink })
+                }
+                _ => None,
+            })
+        };
+        let contrast = |option: &str| theme::contrast(ink(option).unwrap_or_else(|| panic!("{option}")), ground);
+        let [chosen, right, other] = ["It shrinks to a third", "It stays", "It grows threefold"].map(contrast);
+        assert!(right > chosen && chosen > other && other >= 4.5, "{theme:?}: {right}, {chosen}, {other}");
+    }
+}
+
+#[test]
 fn starting_over_asks_before_it_forgets() {
     let mut progress = Progress::default();
     progress.note_guess("range-and-bandwidth", 1, true);

@@ -11,8 +11,8 @@ const ROW: f32 = 18.0;
 /// Most rows: more would leave too little of the map.
 const ROWS: usize = 2;
 
-/// Height of a panel up to which there is no room for marks above the map, points.
-const LEAST_HEIGHT: f32 = 150.0;
+/// Height of a panel up to which there is no room for marks or a caption above the map, points.
+pub const LEAST_HEIGHT: f32 = 150.0;
 
 /// Height reserved for marks above every map in a panel `panel_height` points high.
 pub fn reserved(panel_height: f32) -> f32 {

@@ -34,17 +34,18 @@ use crate::app::state::{
     Command, Directions, ExportCommand, LessonCommand, MapKind, MapView, Panel, Projection, State, ViewCommand,
     WindowCommand,
 };
-use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, entry, entry_called, item, nudge};
+use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, entry, entry_called, item, nudge, with_minuses};
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
 use crate::radar::{End, FEW_COLUMNS, Radar};
 use crate::reconstruct::untrained_noise;
 use crate::scattering::EchoSources;
 use crate::scene::Object;
 use answer::Places;
-use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, Galley, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
 use frame::{Frame, cursor_at};
 use legend::Fill;
 use plot::{draw_axes, is_wide, navigate, rect_of};
+use std::sync::Arc;
 
 /// Text over a map of an earlier scene.
 pub const EARLIER_SCENE: &str = "Previous scene; updating…";
@@ -83,7 +84,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     if is_bare {
         draw_legend(ui, &painter, &input, area, rect);
     }
-    draw_over(&inner, frame, &input, response.hover_pos(), is_drawn);
+    draw_over([&painter, &inner], frame, &input, response.hover_pos(), is_drawn);
     if let Some(bar) = bar {
         bar.draw(ui, &painter, rect);
     }
@@ -138,7 +139,14 @@ fn draw_legend(ui: &Ui, painter: &Painter, input: &Input<'_>, area: Rect, map: R
     legend::draw(ui, painter, map, &fills, input.kinds.as_ref(), width);
 }
 
-fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, pointer: Option<Pos2>, is_drawn: bool) {
+/// Draws what lies over the picture: in the panel, and within the map alone.
+fn draw_over(
+    [panel, inner]: [&Painter; 2],
+    frame: Frame<'_>,
+    input: &Input<'_>,
+    pointer: Option<Pos2>,
+    is_drawn: bool,
+) {
     let (kind, state, is_bare) = (input.kind, input.state, !input.is_veiled());
     let is_old = input.stale && is_drawn;
     if !is_drawn && is_bare {
@@ -160,16 +168,14 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, pointer: Opti
         overlay::beam(inner, frame, beam_columns(state.radar(), aperture));
     }
     let line = captions::of_map(state, kind).filter(|_| is_bare);
+    let note = if is_old { Some(input.old.clone()) } else { note(state, kind).filter(|_| is_bare) };
+    let said = line.map(|line| (line, OF_CAPTION)).or(note.map(|note| (note, OF_NOTE)));
     if is_bare {
         overlay::marks(inner, frame, input.objects, pointer);
         overlay::found(inner, frame, input.found, input.stale);
         overlay::selected(inner, frame, state.scene(), state.editor.selection());
         if let Some(theory) = &input.theory {
             theory.draw(inner, frame);
-            // Maps above a threshold leave the numbers out: the map under the threshold shows the same ones.
-            if !kind.is_above() {
-                theory.tell(inner, frame, pointer, &taken(state, frame, line.is_some()));
-            }
         }
         if let Some(places) = Places::of(state, kind) {
             answer::draw(inner, frame, &places);
@@ -177,14 +183,13 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, pointer: Opti
         if let Some(kinds) = input.kinds.as_ref().filter(|_| is_drawn) {
             kinds.draw(inner, frame, pointer, if is_old { 24.0 } else { 0.0 });
         }
+        // Maps above a threshold leave the numbers out: the map under the threshold shows the same ones.
+        if let Some(theory) = input.theory.as_ref().filter(|_| !kind.is_above()) {
+            theory.tell(inner, frame, pointer, &taken(state, frame, said.is_some()));
+        }
     }
-    let said = if is_old { Some(input.old.clone()) } else { note(state, kind).filter(|_| is_bare) };
-    if let Some(line) = line {
-        caption_over(inner, frame.rect, &line);
-    } else if let Some(said) = said {
-        let corner = frame.rect.left_bottom() + vec2(8.0, -8.0);
-        axes::text_on_patch(inner, corner, Align2::LEFT_BOTTOM, &said);
-    }
+    let above = if state.settings.show_kinds { legend::reserved(panel.clip_rect().height()) } else { 0.0 };
+    said.into_iter().for_each(|(line, look)| say([panel, inner], frame, above, &line, look));
 }
 
 /// Note on the noise that the map's method was trained on, where the scene has another noise. None for a recording, whose noise is unknown.
@@ -192,28 +197,45 @@ fn note(state: &State, kind: MapKind) -> Option<String> {
     let method = state.method_in(kind.slot()?).filter(|_| !state.is_recorded())?;
     method.trained_noise()?;
     let echoing = EchoSources::of(state.radar(), state.scene());
-    untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor)
+    untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor).map(|told| with_minuses(&told))
 }
 
-/// Places that text must not cover: blobs of the scene's reflectors, and the caption.
-fn taken(state: &State, frame: Frame<'_>, has_caption: bool) -> Vec<Pos2> {
+/// Places that text must not cover: blobs of the scene's reflectors, and the text at the foot of the map.
+fn taken(state: &State, frame: Frame<'_>, has_foot: bool) -> Vec<Pos2> {
     let reflectors = state.scene().objects.iter().flat_map(Object::marks).take(overlay::MARKS);
-    let caption = has_caption.then(|| frame.rect.left_bottom() + vec2(12.0, -12.0));
-    reflectors.map(|reflector| frame.blob(&reflector)).chain(caption).collect()
+    let foot = has_foot.then(|| frame.rect.left_bottom() + vec2(12.0, -12.0));
+    reflectors.map(|reflector| frame.blob(&reflector)).chain(foot).collect()
 }
 
-/// Largest part of a map's height that a caption may cover.
-const MAX_CAPTION_PART: f32 = 0.3;
+/// Background and size of the text of a caption, points.
+const OF_CAPTION: (Color32, f32) = (CAPTION, 14.0);
 
-/// Draws a caption at the foot of a map, left of the button in its corner; none where it would cover much of the map.
-fn caption_over(painter: &Painter, rect: Rect, line: &str) {
-    let room = (rect.width() - 56.0).max(60.0);
-    let galley = painter.layout(line.to_owned(), egui::FontId::proportional(14.0), CAPTION_INK, room);
-    if galley.size().y > MAX_CAPTION_PART * rect.height() {
-        return;
+/// The same of a note on the map.
+const OF_NOTE: (Color32, f32) = (Color32::from_black_alpha(170), 12.0);
+
+/// Largest part of a map's height that a text at its foot may cover.
+const MAX_TEXT_PART: f32 = 0.3;
+
+/// Writes a caption or a note. It stands above a Cartesian map and its legend, whose rows are `above` points high, where the panel has room there. Else it stands
+/// at the foot of the map, left of the button in the corner; it is left out where it would cover much of the map.
+fn say([panel, inner]: [&Painter; 2], frame: Frame<'_>, above: f32, line: &str, look: (Color32, f32)) {
+    let (rect, area) = (frame.rect, panel.clip_rect());
+    let font = egui::FontId::proportional(look.1);
+    let layout = |room: f32| inner.layout(line.to_owned(), font.clone(), CAPTION_INK, room.max(60.0));
+    let wide = layout(area.width() - 28.0);
+    let top = rect.top() - above - 6.0 - wide.size().y;
+    if frame.projection == Projection::Cartesian && top >= area.top() + 3.0 {
+        let left = rect.left().min(area.right() - 14.0 - wide.size().x);
+        return patch(panel, pos2(left, top), wide, look.0);
     }
-    let at = rect.left_bottom() + vec2(8.0, -8.0 - galley.size().y);
-    painter.rect_filled(Rect::from_min_size(at, galley.size()).expand2(vec2(6.0, 3.0)), 4.0, CAPTION);
+    let galley = layout(rect.width() - 56.0);
+    if galley.size().y <= MAX_TEXT_PART * rect.height() {
+        patch(inner, rect.left_bottom() + vec2(8.0, -8.0 - galley.size().y), galley, look.0);
+    }
+}
+
+fn patch(painter: &Painter, at: Pos2, galley: Arc<Galley>, ground: Color32) {
+    painter.rect_filled(Rect::from_min_size(at, galley.size()).expand2(vec2(6.0, 3.0)), 4.0, ground);
     painter.galley(at, galley, CAPTION_INK);
 }
 

@@ -168,7 +168,7 @@ fn true_direction(painter: &Painter, frame: Frame<'_>, reflector: &Reflector) {
     let seen = frame.radar.polar_of(reflector.x_metres - frame.centre_x_metres, reflector.y_metres);
     let blob = frame.radar.blob_of(frame.centre_x_metres, reflector.x_metres, reflector.y_metres);
     let text = format!("stands at {}\nseen at {}", direction(seen.cos_theta, 1), direction(blob.cos_theta, 1));
-    axes::text_on_patch(painter, frame.rect.left_top() + vec2(10.0, 8.0), Align2::LEFT_TOP, &text);
+    axes::text_on_patch(painter, frame.upper_left(8.0), Align2::LEFT_TOP, &text);
 }
 
 /// Draws the cell under the pointer, in any panel, and its value in this map.

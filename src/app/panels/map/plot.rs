@@ -1,10 +1,14 @@
 //! A map within its panel: its rectangle, its axes, zoom and pan.
 
-use super::frame::Frame;
+use super::frame::{BUTTON, Frame};
+use super::legend::LEAST_HEIGHT;
 use crate::app::state::{Command, Directions, MapKind, MapView, Projection, ViewCommand};
 use crate::app::widgets::{Axis, Icon, Tick, axes, icons, pan_keys, zoom_keys};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
+
+/// Height that is kept free above a Cartesian map, points, with the margin: that of a caption.
+const CAPTION_BAND: f32 = 20.0;
 
 /// Rectangle of the picture within the panel, below a legend that is `above` points high. Every map has the same margins.
 pub fn rect_of(area: Rect, projection: Projection, above: f32) -> Rect {
@@ -15,9 +19,11 @@ pub fn rect_of(area: Rect, projection: Projection, above: f32) -> Rect {
     if projection == Projection::RangeAngle {
         return rect;
     }
-    // Equal aspect: the map is twice as wide as high.
-    let size = vec2(rect.width().min(2.0 * rect.height()), rect.height().min(rect.width() / 2.0));
-    Align2::CENTER_CENTER.align_size_within_rect(size, rect)
+    // Equal aspect: the map is twice as wide as high. The half disc leaves no corner of it large enough for a caption, so the free room is above.
+    let band = if area.height() > LEAST_HEIGHT { CAPTION_BAND } else { 0.0 };
+    let high = rect.height() - band;
+    let size = vec2(rect.width().min(2.0 * high), high.min(rect.width() / 2.0));
+    Align2::CENTER_BOTTOM.align_size_within_rect(size, rect)
 }
 
 /// Whether a panel has room for a bar of colours beside its map.
@@ -160,7 +166,7 @@ pub fn draw_axes(ui: &Ui, painter: &Painter, frame: Frame<'_>, directions: Direc
     axes::draw(ui, painter, rect, x, y);
 }
 
-/// Draws the button in a map's corner that changes the projection of all maps.
+/// Draws the button in a map's corner that changes the projection of all maps. The upper corners of a Cartesian map are outside its half disc.
 pub fn projection_button(ui: &mut Ui, rect: Rect, kind: MapKind, projection: Projection, asked: &mut Vec<Command>) {
     if rect.width() < 120.0 || rect.height() < 60.0 {
         return;
@@ -169,7 +175,11 @@ pub fn projection_button(ui: &mut Ui, rect: Rect, kind: MapKind, projection: Pro
         Projection::RangeAngle => (Icon::Fan, "bend into x and y"),
         Projection::Cartesian => (Icon::Grid, "straighten into cos θ and range"),
     };
-    let corner = Rect::from_min_size(rect.right_bottom() - vec2(28.0, 24.0), vec2(24.0, 20.0));
+    let corner = match projection {
+        Projection::RangeAngle => rect.right_bottom() - vec2(4.0, 4.0) - BUTTON,
+        Projection::Cartesian => rect.left_top() + vec2(4.0, 4.0),
+    };
+    let corner = Rect::from_min_size(corner, BUTTON);
     if icons::over_picture(ui, corner, icon, &format!("{}: {name}", kind.title())).clicked() {
         asked.push(ViewCommand::SetProjection(projection.other()).into());
     }

@@ -2,7 +2,7 @@
 
 use super::clear::clear_patch;
 use super::frame::Frame;
-use crate::app::widgets::{angle_degrees, edged, signed};
+use crate::app::widgets::{angle_degrees, edged, plain, signed};
 use crate::radar::Decibels;
 use crate::scene::Reflector;
 use crate::theory::overlay::STREAK;
@@ -118,7 +118,8 @@ impl Theory<'_> {
             (BEAM, format!("half power {along} × {columns:.1} columns (cos θ {:.4})", columns * column_cos)),
         ];
         if let Some(lobe) = blob.side_lobes.iter().flatten().max_by(|a, b| a.level.0.total_cmp(&b.level.0)) {
-            lines.push((LOBE, format!("first side lobe {:.1} dB, {:.1} columns off", lobe.level.0, lobe.columns)));
+            let level = plain(lobe.level.0, 1);
+            lines.push((LOBE, format!("first side lobe {level} dB, {:.1} columns off", lobe.columns)));
         }
         let [across, along] = [streak.columns, streak.bins].map(|[low, high]| low + high + 1);
         lines.push((DRAWN_OUT, format!("smeared over {across} columns and {along} bins (at −{:.0} dB)", STREAK.0)));
@@ -284,6 +285,7 @@ mod tests {
             "c/2B 7.5 cm",
             "at −20 dB",
             "every 1.01 columns",
+            "first side lobe −84.4 dB",
             "58.4",
             "no grating lobe (every 2.05",
             "at 20 dB, drawn × ",

@@ -1,7 +1,7 @@
 //! The link budget in the radar panel: its numbers, SNR against range, and the SNR of the selected object.
 
 use super::table::{Table, number};
-use crate::app::widgets::{Axis, Chart, Inks, NumberField, Quantity, labelled};
+use crate::app::widgets::{Axis, Chart, Inks, NumberField, Quantity, labelled, plain};
 use crate::radar::budget::{DETECTION_SNR, cross_section_dbsm, range_of_snr_metres};
 use crate::radar::{LinkBudget, Radar};
 use crate::scene::Object;
@@ -80,12 +80,12 @@ pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Optio
 }
 
 fn numbers(ui: &mut Ui, table: Table, radar: &mut Radar, mut budget: LinkBudget) {
-    let text = format!("1 m² at 10 m is received with {:.1} dBm", radar.received(0.0, 10.0).0);
+    let text = format!("1 m² at 10 m is received with {} dBm", plain(radar.received(0.0, 10.0).0, 1));
     number(ui, table, &TRANSMIT_POWER, (&mut budget.transmit_power_dbm, 1.0), &text, true);
-    let text = format!("{:.1} dB on the way there and back", 2.0 * budget.antenna_gain_dbi);
+    let text = format!("{} dB on the way there and back", plain(2.0 * budget.antenna_gain_dbi, 1));
     number(ui, table, &ANTENNA_GAIN, (&mut budget.antenna_gain_dbi, 1.0), &text, true);
     pattern(ui, table, &mut budget);
-    let text = format!("noise of {:.1} dBm in a sample", radar.receiver_noise().0);
+    let text = format!("noise of {} dBm in a sample", plain(radar.receiver_noise().0, 1));
     number(ui, table, &NOISE_FIGURE, (&mut budget.noise_figure_db, 1.0), &text, true);
     let text = format!("{:.2} MHz of noise: samples a second", radar.sample_rate_hz() * 1e-6);
     number(ui, table, &CHIRP, (&mut radar.chirp_seconds, 1e-6), &text, true);
@@ -125,7 +125,7 @@ fn curve(ui: &mut Ui, radar: &Radar) {
     let mut dbsm = ui.data(|d| d.get_temp(id)).unwrap_or(CAR_DBSM);
     ui.horizontal(|ui| {
         let tooltip =
-            "Radar cross section of the object whose SNR is drawn. A car has about 10 dBsm, a person 0, a post -10";
+            "Radar cross section of the object whose SNR is drawn. A car has about 10 dBsm, a person 0, a post −10";
         let field = NumberField::new(&mut dbsm).range(-100.0..=100.0).speed(0.2).max_decimals(1).suffix(" dBsm");
         if labelled(ui, "cross section", tooltip, field).changed() {
             ui.data_mut(|d| d.insert_temp(id, dbsm));
@@ -154,8 +154,8 @@ fn curve(ui: &mut Ui, radar: &Radar) {
     chart.dot([falls, DETECTION_SNR.0], 4.0, inks.selected);
     chart.show(ui, area, Sense::hover()).tell(|[range, _]| {
         let range = range.max(most * 1e-3);
-        let [received, sample, array] = [at_one_metre.received.0, sample, array].map(|of| at(range, of));
-        Some(format!("{range:.1} m: {received:.1} dBm\n{sample:.1} dB a sample, {array:.1} dB by the array"))
+        let [received, sample, array] = [at_one_metre.received.0, sample, array].map(|of| plain(at(range, of), 1));
+        Some(format!("{range:.1} m: {received} dBm\n{sample} dB a sample, {array} dB by the array"))
     });
     ui.weak("Line: by the whole array. Dashes: in a sample. Upright: where ranges wrap around.");
 }
@@ -165,9 +165,10 @@ fn told(radar: &Radar, name: &str, object: &Object) -> String {
     let [x, y] = object.centre_metres();
     let (range, dbsm) = (x.hypot(y).max(1e-3), cross_section_dbsm(object.reflectivity()));
     let link = radar.link(dbsm, range, y / range);
+    let levels = [dbsm, link.received.0, link.sample.0, link.range.0, link.end.0, link.array.0];
+    let [dbsm, received, sample, bin, end, array] = levels.map(|level| plain(level, 1));
     format!(
-        "{name}, {dbsm:.1} dBsm at {range:.1} m: received with {:.1} dBm. SNR {:.1} dB in a sample, {:.1} dB in its range bin, {:.1} dB by one \
-         end, {:.1} dB by the whole array.",
-        link.received.0, link.sample.0, link.range.0, link.end.0, link.array.0
+        "{name}, {dbsm} dBsm at {range:.1} m: received with {received} dBm. SNR {sample} dB in a sample, {bin} dB in its range bin, {end} dB by one \
+         end, {array} dB by the whole array."
     )
 }

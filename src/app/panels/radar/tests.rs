@@ -203,7 +203,7 @@ fn a_link_budget_tells_what_is_received() {
     let panel = with_budget_in_use([600.0, 1400.0]);
     assert_eq!(panel.state().0.radar().budget, Some(crate::radar::LinkBudget::default()));
     // 12 + 20 - 48.2 - 33.0 - 40 dBm, over -174 + 73 + 12 dBm of noise; 512 samples under a Hann window gain 25.3 dB.
-    let told = "received with -89.2 dBm. SNR -0.2 dB in a sample, 25.1 dB in its range bin";
+    let told = "received with −89.2 dBm. SNR −0.2 dB in a sample, 25.1 dB in its range bin";
     assert!(panel.query_by_label_contains(told).is_some(), "{:?}", seen::texts(panel.output()));
     let chart = panel.get_by_label("SNR against range").rect();
     assert!(chart.width() > 200.0 && chart.height() > 80.0, "{chart:?}");

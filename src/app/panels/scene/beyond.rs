@@ -14,7 +14,7 @@ const INSET: f32 = 13.0;
 /// Most signs; the sentence counts all.
 const SIGNS: usize = 100;
 
-/// Widths of the sentence, points: the first with which it covers no label of a direction.
+/// Widths of the sentence, points: the first with which it stays in the canvas and covers no label of a direction.
 const WIDTHS: [f32; 8] = [330.0, 250.0, 190.0, 150.0, 120.0, 105.0, 95.0, 85.0];
 
 struct Beyond<'a> {
@@ -154,7 +154,9 @@ pub fn write(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, below: f32, said: &
         (Rect::from_min_size(at, galley.size()).expand(4.0), galley)
     });
     let covered = |patch: &Rect| labels.iter().filter(|label| patch.intersects(**label)).count();
-    let Some((patch, galley)) = laid.into_iter().min_by_key(|(patch, _)| covered(patch)) else { return };
+    let is_cut = |patch: &Rect| patch.right() > canvas.rect.right();
+    let best = laid.into_iter().min_by_key(|(patch, _)| (is_cut(patch), covered(patch)));
+    let Some((patch, galley)) = best else { return };
     painter.rect_filled(patch, 3.0, ui.visuals().extreme_bg_color);
     painter.galley(at, galley, ink);
     let response = ui.interact(patch, Id::unique("beyond the maximum range"), Sense::hover());

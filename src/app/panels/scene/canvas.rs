@@ -355,7 +355,10 @@ impl Hint {
     /// The laid-out text, and the rectangle beneath it.
     pub fn patch(&self, painter: &Painter, canvas: Canvas<'_>) -> (Arc<Galley>, Rect) {
         let room = (canvas.rect.width() - 32.0).max(60.0);
-        let galley = painter.layout(self.text.clone(), FontId::proportional(15.0), CAPTION_INK, room);
+        let laid = |points: f32| painter.layout(self.text.clone(), FontId::proportional(points), CAPTION_INK, room);
+        // A second line would cover the label of 0°.
+        let one_line = [15.0, 14.0, 13.0].map(laid).into_iter().find(|galley| galley.rows.len() == 1);
+        let galley = one_line.unwrap_or_else(|| laid(13.0));
         let middle = canvas.rect.center_top() + vec2(0.0, 26.0 + galley.size().y / 2.0);
         let patch = Rect::from_center_size(middle, galley.size() + vec2(20.0, 10.0));
         (galley, patch)

@@ -193,6 +193,27 @@ fn a_wall_that_reaches_beyond_the_maximum_range_says_so() {
 }
 
 #[test]
+fn notes_and_hints_stay_in_a_narrow_canvas() {
+    for width in [205.0, 275.0] {
+        let line = Object::Line(Line::vertical(0.0, 30.0, 0.5, 21));
+        let scene = Scene { objects: vec![line], ..Scene::default() };
+        let hint = Hint { text: "Drag the post along its ring, to the wall".to_owned(), way: Vec::new() };
+        let draw = move |ui: &mut Ui, state: &mut State| {
+            _ = show(ui, Input { hint: Some(hint.clone()), ..input() }, state);
+        };
+        let state = State::of(Radar::default(), scene);
+        let mut panel = Harness::builder().with_size([width, 200.0]).build_ui_state(draw, state);
+        panel.run_steps(3);
+        let texts = seen::texts(panel.output());
+        let of = |start: &str| texts.iter().find(|t| t.text.starts_with(start)).unwrap_or_else(|| panic!("{texts:?}"));
+        for told in [of("line 1 reaches"), of("Drag the post")] {
+            assert!(told.clip.contains_rect(told.rect), "{told:?} in {width}");
+        }
+        assert!(width < 250.0 || !of("Drag the post").rect.expand(4.0).intersects(of("0°").rect), "{texts:?}");
+    }
+}
+
+#[test]
 fn every_grip_is_dragged_by_arrow_keys_while_it_has_the_focus() {
     let cluster = GaussianCluster { seed: 1, ..GaussianCluster::new([-4.0, 18.0], [1.0, 1.0], 20) };
     for (object, key) in [

@@ -128,3 +128,19 @@ fn the_guide_opens_beside_the_settings_in_an_older_layout_too() {
     assert_ne!(tabs_of(&arrangement, Panel::Guide), Some(controls));
     assert!(arrangement.is_open(Panel::Guide) && arrangement.is_open(Panel::Controls));
 }
+
+#[test]
+fn a_panel_that_a_kept_lesson_lacks_opens_beside_the_maps() {
+    let mut arrangement = Arrangement::default();
+    arrangement.switch(Task::Teach);
+    let chirp = arrangement.tree.tiles.find_pane(&Panel::Chirp).unwrap();
+    arrangement.tree.remove_recursively(chirp);
+    let kept = serde_json::to_string(&arrangement).unwrap();
+    let mut older: Arrangement = serde_json::from_str(&kept).unwrap();
+    let large = older.tree.tiles.find_pane(&Panel::Map(MapKind::Target));
+    older.set_open(Panel::RangeDoppler, true);
+    assert!(older.is_open(Panel::RangeDoppler));
+    assert_eq!(tabs_of(&older, Panel::Chirp), tabs_of(&older, Panel::Map(MapKind::Output)), "the scene stays in sight");
+    older.put_large(Panel::RangeDoppler);
+    assert_eq!(older.tree.tiles.find_pane(&Panel::RangeDoppler.tile()), large);
+}

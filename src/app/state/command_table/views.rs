@@ -56,7 +56,7 @@ pub(super) const COMMANDS: &[Entry] = {
         View(ViewCommand::SetFloor(Floor::Exact)), "Floor: exact", "No noise at all", None;
         View(ViewCommand::SetFloor(Floor::Snr(Decibels(20.0)))), "Floor: thermal noise", "White noise at a signal-to-noise ratio", None;
         View(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(-20.0)))), "Floor: thermal noise of a level",
-            "White noise of -20 dBm in every sample, for any scene: an empty scene is noise alone", None;
+            "White noise of −20 dBm in every sample, for any scene: an empty scene is noise alone", None;
         View(ViewCommand::SetFloor(Floor::Thermal)), "Floor: noise of the receivers", "kTBF, by the radar's link budget", None;
         View(ViewCommand::Detect(None)), "Detect: global threshold", "Cells whose Λ exceeds η or η' count as detections", None;
         View(ViewCommand::Detect(Some(Statistic::CellAveraging))), "Detect: cell averaging (CFAR)",
@@ -93,7 +93,7 @@ pub(super) const COMMANDS: &[Entry] = {
         Window(WindowCommand::Present), "Presentation",
             "The scene and the maps on the whole screen, in large type; the same key brings everything back", key(Key::F11);
         Window(WindowCommand::ToggleCaptions), "Captions on the maps", "Say on every map what it shows, until the next drag", None;
-        Window(WindowCommand::CloseMessages), "Close messages", "Close every message in the corner", None;
+        Window(WindowCommand::CloseMessages), "Close messages", "Close every message over the status bar", None;
         Window(WindowCommand::ToggleTheme), "Dark", "Switch between dark and light", command(Key::T);
         Window(WindowCommand::ZoomIn), "Zoom in", "Larger interface", command(Key::Plus);
         Window(WindowCommand::ZoomOut), "Zoom out", "Smaller interface", command(Key::Minus);
