@@ -58,7 +58,7 @@ pub struct Args {
 /// A year.
 const MAX_MINUTES: f64 = 525_600.0;
 
-/// Most bytes of a recipe's text.
+/// Maximum bytes of a recipe's text.
 const MAX_RECIPE_BYTES: u64 = 1 << 20;
 
 const CHECKPOINT: &str = "checkpoint";

@@ -43,8 +43,8 @@ pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 /// Duration of a chirp where a text gives none, seconds: 512 samples at 20 MHz.
 pub const CHIRP_SECONDS: f64 = 25.6e-6;
 
-/// Constants that a radar may have, each in its unit: their products and squares stay finite, so that no sample is NaN.
-const USABLE: RangeInclusive<f64> = 1e-30..=1e30;
+/// Range of each constant of a radar, in its unit: products and squares stay finite, so that no sample is NaN.
+const CONSTANT_RANGE: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Most chirps that a radar may send one after another.
 pub const MAX_CHIRPS: usize = 4096;
@@ -166,8 +166,8 @@ impl Radar {
             ("element_spacing_metres", self.element_spacing_metres),
             ("chirp_interval_seconds", self.chirp_interval_seconds),
         ] {
-            if !USABLE.contains(&value) {
-                let (least, most) = (USABLE.start(), USABLE.end());
+            if !CONSTANT_RANGE.contains(&value) {
+                let (least, most) = (CONSTANT_RANGE.start(), CONSTANT_RANGE.end());
                 let told = format!(" is {value:?}; it must be a number above 0, from {least:e} to {most:e}");
                 return Err(RadarError { field, told });
             }

@@ -227,7 +227,7 @@ impl Args {
     }
 
     fn done(&self, file: Option<&RowFile>, maps: u64) -> HashSet<RowIdentity> {
-        let done: HashSet<RowIdentity> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
+        let done: HashSet<RowIdentity> = file.iter().flat_map(|file| file.present.iter().map(row_identity)).collect();
         if let (Some(path), false) = (&self.rows, done.is_empty()) {
             let (path, there) = (path.display(), done.len());
             match there as u64 == maps {
