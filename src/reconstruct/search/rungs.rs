@@ -48,7 +48,7 @@ impl Search<'_> {
             }
             if fit.cost() > MAX_ROUND_RESIDUAL_PART * cost {
                 // The residual is so similar that its tones are the same, but for those of the rows.
-                pairs.points.retain(|point| !fit.atoms.iter().any(|row| is_on_row(row, &point.atom)));
+                pairs.points.retain(|point| !fit.atoms.iter().any(|row| is_on_row(row, point)));
                 break;
             }
             pairs = self.tone_pairs(&fit).unwrap_or_default();

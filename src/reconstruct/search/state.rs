@@ -8,7 +8,6 @@ use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
 use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Samples, Tie};
-use crate::task::Task;
 
 /// Largest residual of a list in which no object is missing but places are inexact, as a part of the samples' energy.
 pub const NEARLY_COMPLETE_RESIDUAL_PART: f64 = 1e-5;
@@ -43,7 +42,6 @@ pub struct Search<'a> {
     /// Whether the samples contain white noise beside rounding.
     pub has_white_noise: bool,
     pub settings: &'a Settings,
-    pub task: &'a Task,
     pub trace: &'a Trace,
 }
 
@@ -54,9 +52,6 @@ impl Search<'_> {
     }
 
     /// `answer` with the number of echoes that white noise lets be resolved, where there is white noise.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn with_model_order(&self, answer: State) -> Result<State, ReconstructError> {
         if !self.has_white_noise || answer.fit.atoms.is_empty() {
             return Ok(answer);
@@ -106,12 +101,9 @@ impl Search<'_> {
     }
 
     /// `known` with the points of `pairs` whose gains are equal at both ends; `known` alone if they leave more. With `refines` places are refined.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn paired(&self, known: Fit, pairs: &Pairs, refines: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
-        atoms.extend(pairs.points.iter().map(|point| point.atom));
+        atoms.extend(&pairs.points);
         if atoms.len() == known.atoms.len() {
             return Ok(known);
         }
