@@ -5,7 +5,7 @@
 use apertura::maps::channels_range_transform;
 use apertura::radar::Radar;
 use apertura::recording::RadarProfile;
-use apertura::recording::layout::{find, stream::Stream};
+use apertura::recording::layout::{find, stream::CaptureStream};
 use ndarray::Array2;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -49,7 +49,7 @@ fn main() {
         let numbers = samples(megabytes << 18);
         let bytes: Vec<u8> =
             numbers.iter().flat_map(|v| [v.re as i16, v.im as i16]).flat_map(i16::to_le_bytes).collect();
-        let mut stream = Stream::new(Cursor::new(bytes)).expect("bytes in memory");
+        let mut stream = CaptureStream::new(Cursor::new(bytes)).expect("bytes in memory");
         let search = shortest(|| assert!(find(&mut stream, profile).is_ok()));
         let radar = Radar { samples: SAMPLES, ..Radar::default() };
         let rows = Array2::from_shape_vec((numbers.len() / SAMPLES, SAMPLES), numbers).expect("whole rows");

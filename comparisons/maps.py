@@ -27,8 +27,8 @@ LIGHT, CARRIER, BANDWIDTH, POWER = 299_792_458.0, 77e9, 2e9, 100.0
 WAVELENGTH = LIGHT / CARRIER
 BIN = LIGHT / (2 * BANDWIDTH)
 ELEMENT_X = (np.arange(ELEMENTS) - (ELEMENTS - 1) / 2) * WAVELENGTH / 2
-# A tool is not tried with more reflectors once it took so long, seconds.
-PATIENCE = 20.0
+# A tool is not tried with more reflectors once its median time exceeds this, seconds.
+MAX_MEDIAN_SECONDS = 20.0
 
 
 # --- From samples [samples, elements] to three maps, in the samples' own precision.
@@ -194,7 +194,7 @@ def main():
                 times.append(1e3 * (time.perf_counter() - start))
             median = sorted(times)[len(times) // 2]
             rows.append({"tool": name, "reflectors": count, "median_ms": median, "signal_error": float(error)})
-            slow = median > 1e3 * PATIENCE
+            slow = median > 1e3 * MAX_MEDIAN_SECONDS
     print(json.dumps({"rows": rows, "missing": missing}))
 
 

@@ -40,18 +40,20 @@
 //! | [`radar`] | | every constant of the radar, validated |
 //! | [`scene`] | files, presets, seeds | objects, and the reflectors they stand for |
 //! | [`recording`] | what a radar measured | samples of its elements |
-//! | [`signal`] | reflectors | the sampled beat signal, over a named floor |
+//! | [`scattering`] | walls, boxes, posts, polygons | their echoes at each pair of antennas |
+//! | [`signal`] | echoes | the sampled beat signal, over a named floor |
 //! | [`maps`] | the beat signal | range-angle maps, Lambda, masks, Cartesian views |
 //! | [`reconstruct`], [`methods`] | the two ends' samples | an estimate of the whole array's map |
 //! | `external` | a command | a method that another program computes |
-//! | [`bounds`] | a layout and a noise level | how well any unbiased estimator can do |
-//! | [`theory`] | a radar and a place | what the formulas predict of the map: peak, beam width, lobes, comb, streak, squint |
+//! | `network` | the two ends' samples | the live network and the thesis' networks |
+//! | [`bounds`] | a layout and a noise level | the least error of any unbiased estimator |
+//! | [`theory`] | a radar and a place | predictions of the map: peak, beam width, lobes, comb, streak, squint |
 //! | [`evaluate`] | target and output | SE, P_D, P_FA, ROC, the thesis' tables |
 //! | [`benchmark`] | scenes of any size | run time against error, and whether numerics hold |
-//! | [`engine`], [`interact`] | edits of a scene | only those maps that changed and are looked at |
+//! | [`engine`], [`interact`] | edits of a scene | the changed and visible maps only |
 //! | [`picture`] | a scene and its maps | colours and panels, without a display |
 //! | [`lesson`] | lesson files | questions, judged on the maps |
-//! | [`view`] | | how a scene is looked at: floor, normalisation, method, thresholds, colours, marks |
+//! | [`view`] | | the settings of a view: floor, normalisation, method, thresholds, colours, marks |
 //! | [`share`] | what is on screen | one line of text, and back |
 //! | [`figures`] | the thesis' scenes | every figure of the thesis, as sheets of panels |
 //! | [`files`], [`commands`] | | whole-or-nothing files, the command line |

@@ -97,10 +97,10 @@ pub fn preferred_for(radar: &Radar) -> Arc<dyn Reconstructor> {
 }
 
 /// The method whose output is shown by default for samples of the elements of `layout`.
-pub fn preferred_hearing(radar: &Radar, layout: &[usize]) -> Arc<dyn Reconstructor> {
+pub fn preferred_for_layout(radar: &Radar, layout: &[usize]) -> Arc<dyn Reconstructor> {
     let iaa: Arc<dyn Reconstructor> = Arc::new(IAA);
-    let hears = iaa.check_elements(radar, layout).is_ok();
-    if hears { iaa } else { Arc::new(MatchedFilter::Coherent) }
+    let is_usable = iaa.check_elements(radar, layout).is_ok();
+    if is_usable { iaa } else { Arc::new(MatchedFilter::Coherent) }
 }
 
 /// A method's name that is not known.

@@ -129,7 +129,7 @@ view! {
     show_found: bool = false,
     show_fields_of_view: bool = false,
     show_theory: bool = false,
-    /// Whether every object is marked by its fate in the output.
+    /// Whether every object is marked by the verdict on it in the output.
     show_kinds: bool = false,
 }
 
@@ -159,14 +159,21 @@ impl View {
     }
 
     /// Numbers of the elements of `radar` that methods use in place of the two ends. `None` for the two ends, also where `radar` lacks elements of the layout.
-    pub fn heard(&self, radar: &Radar) -> Option<Vec<usize>> {
+    pub fn layout_numbers(&self, radar: &Radar) -> Option<Vec<usize>> {
         self.layout.as_ref()?.numbers(radar).ok()
     }
 
     /// A campaign over this floor, with this normalisation, detector and layout.
     pub fn campaign(&self, radar: &Radar) -> Campaign {
         let View { floor, normalisation, cfar, .. } = *self;
-        Campaign { radar: radar.clone(), floor, normalisation, cfar, layout: self.heard(radar), ..Campaign::default() }
+        Campaign {
+            radar: radar.clone(),
+            floor,
+            normalisation,
+            cfar,
+            layout: self.layout_numbers(radar),
+            ..Campaign::default()
+        }
     }
 
     /// The style of pictures of a method's maps.

@@ -13,7 +13,7 @@ import torch
 import torch.distributed as dist
 
 #: Longest that a process waits for the others: the first validates meanwhile.
-PATIENCE = datetime.timedelta(hours=1)
+MAX_WAIT = datetime.timedelta(hours=1)
 
 
 class Team:
@@ -28,7 +28,7 @@ class Team:
             backend = "nccl" if self.device.type == "cuda" else "gloo"
             # torchrun's store outlives a restart, and with it the addresses of processes that are gone: every start has keys of its own.
             store, rank, size = next(dist.rendezvous("env://"))
-            dist.init_process_group(backend, store=dist.PrefixStore(f"start-{self.restarts}", store), rank=rank, world_size=size, timeout=PATIENCE)
+            dist.init_process_group(backend, store=dist.PrefixStore(f"start-{self.restarts}", store), rank=rank, world_size=size, timeout=MAX_WAIT)
 
     @property
     def is_first(self):

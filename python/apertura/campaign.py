@@ -227,7 +227,8 @@ def client_of(scheduler: str | None, workers: int | None) -> Any:
     import dask
     from dask.distributed import Client, LocalCluster
 
-    dask.config.set({"distributed.scheduler.allowed-failures": TRIES})
+    # Dask gives a task up when it was lost more often than this. A scheduler of one's own has its own setting.
+    dask.config.set({"distributed.scheduler.allowed-failures": TRIES - 1})
     if scheduler is not None:
         return Client(scheduler, timeout="30s")
     cluster = LocalCluster(n_workers=workers or os.cpu_count() or 1, threads_per_worker=1, processes=True, dashboard_address=":0")

@@ -6,7 +6,7 @@ use crate::radar::Radar;
 use crate::scene::Scene;
 use crate::work;
 use apertura::maps::doppler;
-use apertura::signal::{Floor, Unfinished, simulate_chirps_for};
+use apertura::signal::{Floor, SimulationError, simulate_chirps_for};
 use num_complex::Complex64;
 use numpy::{PyArray2, PyArray3};
 use pyo3::prelude::*;
@@ -60,7 +60,7 @@ pub fn range_doppler<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let Chirps { scene, radar, floor, seed } = Chirps::of(scene, radar, floor, seed, seconds)?;
     let map = work::run(py, progress, |task| doppler::range_doppler_for(task, &radar, &scene, floor, seed))?;
-    Ok(owned(py, map.map_err(|error: Unfinished| value(error))?.power))
+    Ok(owned(py, map.map_err(|error: SimulationError| value(error))?.power))
 }
 
 /// Samples of every chirp while objects move: what `range_doppler` is made of.
@@ -91,5 +91,5 @@ pub fn chirp_samples<'py>(
 ) -> PyResult<Bound<'py, PyArray3<Complex64>>> {
     let Chirps { scene, radar, floor, seed } = Chirps::of(scene, radar, floor, seed, seconds)?;
     let found = work::run(py, progress, |task| simulate_chirps_for(task, &radar, &scene, floor, seed))?;
-    Ok(owned(py, found.map_err(|error: Unfinished| value(error))?.samples))
+    Ok(owned(py, found.map_err(|error: SimulationError| value(error))?.samples))
 }

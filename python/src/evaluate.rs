@@ -9,8 +9,8 @@ use crate::rows::{dict_of, list_of};
 use crate::scene::{Scene, purpose_of, reading_of, set_name};
 use crate::work::{self, Progress};
 use apertura::evaluate::campaign::{Campaign, CampaignError, Elements};
-use apertura::evaluate::rows::{KeptError, Row, RowFile, RunRows};
-use apertura::evaluate::sets::{Case, Listed, SceneSet};
+use apertura::evaluate::rows::{RowFileError, Row, RowFile, RunRows};
+use apertura::evaluate::sets::{SceneCase, SceneList, SceneSet};
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::Reconstructor;
 use apertura::scene::file::SceneFile;
@@ -251,7 +251,7 @@ fn sets_of(scenes: &Bound<'_, PyAny>, radar: Option<&Radar>, purpose: Purpose) -
             let SceneFile { scene, radar: own } = scene.get().0.clone();
             let radar = radar.map_or(own, |radar| radar.0.clone());
             scene.validate(&radar).map_err(|e| value(format!("scenes: {e}")))?;
-            cases.push(Case { radar, scene });
+            cases.push(SceneCase { radar, scene });
             continue;
         }
         let name = set_name(&item)?;
@@ -259,7 +259,7 @@ fn sets_of(scenes: &Bound<'_, PyAny>, radar: Option<&Radar>, purpose: Purpose) -
         sets.push(SceneSet::Generated(kind));
     }
     if !cases.is_empty() {
-        sets.push(SceneSet::Listed(Listed::new("scenes".to_owned(), cases).map_err(value)?));
+        sets.push(SceneSet::Listed(SceneList::new("scenes".to_owned(), cases).map_err(value)?));
     }
     if sets.is_empty() {
         return Err(value("scenes is empty; expected at least one kind or Scene"));
@@ -284,13 +284,13 @@ fn elements_of(any: &Bound<'_, PyAny>) -> PyResult<Elements> {
     Err(argument(any.py(), message))
 }
 
-fn kept(error: KeptError) -> PyErr {
+fn kept(error: RowFileError) -> PyErr {
     match &error {
-        KeptError::File { source, .. } => system(source, &error),
-        KeptError::Other { .. } => {
+        RowFileError::File { source, .. } => system(source, &error),
+        RowFileError::Other { .. } => {
             value(format!("{error}; name another file, or write over this one with overwrite=True"))
         }
-        KeptError::Busy(_) | KeptError::Merge(_) => value(error),
+        RowFileError::Busy(_) | RowFileError::Merge(_) => value(error),
     }
 }
 

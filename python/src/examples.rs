@@ -146,7 +146,7 @@ impl Examples {
     ///     scenes: A `Scene` for each number in place of a generated one, before the example's radar. Noise is that of seed and number.
     ///
     /// Returns:
-    ///     One dict an example: `ends` complex64 `[2, end_elements, samples]`, or `heard` complex64 `[elements of the layout, samples]`, and the
+    ///     One dict an example: `ends` complex64 `[2, end_elements, samples]`, or `end_samples` complex64 `[elements of the layout, samples]`, and the
     ///     targets `target_ideal`, `target_measured` and `target_calibrated` that were asked for, float32 `[samples, elements]` (decades of
     ///     amplitude), all relative to the samples' mean power; the live network's input `fine` float32 `[4, samples, 256]`, `coarse` float32
     ///     `[10, samples, 64]`, `rows` float32 `[6, samples]`, `scalars` float32 `[2]`, `constants` float32 `[6]`; `gain` (decades that were taken off),
@@ -328,11 +328,11 @@ fn mag_phase_of(radar: &apertura::radar::Radar, ends: &TwoEnds) -> Array3<f32> {
 }
 
 fn dict_of(py: Python<'_>, made: (Example, Option<Array3<f32>>)) -> PyResult<Bound<'_, PyDict>> {
-    let (Example { kind, floor, radar, heard, input, gain, targets }, mag_phase) = made;
+    let (Example { kind, floor, radar, end_samples, input, gain, targets }, mag_phase) = made;
     let scale = 10f64.powf(-gain);
     let single = |v: &Complex64| Complex32::new((v.re * scale) as f32, (v.im * scale) as f32);
     let dict = PyDict::new(py);
-    match heard {
+    match end_samples {
         EndSamples::Ends(ends) => dict.set_item("ends", owned(py, both_ends(&ends).map(single)))?,
         EndSamples::Elements(samples) => dict.set_item("heard", owned(py, samples.map(single)))?,
     }

@@ -4,7 +4,7 @@ use crate::arrays::{both_ends, numbers, owned};
 use crate::errors::value;
 use crate::radar::Radar;
 use apertura::maps::{LogMap, RangeAngleMap};
-use apertura::reconstruct::{About, Family, Hears, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use apertura::reconstruct::{MethodInfo, Family, LayoutSupport, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use apertura::signal::TwoEnds;
 use ndarray::Array2;
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ const LAMBDA: [f64; 2] = [-1.0, 2.0];
 
 /// A Python function that makes maps of the samples of two ends.
 pub struct Function {
-    about: About,
+    info: MethodInfo,
     weights: Option<Weights>,
     is_decades: bool,
     /// `apertura.serve.called` with the function bound to it.
@@ -64,17 +64,17 @@ impl Function {
             "" => otherwise,
             text => &*text.to_owned().leak(),
         };
-        let about = About {
+        let info = MethodInfo {
             name: name.to_owned().leak(),
             description: text(description, "a function of your own"),
-            told: text(told, "its author doesn't say"),
+            prior_knowledge: text(told, "its author doesn't say"),
             eta,
         };
         let weights = (!weights.is_empty()).then(|| Weights { sha256: weights.to_owned(), optimiser: String::new() });
         let partial = function.py().import("functools")?.getattr("partial")?;
         let called = function.py().import("apertura.serve")?.getattr("called")?;
         let called = partial.call1((called, function))?.unbind();
-        Ok(Function { about, weights, is_decades: answers == "decades", called, raised: Mutex::new(None) })
+        Ok(Function { info, weights, is_decades: answers == "decades", called, raised: Mutex::new(None) })
     }
 
     /// Whether rows tell its weights from others.
@@ -96,7 +96,7 @@ impl Function {
     ) -> PyResult<(Array2<f64>, Option<f32>)> {
         let told = (request.noise.to_string(), request.normalisation.to_string(), request.snapshot_range_metres);
         let radar = Radar(radar.of_one_chirp());
-        let heard = match &request.heard {
+        let heard = match &request.layout_samples {
             Some(heard) => owned(py, heard.samples.clone()).into_any(),
             None => owned(py, both_ends(ends)).into_any(),
         };
@@ -130,16 +130,16 @@ pub fn is_name(name: &str) -> bool {
 }
 
 impl Reconstructor for Function {
-    fn about(&self) -> About {
-        self.about
+    fn info(&self) -> MethodInfo {
+        self.info
     }
 
     fn family(&self) -> Family {
         Family::Own
     }
 
-    fn hears(&self) -> Hears {
-        Hears::Layouts
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::AnyLayout
     }
 
     fn weights(&self, _radar: &apertura::radar::Radar) -> Option<Weights> {

@@ -221,7 +221,7 @@ impl Method {
     /// The method's knowledge beside samples and radar.
     #[getter]
     fn told(&self) -> &'static str {
-        self.inner.about().told
+        self.inner.info().prior_knowledge
     }
 
     /// Hexadecimal digits that tell its weights from others, as rows hold them; "" where it has none, or doesn't say.
@@ -283,19 +283,19 @@ impl Method {
     ) -> PyResult<Reconstruction> {
         let (noise, normalisation): (NoisePrior, Normalisation) = (named(floor)?, named(normalisation)?);
         let radar = or_default(radar);
-        let (ends, heard) = match layout_of(layout, &radar)? {
+        let (ends, layout_samples) = match layout_of(layout, &radar)? {
             None => (self::ends(ends, &radar)?, None),
             Some(layout) => {
                 let samples = numbers(ends, "ends", &format!("[{}, {}]", layout.len(), radar.samples))?;
                 let silence = || Array2::zeros((radar.end_elements, radar.samples));
-                let heard = Arc::new(LayoutSamples { layout, samples });
-                (TwoEnds { first: silence(), last: silence() }, Some(heard))
+                let layout_samples = Arc::new(LayoutSamples { layout, samples });
+                (TwoEnds { first: silence(), last: silence() }, Some(layout_samples))
             }
         };
         let method = &self.inner;
         let answer = work::run(py, progress, |task| {
             let task = task.clone();
-            let request = Request { noise, normalisation, snapshot_range_metres, heard, task, ..Request::default() };
+            let request = Request { noise, normalisation, snapshot_range_metres, layout_samples, task, ..Request::default() };
             method.reconstruct(&radar, &ends, &request)
         })?
         .map_err(|error| caused(py, value(error), std::slice::from_ref(method)))?;

@@ -12,7 +12,7 @@ use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 use apertura::scene::presets::{ALL, Preset};
 use apertura::scene::{self, Disturbances};
 use apertura::share::{SharedScene, SharedView, VisiblePart};
-use apertura::signal::{Floor, Unfinished, simulate_for};
+use apertura::signal::{Floor, SimulationError, simulate_for};
 use apertura::view::View;
 use numpy::PyArray2;
 use pyo3::exceptions::PyTypeError;
@@ -337,7 +337,7 @@ impl Scene {
         let scene = &self.0.scene;
         let seed = seed.map_or(Ok(scene.noise_seed), |seed| whole("seed", seed))?;
         let signal = work::run(py, progress, |task| simulate_for(task, &radar, scene, floor, seed))?;
-        let signal = signal.map_err(|error: Unfinished| value(error))?;
+        let signal = signal.map_err(|error: SimulationError| value(error))?;
         Ok(Maps::new(radar, scene.disturbances.elements.clone(), signal, normalisation))
     }
 

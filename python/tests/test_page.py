@@ -88,11 +88,11 @@ def test_a_scene_of_python_comes_back_as_it_was_dragged_in_the_page(monkeypatch)
         # A function, since the page forbids to evaluate text.
         cell.wait_for_function("() => document.getElementById('cover')?.hidden", timeout=120_000)
         notebook.wait_for_timeout(5000)
-        # The point at (1.5, 8) m, as tests/page/browser.mjs has it.
-        notebook.mouse.move(263, 271)
+        # The point at (1.5, 8) m.
+        notebook.mouse.move(263, 291)
         notebook.mouse.down()
         for step in range(1, 6):
-            notebook.mouse.move(263 + 57 * step / 5, 271 - 31 * step / 5)
+            notebook.mouse.move(263 + 57 * step / 5, 291 - 31 * step / 5)
             notebook.wait_for_timeout(300)
         notebook.mouse.up()
         deadline = time.monotonic() + 60

@@ -9,8 +9,8 @@ use super::widgets::Texture;
 use crate::bounds::PositionBound;
 use crate::engine::EngineReport;
 use crate::evaluate::Metrics;
-use crate::evaluate::failure::Failures;
 use crate::evaluate::rows::Row;
+use crate::evaluate::verdict::OutputVerdicts;
 use crate::maps::RangeAngleMap;
 use crate::reconstruct::Detection;
 use crate::scene::Reflector;
@@ -131,10 +131,10 @@ impl App {
         self.jobs.pipeline.scores_in(MethodSlot::First).map(|s| s.metrics)
     }
 
-    /// The fate of every object in the output on screen, where the maps mark it and it is up to date.
-    pub fn failures(&self) -> Option<&Failures> {
-        let (fates, current) = super::jobs::fates_of(&self.jobs.kinds, MethodSlot::First, &self.jobs.pipeline)?;
-        (current && self.state.settings.show_kinds).then_some(&fates.failures)
+    /// The verdict on every object in the output on screen, where the maps mark it and it is up to date.
+    pub fn verdicts(&self) -> Option<&OutputVerdicts> {
+        let (judged, current) = super::jobs::judged_output(&self.jobs.kinds, MethodSlot::First, &self.jobs.pipeline)?;
+        (current && self.state.settings.show_kinds).then_some(&judged.verdicts)
     }
 
     /// Whether a job started in a tool's panel runs.

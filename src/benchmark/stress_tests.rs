@@ -3,13 +3,13 @@
 
 use super::front::MapConvention;
 use super::front::reference::{JudgedProfiles, SEED, UnitNoise, maps_of, profile};
-use crate::engine::{Engine, Forced, MapRequest};
+use crate::engine::{Engine, MapRequest, PlanOverrides};
 use crate::maps::tolerance::tolerance_for;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::scene::{Line, MIN_ELEMENT_DISTANCE_METRES, Object, Point, Reflector, Scene};
 use crate::signal::plan::{self, BEST_TOLERANCE, amplitude_bound};
-use crate::signal::{Algorithm, Floor, Plan, Precision, beat_signal};
+use crate::signal::{Algorithm, Floor, Precision, SynthesisPlan, beat_signal};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 
@@ -100,7 +100,11 @@ impl<'a> Case<'a> {
 
     fn fast(&self, name: &str, algorithm: Algorithm, precision: Precision, tolerance: f64) -> Outcome {
         let mut engine = Engine::new(self.radar.clone());
-        engine.force(Forced { algorithm: Some(algorithm), precision: Some(precision), tolerance: Some(tolerance) });
+        engine.force(PlanOverrides {
+            algorithm: Some(algorithm),
+            precision: Some(precision),
+            tolerance: Some(tolerance),
+        });
         let mut outcome = Outcome { algorithm, signal_error: 0.0 };
         for convention in CONVENTIONS {
             let MapConvention { floor, normalisation } = convention;
@@ -119,7 +123,7 @@ impl<'a> Case<'a> {
     }
 
     fn plain(&self, name: &str, algorithm: Algorithm) -> Outcome {
-        let plan = Plan::cheapest(0, 0.0, BEST_TOLERANCE).with_algorithm(algorithm);
+        let plan = SynthesisPlan::cheapest(0, 0.0, BEST_TOLERANCE).with_algorithm(algorithm);
         let noise = UnitNoise::new(self.radar);
         let reflectors = self.scene.reflectors();
         let signal = beat_signal(self.radar, &reflectors, &plan);

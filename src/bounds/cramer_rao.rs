@@ -9,7 +9,7 @@
 
 use crate::radar::{Decibels, Layout, Pair, Radar};
 use crate::scene::Reflector;
-use crate::signal::path::{By, PathChange};
+use crate::signal::path::{PathChange, PolarCoordinate};
 use crate::signal::phase::{Echo, EchoModel};
 use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::{Mat, Side};
@@ -152,7 +152,7 @@ impl PlacedEcho {
     fn new(radar: &Radar, model: &EchoModel, pair: Pair, r: &Reflector) -> Self {
         PlacedEcho {
             echo: model.echo(pair, r),
-            by: [By::Range, By::CosTheta].map(|by| {
+            by: [PolarCoordinate::Range, PolarCoordinate::CosTheta].map(|by| {
                 let place = [r.x_metres, r.y_metres];
                 PathChange::of_point(pair, place, by).through(radar.pattern(), pair, place, by)
             }),

@@ -111,8 +111,8 @@ fn described(imported: &Imported, doubts: &[String]) -> Value {
 fn layout(candidate: &Candidate) -> Value {
     let Candidate { layout, counts, evidence, .. } = candidate;
     json!({
-        "words": layout.words,
-        "parts": layout.parts,
+        "words": layout.encoding,
+        "parts": layout.part_order,
         "q_first": layout.q_first,
         "receivers": layout.receivers,
         "header_bytes": layout.header_bytes,

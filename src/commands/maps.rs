@@ -134,11 +134,11 @@ impl Args {
             let bytes = compose(radar, scene, &signal, self.method(radar)?.as_ref(), &style, format)?;
             return write_file(&self.output, &bytes);
         }
-        let heard = self.heard(radar, Some(&signal))?;
+        let layout_samples = self.layout_samples(radar, Some(&signal))?;
         let (noise, normalisation) = (self.floor.floor.into(), self.normalisation);
-        let request = Request { noise, normalisation, heard: heard.clone(), ..Request::default() };
+        let request = Request { noise, normalisation, layout_samples: layout_samples.clone(), ..Request::default() };
         let output = self.estimate(radar, &signal.two_ends(radar), &request)?;
-        let full = write_maps(&self.output, radar, scene, &signal, heard.as_deref(), output.as_ref())
+        let full = write_maps(&self.output, radar, scene, &signal, layout_samples.as_deref(), output.as_ref())
             .map_err(CommandError::on(&self.output))?;
         print(&span(&full))
     }
@@ -184,16 +184,17 @@ impl Args {
                 .map_err(CommandError::on(&self.input))?;
             return write_file(&self.output, &bytes);
         }
-        let (full, ends, heard) = (maps_of(&recording).1, recording.two_ends(), self.heard(radar, recording.signal())?);
+        let (full, ends, layout_samples) =
+            (maps_of(&recording).1, recording.two_ends(), self.layout_samples(radar, recording.signal())?);
         let request = Request {
             noise: NoisePrior::UNKNOWN,
             normalisation: self.normalisation,
             snapshot_range_metres: recording.range_metres,
-            heard: heard.clone(),
+            layout_samples: layout_samples.clone(),
             ..Request::default()
         };
         let output = self.estimate(radar, &ends, &request)?;
-        write_recorded_maps(&self.output, radar, &ends, full.as_ref(), heard.as_deref(), output.as_ref())
+        write_recorded_maps(&self.output, radar, &ends, full.as_ref(), layout_samples.as_deref(), output.as_ref())
             .map_err(CommandError::on(&self.output))?;
         full.as_ref().map_or(Ok(()), |full| print(&span(full)))
     }
@@ -213,12 +214,16 @@ impl Args {
     fn method(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
         match (self.method.as_deref(), self.layout.numbers(radar)?) {
             (Some(name), _) => Ok(methods::by_name(name)?),
-            (None, Some(layout)) => Ok(methods::preferred_hearing(radar, &layout)),
+            (None, Some(layout)) => Ok(methods::preferred_for_layout(radar, &layout)),
             (None, None) => Ok(methods::preferred_for(radar)),
         }
     }
 
-    fn heard(&self, radar: &Radar, signal: Option<&BeatSignal>) -> Result<Option<Arc<LayoutSamples>>, CommandError> {
+    fn layout_samples(
+        &self,
+        radar: &Radar,
+        signal: Option<&BeatSignal>,
+    ) -> Result<Option<Arc<LayoutSamples>>, CommandError> {
         let Some(layout) = self.layout.numbers(radar)? else { return Ok(None) };
         let alone = || CommandError(format!("{}: {ENDS_ALONE}, or no --layout", self.input.display()));
         Ok(Some(Arc::new(signal.ok_or_else(alone)?.of_layout(&layout))))

@@ -17,8 +17,9 @@ use std::path::PathBuf;
 /// Compute the range-Doppler map of a scene whose objects move, or of a recording with loops, to an .npz archive or a .png or .svg picture
 ///
 /// The radar sends several chirps. An object's velocity (velocity_x_metres_per_second and velocity_y_metres_per_second in the scene)
-/// turns its phase from chirp to chirp. Powers are averaged over up to 4 elements of each end. A velocity
-/// shifts the range by v f T / B within a chirp of duration T.
+/// turns its phase from chirp to chirp. Powers are averaged over up to 4 elements of each end. A velocity v away from a physical radar
+/// also shifts its range by v f T / B: T is the duration of a chirp, f the frequency in its middle. The default radar's chirp falls: there f
+/// is 37.5 GHz, and the shift is -v f T / B.
 ///
 /// Of a recording it is the map of the loops of a frame, mean over the elements; the strongest cell is printed.
 ///

@@ -157,7 +157,7 @@ impl Args {
         let mut request = Request { noise, snapshot_range_metres: range_metres, ..Request::default() };
         let samples = if let Some(layout) = layout {
             let samples = archive.complexes::<Ix2>("heard").map_err(CommandError::on(&self.input))?;
-            request.heard = Some(Arc::new(LayoutSamples { layout, samples }));
+            request.layout_samples = Some(Arc::new(LayoutSamples { layout, samples }));
             Samples::Ends(silence(&radar))
         } else if ready_made {
             let array = archive.reals::<Ix3>("polar_partial_mag_phase").map_err(CommandError::on(&self.input))?;
@@ -219,8 +219,8 @@ impl Args {
 
     fn usual(&self, radar: &Radar) -> Result<Arc<dyn Reconstructor>, CommandError> {
         let layout = self.layout.numbers(radar)?;
-        let usual =
-            layout.map_or_else(|| methods::preferred_for(radar), |layout| methods::preferred_hearing(radar, &layout));
+        let usual = layout
+            .map_or_else(|| methods::preferred_for(radar), |layout| methods::preferred_for_layout(radar, &layout));
         self.method(usual.name())
     }
 
@@ -232,7 +232,7 @@ impl Args {
             Some(layout) => {
                 let alone = "the recording holds the samples of the two ends alone; leave --layout out";
                 let alone = || CommandError::on(&self.input)(alone);
-                request.heard = Some(Arc::new(recording.signal().ok_or_else(alone)?.of_layout(&layout)));
+                request.layout_samples = Some(Arc::new(recording.signal().ok_or_else(alone)?.of_layout(&layout)));
                 silence(&recording.radar)
             }
         };

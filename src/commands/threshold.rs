@@ -82,7 +82,7 @@ struct Report {
     scenes_within_a_tenth: u64,
     check: Option<ThresholdMeans>,
     #[serde(skip)]
-    told_left: String,
+    margin_sentence: String,
 }
 
 impl Args {
@@ -119,7 +119,7 @@ impl Args {
             tried,
             left_to_scenes: search.left_to_scenes(tried.scenes),
             scenes_within_a_tenth: search.scenes_within_a_tenth(),
-            told_left: search.told_left(tried.scenes),
+            margin_sentence: search.margin_sentence(tried.scenes),
             check,
         };
         if self.json { print_json(&report) } else { print(&report.text()) }
@@ -138,7 +138,7 @@ impl Report {
         let mut lines = vec![
             format!("threshold of {method} over {floor}{heard}, sets {sets}: {eta:.4}"),
             tried("on the", &self.tried),
-            self.told_left.clone(),
+            self.margin_sentence.clone(),
             format!("on a further scene that is drawn like these, P_FA is at most {wanted} % on average"),
         ];
         lines.extend(self.check.as_ref().map(|check| tried("checked on further", check)));

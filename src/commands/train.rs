@@ -7,9 +7,9 @@ use crate::network::backend::Backend;
 use crate::network::checkpoint;
 use crate::network::recipe::{Network, Recipe, SHIPPED};
 use crate::network::run::{Origin, RunProgress, TrainingRun};
-use crate::network::students::Student;
 use crate::network::thesis::Thesis;
 use crate::network::train::train;
+use crate::network::trainable_network::TrainableNetwork;
 use crate::network::unet::Unet;
 use crate::radar::{Radar, counted};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -107,7 +107,12 @@ fn list() -> Result<(), CommandError> {
     SHIPPED.iter().try_for_each(|(name, text)| print(&format!("{name:20} {}", Recipe::parse(name, text)?.description)))
 }
 
-fn go<S: Student>(recipe: &Recipe, config: &S::Config, run: &TrainingRun, resume: bool) -> Result<(), CommandError> {
+fn go<S: TrainableNetwork>(
+    recipe: &Recipe,
+    config: &S::Config,
+    run: &TrainingRun,
+    resume: bool,
+) -> Result<(), CommandError> {
     let all = recipe.training_scenes().len() / recipe.batch * recipe.epochs as usize;
     let bar = ProgressBar::new(run.max_steps.map_or(all as u64, |most| most.min(all as u64)));
     bar.set_style(ProgressStyle::with_template("{bar:30} step {pos}/{len}, {eta} left, {msg}")?);

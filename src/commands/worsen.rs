@@ -3,7 +3,7 @@
 use super::arguments::{FloorArgs, chosen, real, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
-use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
+use crate::evaluate::worsen::{Finding, WorseningGoal, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
 use crate::radar::counted;
 use crate::scene::Scene;
 use crate::scene::file::{self, SceneFile};
@@ -79,7 +79,7 @@ impl Args {
         let search = WorseningSearch {
             radar: radar.clone(),
             floor: self.floor.floor,
-            aim: if self.repair { Aim::Repair } else { Aim::Worsen },
+            goal: if self.repair { WorseningGoal::Repair } else { WorseningGoal::Worsen },
             measure: self.measure,
             within_metres: self.within,
             tries: self.most_tries(),
@@ -119,7 +119,7 @@ impl Args {
         let detection = m.detection.map_or("-".to_owned(), |d| format!("{:.2} %", 100.0 * d));
         let mut text = format!("SE {:.1}, P_D {detection}, P_FA {:.2} %", m.squared_error, 100.0 * m.false_alarm);
         if self.measure != WorseningMeasure::SquaredError {
-            text += &format!("; {}", summary(&finding.failures));
+            text += &format!("; {}", summary(&finding.verdicts));
         }
         text
     }

@@ -1,18 +1,18 @@
 //! Bounds of the echo amplitudes of each object of the last scene. Only changed objects are evaluated again.
 
 use crate::radar::Radar;
-use crate::scattering::SeenObject;
+use crate::scattering::ObjectWithOccluders;
 use crate::signal::plan;
 
 #[derive(Debug, Default)]
 pub(super) struct Amplitudes {
-    known: Vec<(SeenObject, f64)>,
+    known: Vec<(ObjectWithOccluders, f64)>,
 }
 
 impl Amplitudes {
     /// Sum of the largest amplitudes of all echoes of these objects, by [`plan::amplitude_bounds`]. Keeps the bound of each object.
-    pub fn bound(&mut self, radar: &Radar, seen: &[SeenObject]) -> f64 {
-        let is_known = |at: usize, one: &SeenObject| self.known.get(at).is_some_and(|(known, _)| known == one);
+    pub fn bound(&mut self, radar: &Radar, seen: &[ObjectWithOccluders]) -> f64 {
+        let is_known = |at: usize, one: &ObjectWithOccluders| self.known.get(at).is_some_and(|(known, _)| known == one);
         let missing: Vec<usize> =
             seen.iter().enumerate().filter(|(at, one)| !is_known(*at, one)).map(|(at, _)| at).collect();
         let bounds = plan::amplitude_bounds(radar, missing.iter().filter_map(|at| seen.get(*at)));
@@ -50,7 +50,7 @@ mod tests {
         };
         let mut known = Amplitudes::default();
         let mut check = |scene: &Scene| {
-            let seen = SeenObject::all(&radar, scene);
+            let seen = ObjectWithOccluders::all(&radar, scene);
             assert_eq!(known.bound(&radar, &seen), plan::amplitude_bounds(&radar, seen.iter()).iter().sum::<f64>());
             plan::amplitude_bounds(&radar, seen.iter())
         };

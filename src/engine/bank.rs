@@ -5,11 +5,11 @@ use super::{EngineReport, EngineStage, MapRequest};
 use crate::maps::fast::{FastLogMap, MapMaker, MapNoise, MapSources, silence_decades};
 use crate::platform::Instant;
 use crate::radar::{Radar, counted};
-use crate::scattering::{Echoing, SeenObject};
+use crate::scattering::{EchoSources, ObjectWithOccluders};
 use crate::scene::Scene;
 use crate::signal::simd::{Lanes, Real, Simd};
 use crate::signal::synthesis::{BlockProfiles, Synthesis, unit_noise_profiles};
-use crate::signal::{Algorithm, Floor, Plan, Rows, floor, plan};
+use crate::signal::{Algorithm, Floor, Rows, SynthesisPlan, floor, plan};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 
@@ -18,9 +18,9 @@ pub(super) struct BankUpdate<'a> {
     pub radar: &'a Radar,
     pub scene: &'a Scene,
     /// Objects of the scene, each with those that hide it.
-    pub seen: &'a [SeenObject],
+    pub seen: &'a [ObjectWithOccluders],
     pub wanted: &'a MapRequest,
-    pub plan: Plan,
+    pub plan: SynthesisPlan,
     pub forced: Option<Algorithm>,
     pub amplitude: f64,
     pub missing: [bool; 3],
@@ -47,7 +47,7 @@ impl BankUpdate<'_> {
     /// Two bounds of the amplitudes of objects that leave the sum. The first is of their echoes. The second counts every echo as at least three quarters of
     /// [`BankUpdate::quiet`], since the error of a weak echo does not shrink with it. Its error is a quarter of the tolerance times twice `quiet` from the
     /// addition, and times `quiet` from the subtraction.
-    fn leaving(&self, objects: &[SeenObject]) -> [f64; 2] {
+    fn leaving(&self, objects: &[ObjectWithOccluders]) -> [f64; 2] {
         let bounds = plan::amplitude_bounds(self.radar, objects.iter());
         let counted = objects.iter().zip(&bounds).map(|(one, bound)| {
             let (count, least) = (one.echo_count() as f64, 0.75 * self.quiet());
@@ -90,7 +90,7 @@ impl KeptDecades {
 
 /// Objects that are summed together, and their range profiles.
 pub(super) struct Group<T, const W: usize> {
-    objects: Vec<SeenObject>,
+    objects: Vec<ObjectWithOccluders>,
     pub(super) profiles: BlockProfiles<T, W>,
     /// Largest [`BankUpdate::quiet`] that any of the objects was summed with, where quiet echoes have few rows.
     quiet: f64,
@@ -102,8 +102,8 @@ impl<T: Real, const W: usize> Group<T, W> {
         Group { objects: Vec::new(), profiles: BlockProfiles::silence(radar), quiet: 0.0, variance: None }
     }
 
-    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[SeenObject], job: &BankUpdate<'_>) {
-        let echoing = Echoing::seen(job.radar, objects);
+    fn fill(&mut self, synthesis: &Synthesis<T, W>, objects: &[ObjectWithOccluders], job: &BankUpdate<'_>) {
+        let echoing = EchoSources::of_objects(job.radar, objects);
         synthesis.range_profiles_beside(&echoing, job.quiet(), &mut self.profiles, job.task);
         // The other algorithms treat quiet echoes as all others.
         let has_few_rows = synthesis.plan().algorithm == Algorithm::ClosedForm;
@@ -114,7 +114,8 @@ impl<T: Real, const W: usize> Group<T, W> {
 
     fn variance(&mut self, radar: &Radar) -> &[f64] {
         let objects = &self.objects;
-        self.variance.get_or_insert_with(|| floor::thesis_noise_variance(radar, &Echoing::seen(radar, objects)))
+        self.variance
+            .get_or_insert_with(|| floor::thesis_noise_variance(radar, &EchoSources::of_objects(radar, objects)))
     }
 
     fn clear(&mut self) {
@@ -173,7 +174,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     fn synthesis(&mut self, job: &BankUpdate<'_>, count: usize) -> usize {
-        let mut plan = Plan::cheapest(count, job.amplitude, job.plan.tolerance);
+        let mut plan = SynthesisPlan::cheapest(count, job.amplitude, job.plan.tolerance);
         if job.wanted.floor == Floor::Exact {
             plan = plan.on_few_rows(job.radar, count);
         }
@@ -283,13 +284,13 @@ impl<T: Real, const W: usize> Bank<T, W> {
                     self.rest.add(&self.active, 1.0);
                 }
                 if !change.leaving.is_empty() {
-                    let count = change.leaving.iter().map(SeenObject::echo_count).sum();
+                    let count = change.leaving.iter().map(ObjectWithOccluders::echo_count).sum();
                     let synthesis = self.synthesis(job, count);
                     self.leaving.fill(&self.syntheses[synthesis], &change.leaving, job);
                     self.rest.add(&self.leaving, -1.0);
                     changed.extend(&self.leaving.profiles.touched);
                 }
-                let count = change.arriving.iter().map(SeenObject::echo_count).sum();
+                let count = change.arriving.iter().map(ObjectWithOccluders::echo_count).sum();
                 let synthesis = self.synthesis(job, count);
                 self.active.fill(&self.syntheses[synthesis], &change.arriving, job);
                 if let Some(built) = &mut self.built {
@@ -308,7 +309,12 @@ impl<T: Real, const W: usize> Bank<T, W> {
     }
 
     /// Sums `staying` at rest and `moving` apart from it; together they are the whole scene.
-    fn build_anew(&mut self, job: &BankUpdate<'_>, staying: &[SeenObject], moving: &[SeenObject]) -> (String, Rows) {
+    fn build_anew(
+        &mut self,
+        job: &BankUpdate<'_>,
+        staying: &[ObjectWithOccluders],
+        moving: &[ObjectWithOccluders],
+    ) -> (String, Rows) {
         let total = job.scene.echo_count();
         let synthesis = self.synthesis(job, total);
         let mut changed = self.rest.profiles.touched.clone();
@@ -334,7 +340,7 @@ impl<T: Real, const W: usize> Bank<T, W> {
                 let (rest, active) = (self.rest.variance(job.radar), self.active.variance(job.radar));
                 rest.iter().zip(active).map(|(a, b)| a + b).collect()
             }
-            Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &Echoing::seen(job.radar, job.seen), snr),
+            Floor::Snr(snr) => floor::snr_noise_variance(job.radar, &EchoSources::of_objects(job.radar, job.seen), snr),
             floor @ (Floor::Level(_) | Floor::Thermal) => vec![floor.level_variance(job.radar)?; job.radar.elements],
         };
         let seed = job.wanted.seed;

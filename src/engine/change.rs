@@ -1,26 +1,30 @@
 //! The change from the sums that the engine keeps to another scene. An object counts as changed when other objects hide it than before. A moved body is thus
 //! evaluated with the objects that it hides or reveals, and no others.
 
-use crate::scattering::SeenObject;
+use crate::scattering::ObjectWithOccluders;
 
 pub(super) struct SceneChange {
     /// Whether the active objects are first added to the sum at rest.
     pub settles: bool,
     /// Objects that stay in the sum at rest.
-    pub staying: Vec<SeenObject>,
+    pub staying: Vec<ObjectWithOccluders>,
     /// Objects to evaluate and subtract from the sum at rest.
-    pub leaving: Vec<SeenObject>,
+    pub leaving: Vec<ObjectWithOccluders>,
     /// Objects to evaluate as the active ones.
-    pub arriving: Vec<SeenObject>,
+    pub arriving: Vec<ObjectWithOccluders>,
 }
 
 impl SceneChange {
-    pub fn between(rest: &[SeenObject], active: &[SeenObject], scene: &[SeenObject]) -> SceneChange {
+    pub fn between(
+        rest: &[ObjectWithOccluders],
+        active: &[ObjectWithOccluders],
+        scene: &[ObjectWithOccluders],
+    ) -> SceneChange {
         // Both sums are unordered, so objects are compared as multisets. Edits touch few of them, so that few remain to be searched for after a pass over both
         // lists in step.
-        let mut unmatched: Vec<&SeenObject> = Vec::new();
+        let mut unmatched: Vec<&ObjectWithOccluders> = Vec::new();
         let mut staying = Vec::with_capacity(rest.len());
-        let mut arriving: Vec<SeenObject> = Vec::new();
+        let mut arriving: Vec<ObjectWithOccluders> = Vec::new();
         let mut old = rest.iter().peekable();
         for object in scene {
             if old.peek().is_some_and(|o| *o == object) {
@@ -66,8 +70,8 @@ impl SceneChange {
     }
 }
 
-fn count(objects: &[SeenObject]) -> usize {
-    objects.iter().map(SeenObject::echo_count).sum()
+fn count(objects: &[ObjectWithOccluders]) -> usize {
+    objects.iter().map(ObjectWithOccluders::echo_count).sum()
 }
 
 #[cfg(test)]
@@ -75,8 +79,8 @@ mod tests {
     use super::*;
     use crate::scene::Scene;
 
-    fn points(x: &[f64]) -> Vec<SeenObject> {
-        Scene::of_points(x.iter().map(|x| (*x, 5.0))).objects.into_iter().map(SeenObject::from).collect()
+    fn points(x: &[f64]) -> Vec<ObjectWithOccluders> {
+        Scene::of_points(x.iter().map(|x| (*x, 5.0))).objects.into_iter().map(ObjectWithOccluders::from).collect()
     }
 
     #[test]

@@ -12,11 +12,11 @@ use super::{EngineFrame, EngineReport, EngineStage, MapRequest};
 use crate::maps::tolerance;
 use crate::platform::Instant;
 use crate::radar::Radar;
-use crate::scattering::SeenObject;
+use crate::scattering::ObjectWithOccluders;
 use crate::scene::{Scene, SceneError};
-use crate::signal::plan::Sum;
+use crate::signal::plan::SumSize;
 use crate::signal::simd::{LANES_F32, LANES_F64};
-use crate::signal::{Algorithm, Made, Plan, Precision, Rows, Unfinished, simulate_ends_for};
+use crate::signal::{Algorithm, Precision, Rows, SimulationError, SimulationResult, SynthesisPlan, simulate_ends_for};
 use crate::task::{Cancelled, Task};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// The engine of one radar, which keeps its results and recomputes only those that a change affects.
 pub struct Engine {
     radar: Radar,
-    forced: Forced,
+    forced: PlanOverrides,
     single: Option<Bank<f32, LANES_F32>>,
     double: Option<Bank<f64, LANES_F64>>,
     last: Option<Precision>,
@@ -35,7 +35,7 @@ pub struct Engine {
 
 /// Overrides of the planner's choices; `None` leaves a choice to the planner.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Forced {
+pub struct PlanOverrides {
     /// Algorithm for every sum; [`Algorithm::Direct`] and [`Algorithm::Exact`] have no fast path and are evaluated by phasor split.
     pub algorithm: Option<Algorithm>,
     /// Precision. Double is used where the rounding of single precision would show in the maps, and the report says so ([`tolerance::refusal`]).
@@ -47,12 +47,12 @@ pub struct Forced {
 impl Engine {
     /// An engine without results. The radar must be valid ([`Radar::validate`]).
     pub fn new(radar: Radar) -> Self {
-        let (forced, amplitudes) = (Forced::default(), Amplitudes::default());
+        let (forced, amplitudes) = (PlanOverrides::default(), Amplitudes::default());
         Engine { radar, forced, single: None, double: None, last: None, shown: None, settled: None, amplitudes }
     }
 
     /// Overrides the planner's choices and drops every cache.
-    pub fn force(&mut self, forced: Forced) {
+    pub fn force(&mut self, forced: PlanOverrides) {
         self.forced = forced;
         self.forget();
     }
@@ -93,13 +93,13 @@ impl Engine {
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn update(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
-        self.update_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
+        self.update_for(&Task::default(), scene, wanted).map_err(SimulationError::of_scene)
     }
 
     /// [`Engine::update`] that `task` can cancel. After that, the next update starts from scratch.
     /// # Errors
-    /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
+    /// [`SimulationError`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
+    pub fn update_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> SimulationResult<EngineFrame> {
         let begin = Instant::now();
         let is_focused = self.radar.focus_off_line && !self.radar.is_on_line();
         if is_focused || !scene.disturbances.is_none_to(&self.radar) {
@@ -120,13 +120,13 @@ impl Engine {
     /// # Errors
     /// [`SceneError`] when the scene can't be simulated. The engine stays usable.
     pub fn settle(&mut self, scene: &Scene, wanted: &MapRequest) -> Result<EngineFrame, SceneError> {
-        self.settle_for(&Task::default(), scene, wanted).map_err(Unfinished::of_scene)
+        self.settle_for(&Task::default(), scene, wanted).map_err(SimulationError::of_scene)
     }
 
     /// [`Engine::settle`] that `task` can cancel. Later updates are not affected.
     /// # Errors
-    /// [`Unfinished`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
-    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
+    /// [`SimulationError`] when the scene can't be simulated, and soon after the task was cancelled. The engine stays usable.
+    pub fn settle_for(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> SimulationResult<EngineFrame> {
         let begin = Instant::now();
         let mut report = EngineReport::default();
         let settled = match self.settled.take().filter(|settled| settled.has(scene, wanted)) {
@@ -138,7 +138,7 @@ impl Engine {
         Ok(frame)
     }
 
-    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> Made<EngineFrame> {
+    fn follow(&mut self, task: &Task, scene: &Scene, wanted: &MapRequest) -> SimulationResult<EngineFrame> {
         let mut report = EngineReport::default();
         let visible = wanted.visible();
         let mut shown = self.recall(scene, wanted);
@@ -176,7 +176,7 @@ impl Engine {
     fn recall(&mut self, scene: &Scene, wanted: &MapRequest) -> ShownMaps {
         let tolerance = self.tolerance(wanted);
         // Maps accurate enough for a fixed range may show rounding when normalised by their minimum.
-        let nothing = Sum { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
+        let nothing = SumSize { algorithm: Algorithm::Split, reflectors: 0, amplitude: 0.0 };
         let trap = self.last == Some(Precision::F32)
             && tolerance::refusal(Precision::F32, &nothing, wanted.floor, wanted.normalisation).is_some();
         let same = |s: &ShownMaps| !trap && s.tolerance <= tolerance && s.of.is(scene, wanted);
@@ -195,12 +195,12 @@ impl Engine {
         shown: &mut ShownMaps,
         report: &mut EngineReport,
     ) -> Result<(), Cancelled> {
-        let seen = SeenObject::all(&self.radar, scene);
+        let seen = ObjectWithOccluders::all(&self.radar, scene);
         let amplitude = self.amplitudes.bound(&self.radar, &seen);
-        let mut chosen = Plan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
+        let mut chosen = SynthesisPlan::cheapest(scene.echo_count(), amplitude, self.tolerance(wanted));
         let refusal = self.forced.precision.and_then(|forced| {
             let algorithm = self.forced.algorithm.unwrap_or(chosen.algorithm);
-            let sum = Sum { algorithm, reflectors: scene.echo_count(), amplitude };
+            let sum = SumSize { algorithm, reflectors: scene.echo_count(), amplitude };
             let refusal = tolerance::refusal(forced, &sum, wanted.floor, wanted.normalisation);
             chosen.precision = if refusal.is_some() { Precision::F64 } else { forced };
             refusal

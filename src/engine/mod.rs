@@ -17,5 +17,5 @@ mod settled;
 mod shown;
 
 pub use frame::{EngineFrame, MapRequest, ReadyMap};
-pub use incremental::{Engine, Forced};
+pub use incremental::{Engine, PlanOverrides};
 pub use report::{EngineReport, EngineStage, StageOutcome, StageReport};

@@ -7,7 +7,7 @@ use crate::maps::{Aperture, LogMap, Normalisation, angle_transform, range_transf
 use crate::platform::Instant;
 use crate::radar::{Radar, counted};
 use crate::scene::Scene;
-use crate::signal::{self, Made, TwoEnds};
+use crate::signal::{self, SimulationResult, TwoEnds};
 use crate::task::Task;
 use std::sync::Arc;
 
@@ -23,8 +23,14 @@ pub(super) struct SettledMaps {
 impl SettledMaps {
     /// Computes the wanted maps of `scene`, and adds the stages' times to `report`.
     /// # Errors
-    /// [`signal::Unfinished`] when the scene can't be simulated, or `task` was cancelled.
-    pub fn of(task: &Task, radar: &Radar, scene: &Scene, wanted: &MapRequest, report: &mut EngineReport) -> Made<Self> {
+    /// [`signal::SimulationError`] when the scene can't be simulated, or `task` was cancelled.
+    pub fn of(
+        task: &Task,
+        radar: &Radar,
+        scene: &Scene,
+        wanted: &MapRequest,
+        report: &mut EngineReport,
+    ) -> SimulationResult<Self> {
         let start = Instant::now();
         let signal = signal::simulate_for(task, radar, scene, wanted.floor, wanted.seed)?;
         let ends = Arc::new(signal.two_ends(radar));

@@ -9,17 +9,17 @@ mod tests;
 
 pub use super::shard::Shard;
 pub use elements::Elements;
-pub use error::{CampaignError, Unfit};
+pub use error::{CampaignError, MethodFailure};
 
 use super::Target;
-use super::rows::{FORMAT, Row, Text, Whole};
-use super::sets::{Case, SceneSet};
+use super::rows::{FORMAT, Row, Text, WholeRun};
+use super::sets::{SceneCase, SceneSet};
 use super::trial::{TimedAnswer, Trial};
 use crate::maps::Normalisation;
 use crate::maps::cfar::Cfar;
 use crate::radar::{Radar, check_layout, ranges};
 use crate::reconstruct::{Reconstructor, Request, Weights, untrained_noise};
-use crate::scattering::Echoing;
+use crate::scattering::EchoSources;
 use crate::scene::generate::{Generator, Purpose, Reading};
 use crate::signal::Floor;
 use crate::task::Task;
@@ -114,11 +114,11 @@ impl Campaign {
         methods: &[&dyn Reconstructor],
         task: &Task,
         on_row: impl FnMut(&Row, &Trial, &TimedAnswer),
-    ) -> Result<(Vec<Row>, Vec<Unfit>), CampaignError> {
+    ) -> Result<(Vec<Row>, Vec<MethodFailure>), CampaignError> {
         let empty = self.empty_rows(sets, methods)?;
-        let mut unfit: Vec<Unfit> = Vec::new();
+        let mut unfit: Vec<MethodFailure> = Vec::new();
         let rows = self.run_through(sets, methods, &empty, &|_, _, _| false, task, on_row, |error| {
-            Unfit::note(&mut unfit, error)
+            MethodFailure::note(&mut unfit, error)
         })?;
         Ok((rows, unfit))
     }
@@ -139,7 +139,7 @@ impl Campaign {
         }
         let counted = |set: &SceneSet| (set.to_string(), set.len().unwrap_or(self.count));
         let names = methods.iter().map(|method| method.name().to_owned()).collect();
-        let whole = Whole::new(sets.iter().map(counted).collect(), names).map_err(CampaignError::Refused)?;
+        let whole = WholeRun::new(sets.iter().map(counted).collect(), names).map_err(CampaignError::Refused)?;
         let of_all = Row {
             version: Some(FORMAT),
             program: env!("CARGO_PKG_VERSION").into(),
@@ -253,8 +253,8 @@ impl Campaign {
             let count = set.len().unwrap_or(self.count);
             let mut said = vec![(0, None); trained.len()];
             for index in (0..count).filter(|&n| self.shard.contains(n)) {
-                let Case { radar, scene } = set.case(&self.radar, &generator, index)?;
-                let echoing = Echoing::of(&radar, &scene);
+                let SceneCase { radar, scene } = set.case(&self.radar, &generator, index)?;
+                let echoing = EchoSources::of(&radar, &scene);
                 for (said, method) in said.iter_mut().zip(&trained) {
                     if let Some(why) = untrained_noise(**method, &radar, &echoing, floor) {
                         *said = (said.0 + 1, said.1.take().or(Some(why)));
@@ -277,7 +277,7 @@ impl Campaign {
     /// # Errors
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {
-        let Case { radar, mut scene } = set.case(&self.radar, generator, index)?;
+        let SceneCase { radar, mut scene } = set.case(&self.radar, generator, index)?;
         let fits = |layout: &Vec<usize>| check_layout(layout, radar.elements).map_err(CampaignError::Refused);
         self.layout.as_ref().map_or(Ok(()), fits)?;
         if let Some(elements) = self.elements.of(&radar, self.seed, index) {

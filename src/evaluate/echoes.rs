@@ -5,7 +5,7 @@
 
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::{End, Pair, Radar};
-use crate::scattering::{EchoKind, Echoing, PathEcho, Sources, heard_in_the_middle};
+use crate::scattering::{EchoKind, EchoSources, PathEcho, Sources, array_centre_echoes};
 use crate::scene::Scene;
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -85,7 +85,7 @@ struct Shown {
 
 /// Places of the echoes of `scene` in a map, without those of rough surfaces, which have no place of their own.
 fn shown(radar: &Radar, scene: &Scene) -> Vec<Shown> {
-    let echoing = Echoing::of(radar, scene);
+    let echoing = EchoSources::of(radar, scene);
     let mut heard = Vec::new();
     Sources::from(&echoing).scattered(Pair::at(0.0), &mut heard);
     let points = echoing.points.iter().map(|r| {
@@ -149,7 +149,7 @@ pub(super) fn of_bodies(
         return of;
     }
     let decibels_of_lambda = scale.decibels();
-    let mut heard = heard_in_the_middle(radar, scene);
+    let mut heard = array_centre_echoes(radar, scene);
     heard.retain(|(_, echo)| echo.kind != EchoKind::Diffuse);
     heard.sort_by(|a, b| b.1.amplitude.norm().total_cmp(&a.1.amplitude.norm()));
     for (index, echo) in heard {

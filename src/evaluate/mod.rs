@@ -5,7 +5,6 @@ mod blobs;
 pub mod campaign;
 pub mod echoes;
 mod estimate;
-pub mod failure;
 pub mod filter;
 mod metrics;
 mod offset;
@@ -20,6 +19,7 @@ pub mod tables;
 mod target;
 pub mod threshold;
 pub mod trial;
+pub mod verdict;
 pub mod worsen;
 
 pub use blobs::{Blobs, blobs, dip_between};

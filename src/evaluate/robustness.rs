@@ -79,7 +79,7 @@ impl Robustness {
             let (mut trial, signals) = self.trial(index).map_err(failed)?;
             for (i, signal) in signals.into_iter().enumerate() {
                 trial.ends = signal.two_ends(&self.radar);
-                trial.heard = self.layout.as_ref().map(|layout| Arc::new(signal.of_layout(layout)));
+                trial.layout_samples = self.layout.as_ref().map(|layout| Arc::new(signal.of_layout(layout)));
                 for (method, metrics) in methods.iter().zip(&mut metrics) {
                     let answer = trial.ask(*method, &request).map_err(|source| CampaignError::Method {
                         method: method.name(),

@@ -25,30 +25,30 @@ pub enum SceneSet {
     /// Random scenes of one kind.
     Generated(Kind),
     /// A folder of the user's.
-    Folder(Folder),
+    Folder(SceneFolder),
     /// Scenes given one by one.
-    Listed(Listed),
+    Listed(SceneList),
 }
 
 /// Scenes that are given one by one, with a name.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Listed {
+pub struct SceneList {
     name: String,
-    cases: Arc<Vec<Case>>,
+    cases: Arc<Vec<SceneCase>>,
     fingerprint: String,
 }
 
-impl Listed {
+impl SceneList {
     /// A set called `name` in rows.
     ///
     /// # Errors
     /// [`toml::ser::Error`] for a scene that can't be written as a file.
-    pub fn new(name: String, cases: Vec<Case>) -> Result<Listed, toml::ser::Error> {
-        let of = |case: &Case| file::to_toml(&SceneFile { scene: case.scene.clone(), radar: case.radar.clone() });
+    pub fn new(name: String, cases: Vec<SceneCase>) -> Result<SceneList, toml::ser::Error> {
+        let of = |case: &SceneCase| file::to_toml(&SceneFile { scene: case.scene.clone(), radar: case.radar.clone() });
         let texts: Vec<String> = cases.iter().map(of).collect::<Result<_, _>>()?;
         // A zero byte, which no file contains, ends each scene's text.
         let digest = sha256::of_pieces(texts.iter().flat_map(|text| [text.as_bytes(), b"\0".as_slice()]));
-        Ok(Listed { name, cases: Arc::new(cases), fingerprint: sha256::short(&digest).to_owned() })
+        Ok(SceneList { name, cases: Arc::new(cases), fingerprint: sha256::short(&digest).to_owned() })
     }
 
     /// The fingerprint of the scenes and their radars, equal only where all are equal.
@@ -59,7 +59,7 @@ impl Listed {
 
 /// The scene files of a folder, in the order of their names.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Folder {
+pub struct SceneFolder {
     path: PathBuf,
     files: Vec<PathBuf>,
 }
@@ -78,12 +78,12 @@ impl FolderError {
     }
 }
 
-impl Folder {
+impl SceneFolder {
     /// Lists the scene files of `path` without reading them. Files whose names begin with a dot are left out.
     ///
     /// # Errors
     /// [`FolderError`] where there is none.
-    pub fn open(path: &Path) -> Result<Folder, FolderError> {
+    pub fn open(path: &Path) -> Result<SceneFolder, FolderError> {
         let mut files = Vec::new();
         for entry in fs::read_dir(path).map_err(FolderError::on(path))? {
             let file = entry.map_err(FolderError::on(path))?.path();
@@ -97,7 +97,7 @@ impl Folder {
             let why = "there is no scene in this folder; expected files ending in .toml or .npz".to_owned();
             Err(FolderError { path: path.to_owned(), why })
         } else {
-            Ok(Folder { path: path.to_owned(), files })
+            Ok(SceneFolder { path: path.to_owned(), files })
         }
     }
 
@@ -124,7 +124,7 @@ impl Folder {
 
 /// A scene of a set, with its radar.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Case {
+pub struct SceneCase {
     /// The radar.
     pub radar: Radar,
     /// The scene; its [`Scene::noise_seed`] picks the floor's noise.
@@ -139,7 +139,7 @@ impl SceneSet {
     pub fn by_name(name: &str) -> Result<SceneSet, FolderError> {
         match name.parse() {
             Ok(kind) => Ok(SceneSet::Generated(kind)),
-            Err(_) => Folder::open(Path::new(name)).map(SceneSet::Folder),
+            Err(_) => SceneFolder::open(Path::new(name)).map(SceneSet::Folder),
         }
     }
 
@@ -161,15 +161,15 @@ impl SceneSet {
     ///
     /// # Errors
     /// [`SceneFileError`] for a file that can't be read as a scene.
-    pub fn case(&self, radar: &Radar, generator: &Generator, index: u32) -> Result<Case, SceneFileError> {
+    pub fn case(&self, radar: &Radar, generator: &Generator, index: u32) -> Result<SceneCase, SceneFileError> {
         match self {
-            SceneSet::Generated(kind) => Ok(Case { radar: radar.clone(), scene: generator.scene(*kind, index) }),
+            SceneSet::Generated(kind) => Ok(SceneCase { radar: radar.clone(), scene: generator.scene(*kind, index) }),
             SceneSet::Folder(folder) => {
                 let path = folder.file(index).unwrap_or(&folder.path);
-                file::load(path).map(|file| Case { radar: file.radar, scene: file.scene })
+                file::load(path).map(|file| SceneCase { radar: file.radar, scene: file.scene })
             }
             SceneSet::Listed(listed) => {
-                let beyond = || Case { radar: radar.clone(), scene: Scene::default() };
+                let beyond = || SceneCase { radar: radar.clone(), scene: Scene::default() };
                 Ok(listed.cases.get(index as usize).cloned().unwrap_or_else(beyond))
             }
         }
@@ -222,30 +222,30 @@ mod tests {
     fn a_folder_is_a_set_of_its_scene_files() {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-        let empty = Folder::open(folder.path()).unwrap_err().to_string();
+        let empty = SceneFolder::open(folder.path()).unwrap_err().to_string();
         assert!(empty.contains("no scene in this folder"), "{empty}");
         write("b.toml", "name = \"b\"");
         write("a.toml", "name = \"a\"\nnoise_seed = 12");
         write("notes.txt", "");
         write(".hidden.toml", "");
-        let set = SceneSet::Folder(Folder::open(folder.path()).unwrap());
+        let set = SceneSet::Folder(SceneFolder::open(folder.path()).unwrap());
         assert_eq!((set.len(), set.false_alarm()), (Some(2), 0.01));
         let radar = Radar::default();
         let generator = Generator::new(&radar, Default::default(), crate::scene::generate::Purpose::Test, 0);
         let case = set.case(&radar, &generator, 0).unwrap();
         assert_eq!((case.scene.name.as_str(), case.scene.noise_seed), ("a", 12));
         assert!(set.case(&radar, &generator, 7).is_err());
-        let fingerprint = || Folder::open(folder.path()).unwrap().fingerprint().unwrap();
+        let fingerprint = || SceneFolder::open(folder.path()).unwrap().fingerprint().unwrap();
         let before = fingerprint();
         assert_eq!((before.len(), fingerprint()), (12, before.clone()));
         write("b.toml", "name = \"another\"");
         assert_ne!(fingerprint(), before, "what stands in a file counts");
-        assert!(Folder::open(&folder.path().join("missing")).unwrap_err().to_string().contains("missing"));
+        assert!(SceneFolder::open(&folder.path().join("missing")).unwrap_err().to_string().contains("missing"));
     }
 
     #[test]
     fn a_folder_called_like_a_kind_stays_a_folder() {
-        let folder = Folder { path: "walls".into(), files: Vec::new() };
+        let folder = SceneFolder { path: "walls".into(), files: Vec::new() };
         assert_eq!(SceneSet::Folder(folder).to_string(), "./walls");
     }
 }

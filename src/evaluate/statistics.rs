@@ -73,7 +73,7 @@ impl Paired {
     }
 
     /// The comparison in words, with the methods' names.
-    pub fn told(&self, first: &str, second: &str) -> String {
+    pub fn sentence(&self, first: &str, second: &str) -> String {
         let Paired { scenes, difference, interval: [low, high], first_alone, second_alone, p_value } = self;
         format!(
             "SE of {first} less that of {second}: {difference:+.1}, 95 % interval {low:+.1} to {high:+.1} ({scenes} scenes). Every object \

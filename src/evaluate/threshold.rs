@@ -113,7 +113,7 @@ impl ThresholdSearch {
     }
 
     /// A sentence with the part of the rate that is left to P_FA on `scenes` scenes, and the number of scenes with nine tenths of it.
-    pub fn told_left(&self, scenes: usize) -> String {
+    pub fn margin_sentence(&self, scenes: usize) -> String {
         let (percent, left, fewest) =
             (self.false_alarm_percent, 100.0 * self.left_to_scenes(scenes), self.scenes_within_a_tenth());
         let scenes = counted(scenes, "scene", "scenes");
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_kept_is_said_before_anything_is_tried() {
-        let told = search().told_left(6);
+        let told = search().margin_sentence(6);
         assert!(told.starts_with("for 40 % on further scenes, P_FA on 6 scenes may be 30.000 %"), "{told}");
         assert!(told.ends_with("from 15 scenes on"), "{told}");
         let says = |search: ThresholdSearch, expected: &str| {

@@ -1,8 +1,8 @@
 //! One scene for all methods, and the measures of their answers.
 
 use super::echoes::{self, EchoCounts, EchoTally};
-use super::failure::{Failures, Fate, Footprints};
 use super::rows::Row;
+use super::verdict::{Footprints, ObjectVerdict, OutputVerdicts};
 use super::{Metrics, Roc, Target, part_within, squared_doubt, squared_error};
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{self, Aperture, LambdaScale, LogMap, Normalisation, RangeAngleMap};
@@ -21,7 +21,7 @@ pub struct Trial {
     /// The samples of the two ends.
     pub ends: TwoEnds,
     /// The samples of the elements of another layout, for methods that use them.
-    pub heard: Option<Arc<LayoutSamples>>,
+    pub layout_samples: Option<Arc<LayoutSamples>>,
     /// Lambda against which answers are compared.
     pub target: RangeAngleMap,
     scene: Scene,
@@ -75,9 +75,9 @@ impl Trial {
         let target = full.normalise(normalisation);
         let ends = signal.two_ends(radar);
         let of_layout = |layout: &[usize]| Arc::new(signal.of_layout(layout));
-        let heard = layout.map(of_layout);
+        let layout_samples = layout.map(of_layout);
         let (radar, scene, scale) = (radar.clone(), scene.clone(), full.scale(normalisation));
-        Ok(Trial { radar, ends, heard, target, scene, scale, footprints: OnceLock::new() })
+        Ok(Trial { radar, ends, layout_samples, target, scene, scale, footprints: OnceLock::new() })
     }
 
     /// Runs `method` on the scene, and judges its answer.
@@ -87,11 +87,13 @@ impl Trial {
     pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
         request.task.check()?;
         let start = Instant::now();
-        let found = match &self.heard {
+        let found = match &self.layout_samples {
             None => method.reconstruct(&self.radar, &self.ends, request)?,
-            heard => {
-                method.reconstruct(&self.radar, &self.ends, &Request { heard: heard.clone(), ..request.clone() })?
-            }
+            layout_samples => method.reconstruct(
+                &self.radar,
+                &self.ends,
+                &Request { layout_samples: layout_samples.clone(), ..request.clone() },
+            )?,
         };
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let eta = method.eta_of(&found);
@@ -108,8 +110,8 @@ impl Trial {
         self.footprints.get_or_init(|| Footprints::new(&self.radar, &self.scene, &self.target, self.scale))
     }
 
-    /// The failures of an answer.
-    pub fn failures(&self, answer: &TimedAnswer) -> Failures {
+    /// The verdicts on an answer.
+    pub fn verdicts(&self, answer: &TimedAnswer) -> OutputVerdicts {
         self.footprints().judge(&self.target, &answer.found.lambda, answer.eta)
     }
 
@@ -133,7 +135,7 @@ impl Trial {
     /// `false_alarm` is the rate at which [`Row::detection_at_printed`] is taken.
     pub fn filled(&self, row: Row, answer: &TimedAnswer, false_alarm: f64) -> Row {
         let roc = Roc::of_echoes(!self.scene.is_silent(), &self.target, &answer.found.lambda);
-        let failures = self.failures(answer);
+        let verdicts = self.verdicts(answer);
         let has_bodies = self.scene.objects.iter().any(|object| object.body().is_some());
         let echoes = has_bodies.then(|| self.echoes(answer));
         Row {
@@ -143,11 +145,11 @@ impl Trial {
             false_alarm: answer.metrics.false_alarm,
             detection_at_printed: roc.at_false_alarm(false_alarm).map(|p| p.detection),
             milliseconds: answer.milliseconds,
-            missed: failures.missed(),
-            ghosts: failures.ghosts.len(),
-            found: Some(failures.count(|fate| fate == Fate::Found)),
-            merged: Some(failures.count(|fate| matches!(fate, Fate::Merged { .. }))),
-            wrong_tooth: Some(failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }))),
+            missed: verdicts.missed(),
+            ghosts: verdicts.ghosts.len(),
+            found: Some(verdicts.count(|verdict| verdict == ObjectVerdict::Found)),
+            merged: Some(verdicts.count(|verdict| matches!(verdict, ObjectVerdict::Merged { .. }))),
+            wrong_tooth: Some(verdicts.count(|verdict| matches!(verdict, ObjectVerdict::WrongTooth { .. }))),
             doubt: answer.found.doubt.as_ref().map(squared_doubt),
             within_doubt: answer.found.doubt.as_ref().map(|d| part_within(d, &self.target, &answer.found.lambda)),
             echoes: echoes.map(|tally| EchoCounts(tally.there)),

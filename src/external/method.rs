@@ -5,7 +5,7 @@ use super::message::{self, AnswerHeader, ExternalAnswer, Map};
 use super::process::{Process, ProcessFailure};
 use crate::maps::{LogMap, RangeAngleMap};
 use crate::radar::Radar;
-use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use crate::reconstruct::{Family, MethodInfo, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use crate::signal::TwoEnds;
 use crate::task::Task;
 use std::io;
@@ -34,7 +34,7 @@ pub enum StartError {
 /// A method that a process of its own computes, one request at a time.
 pub struct ExternalMethod {
     command: CommandLine,
-    about: About,
+    info: MethodInfo,
     weights: Option<Weights>,
     limit: Duration,
     process: Mutex<State>,
@@ -56,9 +56,9 @@ pub fn start(command: CommandLine, limit: Duration, task: &Task) -> Result<Exter
         ProcessFailure::Cancelled => fails("cancelled".to_owned()),
         ProcessFailure::Broken(reason) => fails(reason),
     })?;
-    let (about, weights) = who(line).map_err(|why| fails(process.with_last_words(why, Duration::ZERO)))?;
+    let (info, weights) = who(line).map_err(|why| fails(process.with_last_words(why, Duration::ZERO)))?;
     let state = State { process: Some(process), asked: 0 };
-    Ok(ExternalMethod { command, about, weights, limit, process: Mutex::new(state) })
+    Ok(ExternalMethod { command, info, weights, limit, process: Mutex::new(state) })
 }
 
 fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<AnswerHeader, ProcessFailure> {
@@ -72,7 +72,7 @@ fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<Answer
     }
 }
 
-fn who(line: AnswerHeader) -> Result<(About, Option<Weights>), String> {
+fn who(line: AnswerHeader) -> Result<(MethodInfo, Option<Weights>), String> {
     let AnswerHeader { name, description, told, weights, eta, .. } = line;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_plain) {
@@ -90,14 +90,14 @@ fn who(line: AnswerHeader) -> Result<(About, Option<Weights>), String> {
         "" => otherwise,
         text => &*text.chars().take(LONGEST_TEXT).collect::<String>().leak(),
     };
-    let about = About {
+    let info = MethodInfo {
         name: name.leak(),
         description: text(description, "a program of your own"),
-        told: text(told, "its program doesn't say"),
+        prior_knowledge: text(told, "its program doesn't say"),
         eta,
     };
     let weights = (!weights.is_empty()).then(|| Weights { sha256: weights, optimiser: String::new() });
-    Ok((about, weights))
+    Ok((info, weights))
 }
 
 fn check_eta(eta: f32) -> Result<(), String> {
@@ -124,8 +124,8 @@ impl ExternalMethod {
         let mut process = Process::start(&self.command)
             .map_err(|error| ProcessFailure::Broken(format!("{} can't be started: {error}", self.command)))?;
         let line = greeted(&mut process, task, self.limit)?;
-        if line.name != self.about.name {
-            let was = self.about.name;
+        if line.name != self.info.name {
+            let was = self.info.name;
             return Err(ProcessFailure::Broken(format!("its name is \"{}\" now; it was \"{was}\" before", line.name)));
         }
         Ok(process)
@@ -170,8 +170,8 @@ impl ExternalMethod {
 }
 
 impl Reconstructor for ExternalMethod {
-    fn about(&self) -> About {
-        self.about
+    fn info(&self) -> MethodInfo {
+        self.info
     }
 
     fn family(&self) -> Family {

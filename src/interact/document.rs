@@ -189,9 +189,9 @@ impl Document {
         Ok(())
     }
 
-    /// The document over `recording`, the same file read another way: with the same scene, where the radar stays the same. `None` where the document
+    /// The document over `recording`, which was reread from the same file: with the same scene, where the radar stays the same. `None` where the document
     /// has no recording.
-    pub fn read_another_way(&self, recording: Recording) -> Option<Self> {
+    pub fn reread(&self, recording: Recording) -> Option<Self> {
         let before = self.measured.as_ref()?;
         let is_same_radar = recording.radar == before.recording.radar;
         let measured = Measured { recording: Arc::new(recording), source: before.source.clone() };

@@ -56,13 +56,13 @@ pub fn write_maps(
     radar: &Radar,
     scene: &Scene,
     signal: &BeatSignal,
-    heard: Option<&LayoutSamples>,
+    layout_samples: Option<&LayoutSamples>,
     output: Option<&RangeAngleMap>,
 ) -> Result<LogMap, NpzError> {
     let full = map_of(radar, &scene.disturbances.elements, signal, Aperture::Full).log_magnitude();
     write_npz(path, |out| {
         npz::add_positions(out, scene)?;
-        add_recorded(out, radar, &signal.two_ends(radar), Some(&full), heard, output)
+        add_recorded(out, radar, &signal.two_ends(radar), Some(&full), layout_samples, output)
     })?;
     Ok(full)
 }
@@ -75,10 +75,10 @@ pub fn write_recorded_maps(
     radar: &Radar,
     ends: &TwoEnds,
     full: Option<&LogMap>,
-    heard: Option<&LayoutSamples>,
+    layout_samples: Option<&LayoutSamples>,
     output: Option<&RangeAngleMap>,
 ) -> Result<(), NpzError> {
-    write_npz(path, |out| add_recorded(out, radar, ends, full, heard, output))
+    write_npz(path, |out| add_recorded(out, radar, ends, full, layout_samples, output))
 }
 
 /// Writes the maps of a recording's frames: `polar_full` (f64 `[frames, samples, elements]`), with the axes of [`write_maps`]. `next` computes the map
@@ -253,7 +253,7 @@ fn add_recorded(
     radar: &Radar,
     ends: &TwoEnds,
     full: Option<&LogMap>,
-    heard: Option<&LayoutSamples>,
+    layout_samples: Option<&LayoutSamples>,
     output: Option<&RangeAngleMap>,
 ) -> Result<(), NpzError> {
     let [first, last] = End::BOTH.map(|end| channels_map(radar, ends.end(end).view()));
@@ -264,7 +264,7 @@ fn add_recorded(
         out.add("polar_full", &full.decades().view().insert_axis(Axis(0)))?;
     }
     out.add("polar_partial_mag_phase", &network_input::mag_phase(&first, &last))?;
-    if let Some(LayoutSamples { layout, samples }) = heard {
+    if let Some(LayoutSamples { layout, samples }) = layout_samples {
         out.add("heard", samples)?;
         out.add("layout", &layout.iter().map(|number| *number as i64).collect::<Array1<i64>>())?;
     }

@@ -11,7 +11,7 @@ use crate::files::npz::{NpzError, write_npz};
 use crate::radar::Radar;
 use crate::scene::{Scene, SceneError, npz};
 use crate::signal::simd::Simd;
-use crate::signal::{ChirpSamples, Floor, Made, Unfinished, simulate_chirps_for};
+use crate::signal::{ChirpSamples, Floor, SimulationError, SimulationResult, simulate_chirps_for};
 use crate::task::Task;
 use ndarray::{Array1, Array2, ArrayView3, Axis, s};
 use num_complex::Complex64;
@@ -31,13 +31,19 @@ pub struct RangeDopplerMap {
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn range_doppler(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<RangeDopplerMap, SceneError> {
-    range_doppler_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
+    range_doppler_for(&Task::default(), radar, scene, floor, seed).map_err(SimulationError::of_scene)
 }
 
 /// As [`range_doppler`].
 /// # Errors
-/// [`Unfinished`] when the scene can't be simulated, and after a cancellation of `task`.
-pub fn range_doppler_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<RangeDopplerMap> {
+/// [`SimulationError`] when the scene can't be simulated, and after a cancellation of `task`.
+pub fn range_doppler_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+) -> SimulationResult<RangeDopplerMap> {
     let samples = simulate_chirps_for(task, radar, scene, floor, seed)?;
     let map = RangeDopplerMap::of(radar, samples);
     task.check()?;

@@ -56,9 +56,9 @@ pub fn map_of(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal, apertur
 }
 
 /// The map of the array with zeros at elements outside a layout, focused as in [`map_of`].
-pub fn layout_map(radar: &Radar, elements: &BuiltArray, heard: &LayoutSamples) -> ComplexMap {
+pub fn layout_map(radar: &Radar, elements: &BuiltArray, layout_samples: &LayoutSamples) -> ComplexMap {
     let mut alone = BeatSignal::silence(radar);
-    for (element, samples) in heard.layout.iter().zip(heard.samples.outer_iter()) {
+    for (element, samples) in layout_samples.layout.iter().zip(layout_samples.samples.outer_iter()) {
         alone.samples.row_mut(*element).assign(&samples);
     }
     map_of(radar, elements, &alone, Aperture::Full)

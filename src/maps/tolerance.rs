@@ -1,7 +1,7 @@
 //! The precision of a signal whose numerical errors are invisible in its map.
 
 use super::lambda::Normalisation;
-use crate::signal::plan::{self, BEST_TOLERANCE, FLOOR_TOLERANCE, Sum};
+use crate::signal::plan::{self, BEST_TOLERANCE, FLOOR_TOLERANCE, SumSize};
 use crate::signal::{Floor, Precision};
 
 /// The largest error of a signal, relative to its amplitudes, that is invisible in a map over `floor` with this normalisation.
@@ -18,7 +18,12 @@ pub fn tolerance_for(floor: Floor, normalisation: Normalisation) -> f64 {
 }
 
 /// The reason for which maps of this floor and normalisation must not be computed in `precision`, as in [`plan::refusal`]. `None` where they may be.
-pub fn refusal(precision: Precision, sum: &Sum, floor: Floor, normalisation: Normalisation) -> Option<&'static str> {
+pub fn refusal(
+    precision: Precision,
+    sum: &SumSize,
+    floor: Floor,
+    normalisation: Normalisation,
+) -> Option<&'static str> {
     match (precision, floor, normalisation) {
         (Precision::F64, ..) => None,
         (Precision::F32, Floor::Exact, Normalisation::MinMax) => {
@@ -32,7 +37,7 @@ pub fn refusal(precision: Precision, sum: &Sum, floor: Floor, normalisation: Nor
 mod tests {
     use super::*;
     use crate::radar::Decibels;
-    use crate::signal::{Algorithm, Plan};
+    use crate::signal::{Algorithm, SynthesisPlan};
 
     #[test]
     fn f32_never_meets_min_max_over_a_rounding_floor() {
@@ -44,11 +49,11 @@ mod tests {
             (Floor::Exact, Normalisation::DynamicRange(Decibels(60.0)), Precision::F32),
             (Floor::Exact, Normalisation::DynamicRange(Decibels(200.0)), Precision::F64),
         ] {
-            let recipe = Plan::cheapest(10, 1.0, tolerance_for(floor, normalisation));
+            let recipe = SynthesisPlan::cheapest(10, 1.0, tolerance_for(floor, normalisation));
             assert_eq!(recipe.precision, precision, "{floor} {normalisation}");
         }
-        let exact = Plan::cheapest(1000, 1.0, tolerance_for(Floor::Exact, Normalisation::MinMax));
+        let exact = SynthesisPlan::cheapest(1000, 1.0, tolerance_for(Floor::Exact, Normalisation::MinMax));
         assert_eq!(exact.algorithm, Algorithm::Split, "without a floor, gridding's own error would show");
-        assert_eq!(Plan::cheapest(10, 1e30, 1e-6).precision, Precision::F64, "squares of 1e30 overflow f32");
+        assert_eq!(SynthesisPlan::cheapest(10, 1e30, 1e-6).precision, Precision::F64, "squares of 1e30 overflow f32");
     }
 }

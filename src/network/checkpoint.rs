@@ -2,7 +2,7 @@
 
 use super::recipe::Recipe;
 use super::run::{RunProgress, TrainError, file};
-use super::students::Student;
+use super::trainable_network::TrainableNetwork;
 use crate::files::sha256;
 use burn::optim::ModuleOptimizer;
 use burn::store::{BurnpackStore, ModuleSnapshot};
@@ -17,7 +17,7 @@ const RECIPE: &str = "recipe.toml";
 /// Replaces the checkpoint at `folder` in one step.
 /// # Errors
 /// [`TrainError`] when it can't be written; the older checkpoint is kept then.
-pub fn save<S: Student>(
+pub fn save<S: TrainableNetwork>(
     folder: &Path,
     recipe: &Recipe,
     network: &S,
@@ -76,7 +76,7 @@ fn there(folder: &Path) -> PathBuf {
 /// Loads the checkpoint at `folder` into network and optimizer; the progress of its run, and the SHA-256 of its weights.
 /// # Errors
 /// [`TrainError`] when it is missing, damaged, or of another recipe.
-pub fn load<S: Student>(
+pub fn load<S: TrainableNetwork>(
     folder: &Path,
     recipe: &Recipe,
     network: &mut S,

@@ -1,7 +1,7 @@
 //! Training examples: input and target of one scene.
 
 use super::run::{TrainError, TrainingRun};
-use super::students::Student;
+use super::trainable_network::TrainableNetwork;
 use crate::maps::RangeAngleMap;
 use crate::scene::generate::{Generator, Kind};
 use crate::signal::{Floor, simulate};
@@ -10,7 +10,7 @@ use crate::signal::{Floor, simulate};
 ///
 /// # Errors
 /// [`TrainError`] when the scene can't be simulated or the network can't use its samples.
-pub(super) fn lesson<S: Student>(
+pub(super) fn lesson<S: TrainableNetwork>(
     config: &S::Config,
     run: &TrainingRun,
     generator: &Generator,

@@ -19,8 +19,6 @@ pub mod recipe;
 #[cfg(feature = "network")]
 pub mod run;
 #[cfg(feature = "network")]
-pub mod students;
-#[cfg(feature = "network")]
 pub mod thesis;
 #[cfg(feature = "network")]
 pub mod thesis_engine;
@@ -28,6 +26,8 @@ pub mod thesis_engine;
 pub mod thesis_method;
 #[cfg(feature = "network")]
 pub mod train;
+#[cfg(feature = "network")]
+pub mod trainable_network;
 #[cfg(feature = "network")]
 pub mod unet;
 #[cfg(feature = "network")]

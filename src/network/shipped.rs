@@ -3,9 +3,9 @@
 use super::backend::Backend;
 use super::live::{self, LiveMethod};
 use super::pytorch::read_weights;
-use super::students::Student;
 use super::thesis::Thesis;
 use super::thesis_method::ThesisMethod;
+use super::trainable_network::TrainableNetwork;
 use super::unet::Unet;
 use super::usable;
 use super::weights::{WeightFile, WeightsError};

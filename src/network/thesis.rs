@@ -4,7 +4,7 @@
 //! In the thesis each tower has five levels of 64 filters: 1.62 million parameters, 40.5 GMAC a map. Width and depth are configurable: two processor
 //! cores can train 16 filters (3.4 GMAC). Dilation 2, circular padding on both axes and no bias are as in the author's published program.
 
-use super::students::Student;
+use super::trainable_network::TrainableNetwork;
 use super::weights::{WeightFile, WeightsError};
 use crate::maps::network_input::mag_phase;
 use crate::maps::{RangeAngleMap, channels_map};
@@ -107,7 +107,7 @@ pub struct Thesis {
     up: Up,
 }
 
-impl Student for Thesis {
+impl TrainableNetwork for Thesis {
     type Config = ThesisConfig;
     const NAME: &'static str = "thesis";
     const CHANNELS: usize = 4;

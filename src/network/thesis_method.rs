@@ -2,16 +2,16 @@
 
 use super::backend::Backend;
 use super::domain::Domain;
-use super::students::Student;
 use super::thesis::{Thesis, ThesisConfig};
 use super::thesis_engine::{Buffers, ThesisEngine};
+use super::trainable_network::TrainableNetwork;
 use super::unet::{Unet, UnetConfig};
 use super::weights::{WeightFile, WeightsError};
 use crate::maps::RangeAngleMap;
 use crate::maps::cartesian::to_polar;
 use crate::radar::Radar;
 use crate::reconstruct::{
-    About, Family, NEEDS_SAMPLES, ReconstructError, Reconstruction, Reconstructor, Request, TrainedNoise, Weights,
+    Family, MethodInfo, NEEDS_SAMPLES, ReconstructError, Reconstruction, Reconstructor, Request, TrainedNoise, Weights,
 };
 use crate::signal::TwoEnds;
 use burn::tensor::Device;
@@ -32,7 +32,7 @@ pub struct ThesisMethod {
     network: Network,
     /// Of the encoder-decoder; `None` for the U-Net.
     config: Option<ThesisConfig>,
-    about: About,
+    info: MethodInfo,
     weights: Weights,
     trained: Domain,
 }
@@ -103,7 +103,7 @@ impl ThesisMethod {
         Ok(ThesisMethod {
             network: Network::new(&file, &config, backend)?,
             config: Some(config),
-            about: About { name, description, told: TRAINED_ON, eta },
+            info: MethodInfo { name, description, prior_knowledge: TRAINED_ON, eta },
             weights: file.weights(),
             trained: file.provenance.domain(file.name())?,
         })
@@ -121,7 +121,7 @@ impl ThesisMethod {
         Ok(ThesisMethod {
             network: Network::Unet { network, device },
             config: None,
-            about: About { name: Unet::NAME, description, told: TRAINED_ON, eta: 0.5 },
+            info: MethodInfo { name: Unet::NAME, description, prior_knowledge: TRAINED_ON, eta: 0.5 },
             weights: file.weights(),
             trained: file.provenance.domain(file.name())?,
         })
@@ -140,8 +140,8 @@ impl Reconstructor for ThesisMethod {
         Family::Network
     }
 
-    fn about(&self) -> About {
-        self.about
+    fn info(&self) -> MethodInfo {
+        self.info
     }
 
     fn reads_eta(&self) -> bool {
@@ -183,7 +183,7 @@ impl Reconstructor for ThesisMethod {
     }
 }
 
-fn estimate<S: Student>(
+fn estimate<S: TrainableNetwork>(
     network: &S,
     method: &'static str,
     input: Vec<f32>,

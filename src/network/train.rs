@@ -4,7 +4,7 @@ use super::checkpoint;
 use super::lesson::lesson;
 use super::recipe::Recipe;
 use super::run::{RunPart, RunProgress, TrainError, TrainingRun, file};
-use super::students::Student;
+use super::trainable_network::TrainableNetwork;
 use super::validation::{export, validate};
 use crate::maps::RangeAngleMap;
 use crate::platform::Instant;
@@ -24,7 +24,7 @@ use std::time::Duration;
 ///
 /// # Errors
 /// [`TrainError`].
-pub fn train<S: Student>(
+pub fn train<S: TrainableNetwork>(
     recipe: &Recipe,
     config: &S::Config,
     run: &TrainingRun,
@@ -85,7 +85,7 @@ fn refuse_untrained(run: &TrainingRun, is_trained: bool) -> Result<(), TrainErro
     if is_trained || run.untrained { Ok(()) } else { Err(TrainError::Untrained) }
 }
 
-fn begin<S: Student>(
+fn begin<S: TrainableNetwork>(
     recipe: &Recipe,
     config: &S::Config,
     run: &TrainingRun,
@@ -104,7 +104,7 @@ fn begin<S: Student>(
     Ok((network, optimizer, progress))
 }
 
-fn step<S: Student>(
+fn step<S: TrainableNetwork>(
     network: S,
     optimizer: &mut ModuleOptimizer,
     recipe: &Recipe,

@@ -4,7 +4,7 @@
 //! thousand are bright, so an output of zeros has nearly no mean square error, and training ends there: the gradient of the few bright cells is
 //! small against that of the many dark ones. The program includes it to show this.
 
-use super::students::{Student, thresholded_cartesian};
+use super::trainable_network::{TrainableNetwork, thresholded_cartesian};
 use crate::maps::{LogMaps, Normalisation, RangeAngleMap, channels_map};
 use crate::radar::{End, Radar};
 use crate::reconstruct::ReconstructError;
@@ -66,7 +66,7 @@ pub struct Unet {
     head: Conv2d,
 }
 
-impl Student for Unet {
+impl TrainableNetwork for Unet {
     type Config = UnetConfig;
     const NAME: &'static str = "unet";
     const CHANNELS: usize = 2;

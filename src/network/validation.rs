@@ -3,7 +3,7 @@
 use super::lesson::lesson;
 use super::recipe::Recipe;
 use super::run::{RunProgress, TrainError, TrainingRun};
-use super::students::Student;
+use super::trainable_network::TrainableNetwork;
 use super::weights::RADAR_ENTRY;
 use crate::evaluate::tables::PRINTED_EXPERIMENT_2;
 use crate::evaluate::{Roc, squared_error};
@@ -33,7 +33,7 @@ pub struct Validation {
 /// Figures on validation scenes, which share no random stream with training or test scenes.
 /// # Errors
 /// [`TrainError`] when a scene can't be simulated or the network can't use it.
-pub fn validate<S: Student>(
+pub fn validate<S: TrainableNetwork>(
     network: &S,
     recipe: &Recipe,
     config: &S::Config,
@@ -75,7 +75,7 @@ pub fn validate<S: Student>(
 ///
 /// # Errors
 /// [`TrainError::Checkpoint`] when it can't be written.
-pub fn export<S: Student>(
+pub fn export<S: TrainableNetwork>(
     network: &S,
     recipe: &Recipe,
     run: &TrainingRun,

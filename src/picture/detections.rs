@@ -1,7 +1,7 @@
 //! The output above its threshold: hits, misses and false alarms differ in brightness as well as in hue.
 
 use super::colour::Rgb;
-use crate::evaluate::failure::Ghost;
+use crate::evaluate::verdict::Ghost;
 use ndarray::{Array2, ArrayView2, Zip};
 
 /// The verdict on a cell of a thresholded output.

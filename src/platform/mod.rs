@@ -1,5 +1,5 @@
-//! The differences between a desktop and a page in a browser: clock, threads, files, file dialogs, storage, fonts of pictures, and opening of the window. Each
-//! of the two has one file. Except for the SIMD kernels, no other room depends on the platform.
+//! The differences between a desktop and a page in a browser: clock, threads, files, file dialogs, storage, fonts of pictures, and opening of the window.
+//! `desktop` and `page` have the same functions. Only this room and the SIMD kernels are compiled differently for `target_arch`.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub mod console;

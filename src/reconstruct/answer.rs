@@ -22,8 +22,8 @@ pub struct Request {
     /// Whether a method with a memory ([`Reconstructor::following`](super::Reconstructor::following)) may start from its last answer,
     /// as while something is dragged.
     pub may_follow: bool,
-    /// Samples of another layout than the two ends, for methods that use them ([`Reconstructor::hears`](super::Reconstructor::hears)).
-    pub heard: Option<Arc<LayoutSamples>>,
+    /// Samples of another layout than the two ends, for methods that use them ([`Reconstructor::layout_support`](super::Reconstructor::layout_support)).
+    pub layout_samples: Option<Arc<LayoutSamples>>,
     pub task: Task,
 }
 

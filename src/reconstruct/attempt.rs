@@ -8,10 +8,10 @@ pub struct Attempt {
     /// Name of the rung of the ladder ([`LADDER`](super::search::LADDER)) that made it, [`FOLLOWING`](super::search::FOLLOWING) where the search
     /// began with the last answer, or [`CALIBRATION`](super::search::CALIBRATION) where elements were off.
     pub rung: &'static str,
-    pub tried: Tried,
+    pub tried: Proposal,
     /// Decades by which the remaining energy falls where the attempt is kept, or would have fallen.
     pub gain_decades: f64,
-    pub verdict: Verdict,
+    pub verdict: AttemptVerdict,
     /// Work since the attempt before, in units of about ten microseconds.
     pub work: usize,
 }
@@ -19,7 +19,7 @@ pub struct Attempt {
 /// The proposal of an attempt. Places are (x, y), metres. Gains of the ends' elements are told by roots of mean squares: of their differences
 /// from their mean, and of their phases. Several objects together are kept or refused together.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Tried {
+pub enum Proposal {
     Nothing,
     Point { at_metres: [f64; 2] },
     Line { from_metres: [f64; 2], to_metres: [f64; 2], count: usize },
@@ -27,19 +27,19 @@ pub enum Tried {
     Together { count: usize },
 }
 
-impl Tried {
+impl Proposal {
     /// Place of the object, that of a line's first reflector; metres.
     pub fn place_metres(&self) -> Option<[f64; 2]> {
         match *self {
-            Tried::Point { at_metres } => Some(at_metres),
-            Tried::Line { from_metres, .. } => Some(from_metres),
-            Tried::Nothing | Tried::Gains { .. } | Tried::Together { .. } => None,
+            Proposal::Point { at_metres } => Some(at_metres),
+            Proposal::Line { from_metres, .. } => Some(from_metres),
+            Proposal::Nothing | Proposal::Gains { .. } | Proposal::Together { .. } => None,
         }
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Verdict {
+pub enum AttemptVerdict {
     /// The attempt is part of the answer when its rung is done.
     Kept,
     Refused(Refusal),
@@ -74,26 +74,26 @@ pub enum Refusal {
     Exchanged,
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for AttemptVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Verdict::Kept => write!(f, "kept"),
-            Verdict::Refused(reason) => reason.fmt(f),
+            AttemptVerdict::Kept => write!(f, "kept"),
+            AttemptVerdict::Refused(reason) => reason.fmt(f),
         }
     }
 }
 
-impl fmt::Display for Tried {
+impl fmt::Display for Proposal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Tried::Nothing => write!(f, "nothing"),
-            Tried::Point { .. } => write!(f, "point"),
-            Tried::Line { count, .. } => write!(f, "line of {count}"),
-            Tried::Gains { decibels, degrees } => {
+            Proposal::Nothing => write!(f, "nothing"),
+            Proposal::Point { .. } => write!(f, "point"),
+            Proposal::Line { count, .. } => write!(f, "line of {count}"),
+            Proposal::Gains { decibels, degrees } => {
                 write!(f, "gains of elements off by {decibels:.2} dB and {degrees:.1}°")
             }
-            Tried::Together { count: 1 } => write!(f, "1 object"),
-            Tried::Together { count } => write!(f, "{count} objects"),
+            Proposal::Together { count: 1 } => write!(f, "1 object"),
+            Proposal::Together { count } => write!(f, "{count} objects"),
         }
     }
 }

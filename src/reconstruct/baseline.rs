@@ -1,7 +1,7 @@
 //! The thesis' baseline: one end's own map, thresholded.
 
 use super::error::Result;
-use super::{About, Reconstruction, Reconstructor, Request};
+use super::{MethodInfo, Reconstruction, Reconstructor, Request};
 use crate::maps::channels_map;
 use crate::radar::Radar;
 use crate::signal::TwoEnds;
@@ -11,11 +11,11 @@ use crate::signal::TwoEnds;
 pub struct Baseline;
 
 impl Reconstructor for Baseline {
-    fn about(&self) -> About {
-        About {
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
             name: "baseline",
             description: "the first end's own map, as the thesis compares with",
-            told: "nothing; its threshold is the thesis' own",
+            prior_knowledge: "nothing; its threshold is the thesis' own",
             eta: 0.9,
         }
     }

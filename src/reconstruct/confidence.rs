@@ -1,6 +1,6 @@
 //! Confidence of each echo found: the part of the energy, unexplained without it, that it explains.
 
-use super::hearing::range_energy;
+use super::noise_model::range_energy;
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -21,10 +21,10 @@ const ONE_ECHO_RIDGE: f64 = 1e-11;
 /// The confidence is the coefficient of partial determination of linear regression (M. H. Kutner, C. J. Nachtsheim, J. Neter and W. Li, "Applied
 /// linear statistical models", section 7.4), of the energy around the echo's range.
 pub(super) fn confidences(radar: &Radar, ends: &TwoEnds, found: &[Reflector], noise_variance: f64) -> Vec<f64> {
-    let (mut left, hears) = (ends.flat(), ends.hears());
+    let (mut left, is_measured) = (ends.flat(), ends.measured_elements());
     let echo = |r: &Reflector| {
         let place = radar.polar_of(r.x_metres, r.y_metres);
-        ArrayEcho::at(radar, place.range_metres, place.cos_theta).masked(&hears)
+        ArrayEcho::at(radar, place.range_metres, place.cos_theta).masked(&is_measured)
     };
     let echoes: Vec<ArrayEcho> = found.par_iter().map(echo).collect();
     let count = echoes.len();
@@ -43,7 +43,7 @@ pub(super) fn confidences(radar: &Radar, ends: &TwoEnds, found: &[Reflector], no
         left.iter_mut().zip(echo.unit_samples()).for_each(|(left, unit)| *left -= gain * unit);
     }
     let window = radar.window.weights(radar.samples).iter().map(|w| w * w).sum::<f64>() / radar.samples as f64;
-    let unexplained = Unexplained::new(radar, &TwoEnds::of_flat(radar, &left), &hears, noise_variance * window);
+    let unexplained = Unexplained::new(radar, &TwoEnds::of_flat(radar, &left), &is_measured, noise_variance * window);
     let confidence = |i: usize| {
         let worth = window * gains[i].norm_sqr() / inverse[(i, i)].re.max(f64::MIN_POSITIVE);
         let part = worth / (worth + unexplained.around(radar, &echoes[i]));
@@ -62,8 +62,8 @@ struct Unexplained {
 
 impl Unexplained {
     /// The energy of `left`; `bin_noise` is the mean energy that noise gives to a range bin of one element.
-    fn new(radar: &Radar, left: &TwoEnds, hears: &[bool], bin_noise: f64) -> Self {
-        let (first, last) = hears.split_at(radar.end_elements.min(hears.len()));
+    fn new(radar: &Radar, left: &TwoEnds, is_measured: &[bool], bin_noise: f64) -> Self {
+        let (first, last) = is_measured.split_at(radar.end_elements.min(is_measured.len()));
         let noise = [first, last].map(|end| bin_noise * end.iter().filter(|h| **h).count() as f64);
         Unexplained { energy: End::BOTH.map(|end| range_energy(radar, left.end(end).view())), noise }
     }

@@ -53,7 +53,7 @@ pub fn find(
 ) -> Result<Vec<Detection>> {
     let normalisation = Normalisation::DynamicRange(MAP_RANGE);
     // Beside another layout the ends have no samples.
-    let heard = request.heard.is_none().then_some(ends);
+    let heard = request.layout_samples.is_none().then_some(ends);
     if radar.elements <= FEW_ELEMENTS && !method.lists_few_elements() {
         Ok(Vec::new())
     } else if !answer.reflectors.is_empty() {

@@ -4,7 +4,7 @@ use super::error::Result;
 use super::judge::stretch_to_common_scale;
 use super::own_threshold::own_threshold;
 use super::search::{Found, Settings, find, find_from};
-use super::{About, Family, Reconstruction, Reconstructor, Request, Weights, blended, network_weight};
+use super::{Family, MethodInfo, Reconstruction, Reconstructor, Request, Weights, blended, network_weight};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{Decibels, Radar};
 use crate::signal::TwoEnds;
@@ -66,11 +66,11 @@ impl Reconstructor for Hybrid {
         Family::Search
     }
 
-    fn about(&self) -> About {
-        About {
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
             name: "hybrid",
             description: "draws the exact map of the objects it finds; in cells that they don't explain it believes a network more",
-            told: "the same as nomp; and by its network, the training scenes of live",
+            prior_knowledge: "the same as nomp; and by its network, the training scenes of live",
             eta: super::search::ETA,
         }
     }

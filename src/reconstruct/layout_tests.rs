@@ -13,8 +13,8 @@ use std::sync::Arc;
 fn of_layout(method: &dyn Reconstructor, radar: &Radar, layout: &[usize]) -> Result<(f64, f64), ReconstructError> {
     let scene = Scene::of_points([(2.0, 6.0), (-3.0, 4.0)]);
     let signal = simulate(radar, &scene, Floor::Thesis, 0).unwrap();
-    let heard = signal.of_layout(layout);
-    let request = Request { heard: Some(Arc::new(heard)), ..Request::default() };
+    let layout_samples = signal.of_layout(layout);
+    let request = Request { layout_samples: Some(Arc::new(layout_samples)), ..Request::default() };
     let found = method.reconstruct(radar, &BeatSignal::silence(radar).two_ends(radar), &request)?;
     let target = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).log_magnitude();
     let target = target.normalise(Normalisation::MinMax).lambda;

@@ -22,26 +22,26 @@ mod family;
 mod fit;
 pub mod found;
 mod grid;
-mod hearing;
 mod hybrid;
 mod judge;
 #[cfg(test)]
 mod layout_tests;
 mod noise;
+mod noise_model;
 mod own_threshold;
+mod polar;
 mod power;
 mod prior;
 mod profiles;
 mod reconstructor;
 mod rows;
 pub mod search;
-mod seen;
 mod significance;
 mod trained;
 mod untrained;
 
 pub use answer::{Detection, Reconstruction, Request};
-pub use attempt::{Attempt, Refusal, Tried, Verdict};
+pub use attempt::{Attempt, AttemptVerdict, Proposal, Refusal};
 pub use baseline::Baseline;
 pub use coherent::{CoherentMethod, IAA, SBL};
 pub use error::ReconstructError;
@@ -52,7 +52,7 @@ pub use judge::{blended, network_weight};
 #[cfg(feature = "live")]
 pub(crate) use own_threshold::own_threshold;
 pub use prior::NoisePrior;
-pub use reconstructor::{About, Hears, NEEDS_SAMPLES, Reconstructor, Weights, check_ends};
+pub use reconstructor::{LayoutSupport, MethodInfo, NEEDS_SAMPLES, Reconstructor, Weights, check_ends};
 pub use rows::{
     BARTLETT, CAPON, CAPON_PEAKS, ESPRIT, LINEAR_PREDICTION, LINEAR_PREDICTION_PEAKS, MUSIC, MUSIC_PEAKS, ROOT_MUSIC,
     ROOT_MUSIC_PEAKS, RowMethod,

@@ -22,12 +22,12 @@ const EVEN: f64 = 0.03;
 const ASSUMED: f64 = 1e-6;
 
 pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
-    noise_heard(radar, channels).variance
+    measured_noise(radar, channels).variance
 }
 
 /// The noise in the quietest range bins.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct HeardNoise {
+pub(super) struct MeasuredNoise {
     /// Variance a sample, if it is white noise.
     pub variance: f64,
     /// Whether the bins' powers are as even as those of white noise; side lobes differ by decades from bin to bin.
@@ -36,7 +36,10 @@ pub(super) struct HeardNoise {
 
 /// Measures the noise of `channels`: the power of the quietest range bins under a window whose side lobes are lower. Where the chirp is too
 /// short for such a window, noise 60 dB beneath the samples is assumed unless less is measured.
-pub(super) fn noise_heard<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> HeardNoise {
+pub(super) fn measured_noise<'a>(
+    radar: &Radar,
+    channels: impl Iterator<Item = ArrayView1<'a, Complex64>>,
+) -> MeasuredNoise {
     let beta = beta(radar.samples);
     let window = kaiser(radar.samples, beta);
     let power: f64 = window.iter().map(|w| w * w).sum();
@@ -52,7 +55,7 @@ pub(super) fn noise_heard<'a>(radar: &Radar, channels: impl Iterator<Item = Arra
         count += 1.0;
     }
     if count == 0.0 {
-        return HeardNoise { variance: 0.0, is_even: true };
+        return MeasuredNoise { variance: 0.0, is_even: true };
     }
     let quiet = (QUIET_PART * bins.len() as f64) as usize;
     let strongest = bins.iter().copied().fold(0.0, f64::max);
@@ -62,7 +65,7 @@ pub(super) fn noise_heard<'a>(radar: &Radar, channels: impl Iterator<Item = Arra
     let heard = quantile / (count * power) / (1.0 - 0.84 / f64::sqrt(count)).max(0.3);
     let is_side_lobe = quantile < strongest * side_lobe_part(beta) * 1e2;
     let variance = if is_side_lobe { heard.min(energy / count * ASSUMED) } else { heard };
-    HeardNoise { variance, is_even: quietest > EVEN * quantile }
+    MeasuredNoise { variance, is_even: quietest > EVEN * quantile }
 }
 
 /// Shape of the window for chirps of `samples`: the lower its side lobes, the wider its main lobe.
@@ -108,7 +111,7 @@ fn bessel_i0(x: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::radar::{Decibels, End};
-    use crate::reconstruct::hearing::ends_noise_variance;
+    use crate::reconstruct::noise_model::ends_noise_variance;
     use crate::scene::Scene;
     use crate::signal::floor::{snr_noise_variance, thesis_noise_variance};
     use crate::signal::{Floor, simulate};

@@ -101,7 +101,7 @@ impl NoisePrior {
 mod tests {
     use super::*;
     use crate::radar::Radar;
-    use crate::reconstruct::hearing::ends_noise_variance;
+    use crate::reconstruct::noise_model::ends_noise_variance;
     use crate::scene::Scene;
     use crate::signal::floor::snr_noise_variance;
     use crate::signal::simulate;

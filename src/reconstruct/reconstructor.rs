@@ -2,7 +2,7 @@
 
 use super::answer::halves;
 use super::error::Result;
-use super::hearing::ends_noise_variance;
+use super::noise_model::ends_noise_variance;
 use super::significance::tested;
 use super::{Family, ReconstructError, Reconstruction, Request, TrainedNoise};
 use crate::radar::{End, Radar, check_layout};
@@ -13,13 +13,13 @@ use std::sync::Arc;
 
 /// Name and description of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct About {
+pub struct MethodInfo {
     pub name: &'static str,
     /// One sentence for tooltips and help.
     pub description: &'static str,
     /// Knowledge of the method beside the samples and the radar: assumptions that a user's own scene may not meet, or that the scenes of the
     /// tables happen to.
-    pub told: &'static str,
+    pub prior_knowledge: &'static str,
     /// Threshold that turns the output into detections, where an answer has none of its own ([`Reconstruction::eta`]). Chosen on validation
     /// scenes, never on test scenes, by one rule for all methods: the mean false-alarm rate over the three sets is that of the thesis, 0.65 %
     /// (`examples/choose_eta.rs`).
@@ -37,12 +37,12 @@ pub struct Weights {
 
 /// The way in which a method uses the samples of other elements than the two ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hears {
-    Ends,
+pub enum LayoutSupport {
+    TwoEnds,
     /// The method takes elements without samples for missing ones: the ends are the halves of the array, silent but for the elements of the layout.
     Halves,
-    /// The method reads [`Request::heard`].
-    Layouts,
+    /// The method reads [`Request::layout_samples`].
+    AnyLayout,
 }
 
 /// The reason why a method of samples can't answer to the input of the thesis' networks.
@@ -51,10 +51,10 @@ pub const NEEDS_SAMPLES: &str =
 
 /// A method that computes a map of the whole array from the samples of the two ends.
 ///
-/// A method implements [`Reconstructor::about`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
+/// A method implements [`Reconstructor::info`] and [`Reconstructor::estimate`]; users call [`Reconstructor::reconstruct`].
 pub trait Reconstructor: Send + Sync {
     /// Name and description of the method.
-    fn about(&self) -> About;
+    fn info(&self) -> MethodInfo;
 
     fn family(&self) -> Family {
         Family::Classical
@@ -72,9 +72,9 @@ pub trait Reconstructor: Send + Sync {
         !matches!(self.family(), Family::Network | Family::Classical)
     }
 
-    /// The way in which the method uses the samples of other elements than the two ends ([`Request::heard`]).
-    fn hears(&self) -> Hears {
-        Hears::Ends
+    /// The way in which the method uses the samples of other elements than the two ends ([`Request::layout_samples`]).
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::TwoEnds
     }
 
     /// [`Reconstructor::check_array`] where the ends are the `halves` of an array, of which so many elements have samples.
@@ -116,15 +116,17 @@ pub trait Reconstructor: Send + Sync {
     /// [`ReconstructError::Unusable`] with the reason.
     fn check_elements(&self, radar: &Radar, layout: &[usize]) -> Result<()> {
         check_layout(layout, radar.elements).map_err(|reason| self.unusable(reason))?;
-        match self.hears() {
-            Hears::Layouts => self.check_array(radar),
-            Hears::Halves => {
+        match self.layout_support() {
+            LayoutSupport::AnyLayout => self.check_array(radar),
+            LayoutSupport::Halves => {
                 let halves = halves(radar);
                 self.check_halves(&halves, layout.len())?;
                 let is_first = |n: &usize| *n < halves.end_elements;
                 self.check_both_halves([!layout.iter().any(is_first), layout.iter().all(is_first)])
             }
-            Hears::Ends => Err(self.unusable("it hears the two ends of an array, and no other layout".to_owned())),
+            LayoutSupport::TwoEnds => {
+                Err(self.unusable("it hears the two ends of an array, and no other layout".to_owned()))
+            }
         }
     }
 
@@ -157,8 +159,8 @@ pub trait Reconstructor: Send + Sync {
     /// where the method fails.
     fn reconstruct(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         request.task.check()?;
-        if let Some(heard) = &request.heard {
-            return reconstruct_layout(self, radar, heard, request);
+        if let Some(layout_samples) = &request.layout_samples {
+            return reconstruct_layout(self, radar, layout_samples, request);
         }
         check_ends(radar, ends)?;
         self.check_array(radar)?;
@@ -203,19 +205,19 @@ pub trait Reconstructor: Send + Sync {
         None
     }
 
-    /// The method's [`About::name`].
+    /// The method's [`MethodInfo::name`].
     fn name(&self) -> &'static str {
-        self.about().name
+        self.info().name
     }
 
-    /// The method's [`About::description`].
+    /// The method's [`MethodInfo::description`].
     fn description(&self) -> &'static str {
-        self.about().description
+        self.info().description
     }
 
-    /// The method's [`About::eta`].
+    /// The method's [`MethodInfo::eta`].
     fn eta(&self) -> f32 {
-        self.about().eta
+        self.info().eta
     }
 
     /// Whether every answer has a threshold of its own; other methods' answers have one only where noise reaches the method's.
@@ -228,7 +230,7 @@ pub trait Reconstructor: Send + Sync {
         !matches!(self.family(), Family::Own | Family::Network)
     }
 
-    /// The threshold for an answer of this method: its own, or [`About::eta`].
+    /// The threshold for an answer of this method: its own, or [`MethodInfo::eta`].
     fn eta_of(&self, answer: &Reconstruction) -> f32 {
         answer.eta.unwrap_or_else(|| self.eta())
     }
@@ -242,43 +244,48 @@ pub trait Reconstructor: Send + Sync {
 fn reconstruct_layout<M: Reconstructor + ?Sized>(
     method: &M,
     radar: &Radar,
-    heard: &LayoutSamples,
+    layout_samples: &LayoutSamples,
     request: &Request,
 ) -> Result<Reconstruction> {
-    check_layout(&heard.layout, radar.elements).map_err(|reason| method.unusable(reason))?;
-    let expected = [heard.layout.len(), radar.samples];
-    ReconstructError::check_shape("samples of the layout", heard.samples.shape(), expected)?;
-    if let Some(((place, sample), _)) = heard.samples.indexed_iter().find(|(_, v)| !v.is_finite()) {
-        return Err(method.unusable(format!("sample {sample} of element {} is not finite", heard.layout[place])));
+    check_layout(&layout_samples.layout, radar.elements).map_err(|reason| method.unusable(reason))?;
+    let expected = [layout_samples.layout.len(), radar.samples];
+    ReconstructError::check_shape("samples of the layout", layout_samples.samples.shape(), expected)?;
+    if let Some(((place, sample), _)) = layout_samples.samples.indexed_iter().find(|(_, v)| !v.is_finite()) {
+        return Err(
+            method.unusable(format!("sample {sample} of element {} is not finite", layout_samples.layout[place]))
+        );
     }
-    let (halves, ends) = heard.as_halves(radar);
+    let (halves, ends) = layout_samples.as_halves(radar);
     check_ends(&halves, &ends)?;
-    method.check_elements(radar, &heard.layout)?;
-    if method.hears() == Hears::Layouts {
+    method.check_elements(radar, &layout_samples.layout)?;
+    if method.layout_support() == LayoutSupport::AnyLayout {
         return answer(method, radar, (&halves, &ends), request);
     }
     method.check_both_halves([is_silent(&ends.first), is_silent(&ends.last)])?;
-    answer(method, &halves, (&halves, &ends), &Request { heard: None, ..request.clone() })
+    answer(method, &halves, (&halves, &ends), &Request { layout_samples: None, ..request.clone() })
 }
 
-/// The answer of `method` to checked samples, with a threshold above the noise of `ends`, which are those of the radar `hearing`.
+/// The answer of `method` to checked samples, with a threshold above the noise of `ends`, which are those of the radar `ends_radar`.
 fn answer<M: Reconstructor + ?Sized>(
     method: &M,
     radar: &Radar,
-    (hearing, ends): (&Radar, &TwoEnds),
+    (ends_radar, ends): (&Radar, &TwoEnds),
     request: &Request,
 ) -> Result<Reconstruction> {
     let Some((ends, gain)) = unit_gain(ends) else { return Ok(Reconstruction::silence(radar)) };
-    let heard = request.heard.as_ref().map(|heard| {
-        Arc::new(LayoutSamples { layout: heard.layout.clone(), samples: heard.samples.mapv(|v| v * gain) })
+    let layout_samples = request.layout_samples.as_ref().map(|layout_samples| {
+        Arc::new(LayoutSamples {
+            layout: layout_samples.layout.clone(),
+            samples: layout_samples.samples.mapv(|v| v * gain),
+        })
     });
-    let request = &Request { noise: request.noise.scaled(gain), heard, ..request.clone() };
+    let request = &Request { noise: request.noise.scaled(gain), layout_samples, ..request.clone() };
     // Inside the scope a parallel step goes to an idle thread; outside, the caller would sleep through each one.
     let found = rayon::scope(|_| method.estimate(radar, &ends, request))?;
     // An answer during which the task was cancelled may be incomplete.
     request.task.check()?;
-    let noise_variance = ends_noise_variance(hearing, &ends, request.noise);
-    let mut found = tested(hearing, &ends, noise_variance, method.eta(), found);
+    let noise_variance = ends_noise_variance(ends_radar, &ends, request.noise);
+    let mut found = tested(ends_radar, &ends, noise_variance, method.eta(), found);
     found.reflectors.iter_mut().for_each(|r| r.reflectivity /= gain);
     let range = request.snapshot_range_metres.filter(|_| radar.samples == 1);
     Ok(match range {
@@ -324,8 +331,8 @@ mod tests {
     struct Echo;
 
     impl Reconstructor for Echo {
-        fn about(&self) -> About {
-            About { name: "echo", description: "for tests", told: "nothing", eta: 0.5 }
+        fn info(&self) -> MethodInfo {
+            MethodInfo { name: "echo", description: "for tests", prior_knowledge: "nothing", eta: 0.5 }
         }
 
         fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {

@@ -113,7 +113,7 @@ fn is_flat(found: &Reconstruction) -> bool {
 mod tests {
     use super::*;
     use crate::radar::{DecibelMilliwatts, Decibels};
-    use crate::reconstruct::hearing::ends_noise_variance;
+    use crate::reconstruct::noise_model::ends_noise_variance;
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
 

@@ -33,15 +33,15 @@ pub fn untrained_noise<'a>(
 mod tests {
     use super::*;
     use crate::radar::{DecibelMilliwatts, Decibels};
-    use crate::reconstruct::{About, Baseline, ReconstructError, Reconstruction, Request};
+    use crate::reconstruct::{Baseline, MethodInfo, ReconstructError, Reconstruction, Request};
     use crate::scene::Reflector;
     use crate::signal::TwoEnds;
 
     struct Network(TrainedNoise);
 
     impl Reconstructor for Network {
-        fn about(&self) -> About {
-            About { name: "network", description: "for tests", told: "nothing", eta: 0.5 }
+        fn info(&self) -> MethodInfo {
+            MethodInfo { name: "network", description: "for tests", prior_knowledge: "nothing", eta: 0.5 }
         }
 
         fn trained_noise(&self) -> Option<TrainedNoise> {

@@ -32,12 +32,12 @@ pub(super) fn analytic(samples: &[Complex64], len: usize) -> Vec<Complex64> {
     if samples.is_empty() || len < half {
         return vec![Complex64::default(); len];
     }
-    let mut line = samples.to_vec();
-    Simd::chosen().forward_fft::<f64>(samples.len()).process(&mut line);
+    let mut row = samples.to_vec();
+    Simd::chosen().forward_fft::<f64>(samples.len()).process(&mut row);
     // The inverse transform is the conjugate of the forward transform of the conjugate. Factor 2: the negative half had half the amplitude.
     let scale = 2.0 / samples.len() as f64;
     let mut positive = vec![Complex64::default(); len];
-    positive.iter_mut().zip(&line[..half]).for_each(|(to, v)| *to = scale * v.conj());
+    positive.iter_mut().zip(&row[..half]).for_each(|(to, v)| *to = scale * v.conj());
     positive[0] /= 2.0;
     Simd::chosen().forward_fft::<f64>(len).process(&mut positive);
     positive.into_iter().map(|v| v.conj()).collect()

@@ -191,9 +191,9 @@ fn complex(numbers: Numbers, kinds: &mut Vec<AxisKind>) -> Result<ArrayD<Complex
                 Fault::Data(format!("the array holds real numbers; expected {expected}"))
             })?;
             let mut values = values.mapv(Complex64::from);
-            for mut line in values.lanes_mut(Axis(samples)) {
-                let signal = analytic(&line.to_vec(), line.len());
-                line.iter_mut().zip(signal).for_each(|(to, v)| *to = v);
+            for mut row in values.lanes_mut(Axis(samples)) {
+                let signal = analytic(&row.to_vec(), row.len());
+                row.iter_mut().zip(signal).for_each(|(to, v)| *to = v);
             }
             Ok(values)
         }

@@ -1,6 +1,6 @@
 //! A capture card on the network: packets to a port of this machine are assembled to frames. Not in a browser, which has no ports.
 
-use super::packets::{CardFrame, PacketCounts, Packets};
+use super::packets::{CardFrame, FrameAssembler, PacketCounts};
 use crate::platform::Instant;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -88,7 +88,7 @@ impl Card {
         mut take_frame: impl FnMut(CardFrame) -> FrameResponse,
         mut goes_on: impl FnMut(&CardSummary) -> bool,
     ) -> io::Result<CardSummary> {
-        let mut packets = Packets::new(self.frame_bytes);
+        let mut assembler = FrameAssembler::new(self.frame_bytes);
         let mut summary = CardSummary::default();
         // No UDP packet is longer.
         let mut buffer = vec![0; 1 << 16];
@@ -97,13 +97,13 @@ impl Card {
             let done = match self.socket.recv(&mut buffer) {
                 Ok(length) => {
                     last_packet = Instant::now();
-                    packets.take(&buffer[..length])
+                    assembler.take(&buffer[..length])
                 }
                 Err(e) if [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut].contains(&e.kind()) => Vec::new(),
                 Err(e) => return Err(e),
             };
             let is_silent = self.silence.is_some_and(|silence| last_packet.elapsed() > silence);
-            let rest = if is_silent { packets.finish() } else { Vec::new() };
+            let rest = if is_silent { assembler.finish() } else { Vec::new() };
             for frame in done.into_iter().chain(rest) {
                 self.write(&frame)?;
                 summary.frames += 1;
@@ -113,7 +113,7 @@ impl Card {
                     FrameResponse::Ended => return Ok(summary),
                 }
             }
-            summary.packets = packets.counts();
+            summary.packets = assembler.counts();
             let is_enough = self.max_frames.is_some_and(|max| summary.frames >= max);
             if is_silent || is_enough || !goes_on(&summary) {
                 return Ok(summary);

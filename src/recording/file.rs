@@ -2,7 +2,7 @@
 
 use super::raw;
 use super::recording_text::{RecordingText, open_file, open_in, read_text};
-use super::{Fault, Offer, Origin, Recording, RecordingError};
+use super::{Fault, Origin, ReadingOption, Recording, RecordingError};
 use crate::files::ends_in;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,7 +44,7 @@ pub fn load(path: &Path) -> Result<Recording, RecordingError> {
     let recording = parsed.recording()?;
     let origin = parsed.frames()?.map(|[frames, frame]| {
         let description = "Read as its TOML says".to_owned();
-        let offer = Offer { description, log_odds: 0.0, power: Vec::new(), toml: text.clone() };
+        let offer = ReadingOption { description, log_odds: 0.0, power: Vec::new(), toml: text.clone() };
         Arc::new(Origin { data: path.to_owned(), offers: vec![offer], frames, frame, ..Origin::default() })
     });
     Ok(Recording { origin, ..recording })

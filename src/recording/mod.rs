@@ -49,7 +49,7 @@ mod samples;
 mod signs;
 
 pub use error::{Fault, RecordingError};
-pub use origin::{Offer, Origin};
+pub use origin::{Origin, ReadingOption};
 pub use profile::RadarProfile;
 pub use profile::lines::config_text;
 pub use recording_text::FrameLoops;

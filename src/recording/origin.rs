@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// One way to read a file: a layout of a raw capture, or kinds of an array's axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Offer {
+pub struct ReadingOption {
     /// The layout or the axes, as a part of a sentence.
     pub description: String,
     /// Natural logarithm of its odds, up to a constant that is the same for all offers of a file.
@@ -28,7 +28,7 @@ pub struct Origin {
     /// The `.cfg` that was read.
     pub config: Option<PathBuf>,
     /// Ways to read the file, the most likely first; the only one where the file has a TOML.
-    pub offers: Vec<Offer>,
+    pub offers: Vec<ReadingOption>,
     /// Index in `offers` of the way that is used.
     pub taken: usize,
     /// Findings on the file, a sentence each.

@@ -50,7 +50,7 @@ struct OpenFrame {
 }
 
 /// Assembles packets to frames.
-pub struct Packets {
+pub struct FrameAssembler {
     frame_bytes: usize,
     open: VecDeque<OpenFrame>,
     /// Number of the frame after the last closed one; `None` before the first.
@@ -58,10 +58,15 @@ pub struct Packets {
     counts: PacketCounts,
 }
 
-impl Packets {
+impl FrameAssembler {
     /// An assembler of frames of `frame_bytes` bytes; 0 is taken as 1.
     pub fn new(frame_bytes: usize) -> Self {
-        Packets { frame_bytes: frame_bytes.max(1), open: VecDeque::new(), next: None, counts: PacketCounts::default() }
+        FrameAssembler {
+            frame_bytes: frame_bytes.max(1),
+            open: VecDeque::new(),
+            next: None,
+            counts: PacketCounts::default(),
+        }
     }
 
     /// Counts of the packets so far.
@@ -186,9 +191,9 @@ mod tests {
         (0..frames * size).map(|n| (n * 7 % 251 + 1) as u8).collect()
     }
 
-    fn all(packets: &mut Packets, sent: impl IntoIterator<Item = Vec<u8>>) -> Vec<CardFrame> {
-        let mut frames: Vec<CardFrame> = sent.into_iter().flat_map(|p| packets.take(&p)).collect();
-        frames.extend(packets.finish());
+    fn all(assembler: &mut FrameAssembler, sent: impl IntoIterator<Item = Vec<u8>>) -> Vec<CardFrame> {
+        let mut frames: Vec<CardFrame> = sent.into_iter().flat_map(|p| assembler.take(&p)).collect();
+        frames.extend(assembler.finish());
         frames
     }
 
@@ -200,46 +205,49 @@ mod tests {
         order.swap(9, 10);
         order.swap(18, 21);
         order.insert(14, 12);
-        let mut packets = Packets::new(950);
-        let frames = all(&mut packets, order.into_iter().map(|n| packet(n, &bytes)));
+        let mut assembler = FrameAssembler::new(950);
+        let frames = all(&mut assembler, order.into_iter().map(|n| packet(n, &bytes)));
         let joined: Vec<u8> = frames.iter().flat_map(|f| f.bytes.clone()).collect();
         assert!(frames.len() == 3 && joined == bytes && frames.iter().all(|f| f.lost_bytes == 0));
-        assert_eq!((packets.counts().packets, packets.counts().lost_bytes), (30, 0));
+        assert_eq!((assembler.counts().packets, assembler.counts().lost_bytes), (30, 0));
     }
 
     #[test]
     fn lost_packets_are_zeros_and_counted() {
         let bytes = capture(4, 1000);
-        let mut packets = Packets::new(1000);
+        let mut assembler = FrameAssembler::new(1000);
         let kept = (0..40).filter(|n| *n != 12 && !(20..30).contains(n));
-        let frames = all(&mut packets, kept.map(|n| packet(n, &bytes)));
+        let frames = all(&mut assembler, kept.map(|n| packet(n, &bytes)));
         let told: Vec<(u64, u64)> = frames.iter().map(|f| (f.number, f.lost_bytes)).collect();
         assert_eq!(told, [(0, 0), (1, 100), (3, 0)]);
         assert!(frames[1].bytes[200..300].iter().all(|b| *b == 0) && frames[1].bytes[300] != 0);
-        assert_eq!((packets.counts().lost_bytes, packets.counts().lost_frames), (100, 1));
+        assert_eq!((assembler.counts().lost_bytes, assembler.counts().lost_frames), (100, 1));
     }
 
     #[test]
     fn a_restarted_card_begins_at_frame_0() {
         let bytes = capture(2, 300);
-        let mut packets = Packets::new(300);
+        let mut assembler = FrameAssembler::new(300);
         let twice = (0..6).chain(0..6).map(|n| packet(n, &bytes));
-        let frames = all(&mut packets, twice);
+        let frames = all(&mut assembler, twice);
         assert_eq!(frames.iter().map(|f| f.number).collect::<Vec<_>>(), [0, 1, 0, 1]);
-        assert_eq!((packets.counts().restarts, packets.take(&[1, 2, 3]).len(), packets.counts().malformed), (1, 0, 1));
+        assert_eq!(
+            (assembler.counts().restarts, assembler.take(&[1, 2, 3]).len(), assembler.counts().malformed),
+            (1, 0, 1)
+        );
     }
 
     proptest! {
         #[test]
         fn any_packets_take_bounded_memory(sent in prop::collection::vec((any::<u64>(), 0usize..3000), 0..40)) {
-            let mut packets = Packets::new(2000);
+            let mut assembler = FrameAssembler::new(2000);
             for (at, length) in sent {
                 let at = at >> (at % 48);
                 let packet = [&[0; 4], &at.to_le_bytes()[..6], vec![1; length].as_slice()].concat();
-                for frame in packets.take(&packet) {
+                for frame in assembler.take(&packet) {
                     prop_assert_eq!(frame.bytes.len(), 2000);
                 }
-                prop_assert!(packets.open.len() <= MAX_OPEN_FRAMES);
+                prop_assert!(assembler.open.len() <= MAX_OPEN_FRAMES);
             }
         }
     }

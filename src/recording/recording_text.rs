@@ -1,9 +1,9 @@
 //! The TOML of a recording, with the files that it names.
 
-use super::capture::Plan;
+use super::capture::CapturePlan;
 use super::chain::{Open, Source};
 use super::doubts::doubts;
-use super::layout::stream::Stream;
+use super::layout::stream::CaptureStream;
 use super::profile::lines::config_text;
 use super::radar_table::radar_of_table;
 use super::recording_table::RecordingTable;
@@ -157,8 +157,8 @@ impl<'a> RecordingText<'a> {
         let RecordingText { table, profile, .. } = self;
         let count = || -> Result<u64, Fault> {
             let Some(capture) = &table.capture else { return self.count_frames() };
-            let stream = Stream::new(self.open_capture(capture)?)?;
-            Ok(Plan::new(capture, profile.as_ref(), stream.bytes())?.frames.max(1))
+            let stream = CaptureStream::new(self.open_capture(capture)?)?;
+            Ok(CapturePlan::new(capture, profile.as_ref(), stream.bytes())?.frames.max(1))
         };
         let repeats = |kind: &AxisKind| matches!(kind, AxisKind::Frame | AxisKind::Chirp);
         if table.capture.is_none() && !table.axes.iter().flatten().any(repeats) {
@@ -202,6 +202,6 @@ fn profile_of(table: &RecordingTable, path: &Path, open: Open<'_>) -> Result<Opt
     let read = read().map_err(|fault| fault.of(&folder_of(path).join(config)))?;
     let mut profile = read.on_chips(1 + capture.chips.len());
     // A layout that contradicts the .cfg follows the samples.
-    profile.real = capture.parts.map_or(profile.real, |parts| parts == layout::Parts::Real);
+    profile.real = capture.part_order.map_or(profile.real, |part_order| part_order == layout::PartOrder::Real);
     Ok(Some(profile))
 }

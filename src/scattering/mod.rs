@@ -13,7 +13,7 @@
 //! | [`transition`] | Fresnel's transition from light to shadow, for faces and shadows |
 //! | [`parts`] | a polygon as convex parts, for shadows |
 //!
-//! [`Scatterer`] is one object made ready; [`Echoing`] a whole scene. An echo of range `R` and amplitude `A` adds
+//! [`Scatterer`] is one object made ready; [`EchoSources`] a whole scene. An echo of range `R` and amplitude `A` adds
 //! `A exp(-j kappa_n R)` to sample `n`, where `kappa_n` is the phase of the whole way there and back for each metre of range ([`Wave`]).
 //!
 //! The formulas are physical optics in the plane: Balanis, *Advanced Engineering Electromagnetics*, chapter 7; Keller, J. Opt. Soc. Am. 52
@@ -23,7 +23,7 @@
 //! bodies, creeping waves, and polarisation except the sign of a double bounce and the post's second term.
 
 pub mod corner;
-mod echoing;
+mod echo_sources;
 pub mod face;
 mod geometry;
 pub mod parts;
@@ -36,7 +36,7 @@ mod sight;
 mod strips;
 pub mod transition;
 
-pub use echoing::{Echoing, SeenObject, Sources, heard_in_the_middle};
+pub use echo_sources::{EchoSources, ObjectWithOccluders, Sources, array_centre_echoes};
 pub use scatterer::Scatterer;
 
 use crate::radar::{Pair, Pattern, Radar};

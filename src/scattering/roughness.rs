@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
 /// Part of a coherent echo's amplitude that a height deviation of `deviation_metres` leaves: `exp(-2 (k s cos)^2)`, `k` the physical wave number
-/// in the middle of the chirp. The table in `docs/things.md` has it in decibels for two radars.
+/// in the middle of the chirp. A table in `docs/things.md` has it in decibels.
 pub fn coherent(wave: &Wave, deviation_metres: f64, cos_incidence: f64) -> f64 {
     (-(wave.radians_per_metre * deviation_metres * cos_incidence).powi(2) / 2.0).exp()
 }

@@ -2,9 +2,9 @@
 
 use super::plan::{BEST_TOLERANCE, FLOOR_TOLERANCE, amplitude_bound};
 use super::run::samples_of;
-use super::{BeatSignal, Floor, Made, Plan, Unfinished, floor};
+use super::{BeatSignal, Floor, SimulationError, SimulationResult, SynthesisPlan, floor};
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::Echoing;
+use crate::scattering::EchoSources;
 use crate::scene::{Interferer, Scene, SceneError};
 use crate::task::Task;
 use num_complex::Complex64;
@@ -22,7 +22,7 @@ pub fn simulate_built(
     floor: Floor,
     seed: u64,
 ) -> Result<BeatSignal, SceneError> {
-    simulate_built_for(&Task::default(), radar, scene, array, floor, seed).map_err(Unfinished::of_scene)
+    simulate_built_for(&Task::default(), radar, scene, array, floor, seed).map_err(SimulationError::of_scene)
 }
 
 /// As [`simulate_built`], with an error after a cancellation of `task`. Noise is added after interference, gains and phases.
@@ -33,11 +33,11 @@ pub(super) fn simulate_built_for(
     array: &BuiltArray,
     floor: Floor,
     seed: u64,
-) -> Made<BeatSignal> {
+) -> SimulationResult<BeatSignal> {
     scene.validate(radar)?;
     array.validate(radar).map_err(SceneError::Elements)?;
-    let echoing = Echoing::of(radar, scene);
-    let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
+    let echoing = EchoSources::of(radar, scene);
+    let plan = SynthesisPlan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
     let mut signal =
         BeatSignal { samples: samples_of(radar, array, (&echoing).into(), &plan, 0..radar.elements, task) };
     disturb(radar, scene, array, &mut signal);

@@ -13,9 +13,9 @@ use super::path::Path;
 use super::phase::{Echo, EchoModel};
 use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::{BeatSignal, Floor, Made, Plan, floor};
+use super::{BeatSignal, Floor, SimulationResult, SynthesisPlan, floor};
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::{Echoing, PathEcho, SeenObject, Sources};
+use crate::scattering::{EchoSources, ObjectWithOccluders, PathEcho, Sources};
 use crate::scene::{Object, Scene, SceneError};
 use crate::task::Task;
 use ndarray::{Array2, Array3, Axis, concatenate, s};
@@ -60,8 +60,14 @@ pub fn chirp_elements(radar: &Radar) -> [Range<usize>; 2] {
 
 /// Samples of every chirp of `radar` over `floor`, with noise by `seed`.
 /// # Errors
-/// [`Unfinished`](super::Unfinished) when the scene can't be simulated, at the first chirp or at the last, and after a cancellation of `task`.
-pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<ChirpSamples> {
+/// [`SimulationError`](super::SimulationError) when the scene can't be simulated, at the first chirp or at the last, and after a cancellation of `task`.
+pub fn simulate_chirps_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+) -> SimulationResult<ChirpSamples> {
     scene.validate(radar)?;
     let array = &*scene.disturbances.elements_of(radar);
     array.validate(radar).map_err(SceneError::Elements)?;
@@ -71,7 +77,7 @@ pub fn simulate_chirps_for(task: &Task, radar: &Radar, scene: &Scene, floor: Flo
     }
     let ranges = chirp_elements(radar);
     let base = rest_samples(task, radar, scene, &moving.rest(radar, scene), floor, &ranges);
-    let variance = floor::noise_variance(radar, &Echoing::of(radar, scene), floor);
+    let variance = floor::noise_variance(radar, &EchoSources::of(radar, scene), floor);
     let mut samples = Array3::zeros((radar.chirps, base.nrows(), radar.samples));
     let elements: Vec<usize> = ranges.iter().cloned().flatten().collect();
     let motion = Motion { radar, scene, array, moving: &moving, elements: &elements, model: EchoModel::new(radar) };
@@ -116,43 +122,43 @@ impl Moving {
         }
     }
 
-    fn rest(self, radar: &Radar, scene: &Scene) -> Echoing {
+    fn rest(self, radar: &Radar, scene: &Scene) -> EchoSources {
         match self {
-            Moving::Nothing => Echoing::of(radar, scene),
+            Moving::Nothing => EchoSources::of(radar, scene),
             Moving::Objects => echoing_of(radar, scene, |object| !object.is_moving()),
-            Moving::Everything => Echoing::default(),
+            Moving::Everything => EchoSources::default(),
         }
     }
 
-    fn at(self, radar: &Radar, scene: &Scene, seconds: f64) -> Echoing {
+    fn at(self, radar: &Radar, scene: &Scene, seconds: f64) -> EchoSources {
         match self {
-            Moving::Nothing => Echoing::default(),
+            Moving::Nothing => EchoSources::default(),
             Moving::Objects => echoing_of(radar, &scene.at(seconds), Object::is_moving),
-            Moving::Everything => Echoing::of(radar, &scene.at(seconds)),
+            Moving::Everything => EchoSources::of(radar, &scene.at(seconds)),
         }
     }
 }
 
-fn echoing_of(radar: &Radar, scene: &Scene, keep: impl Fn(&Object) -> bool) -> Echoing {
+fn echoing_of(radar: &Radar, scene: &Scene, keep: impl Fn(&Object) -> bool) -> EchoSources {
     if !scene.has_bodies() {
         let objects = scene.objects.iter().filter(|o| keep(o)).cloned().collect();
         let disturbances = scene.disturbances.clone();
-        return Echoing::of(radar, &Scene { objects, disturbances, ..Scene::default() });
+        return EchoSources::of(radar, &Scene { objects, disturbances, ..Scene::default() });
     }
-    let seen = SeenObject::all(radar, scene);
-    let kept: Vec<SeenObject> = seen.into_iter().filter(|seen| keep(&seen.object)).collect();
-    Echoing::seen(radar, &kept)
+    let seen = ObjectWithOccluders::all(radar, scene);
+    let kept: Vec<ObjectWithOccluders> = seen.into_iter().filter(|seen| keep(&seen.object)).collect();
+    EchoSources::of_objects(radar, &kept)
 }
 
 fn rest_samples(
     task: &Task,
     radar: &Radar,
     scene: &Scene,
-    rest: &Echoing,
+    rest: &EchoSources,
     floor: Floor,
     ranges: &[Range<usize>; 2],
 ) -> Array2<Complex64> {
-    let plan = Plan::cheapest(rest.len(), amplitude_bound(radar, rest), tolerance(floor));
+    let plan = SynthesisPlan::cheapest(rest.len(), amplitude_bound(radar, rest), tolerance(floor));
     let array = &*scene.disturbances.elements_of(radar);
     let of = |range: Range<usize>| samples_of(radar, array, rest.into(), &plan, range, task);
     let [first, last] = if scene.disturbances.is_none_to(radar) {
@@ -207,7 +213,7 @@ impl Motion<'_> {
     }
 
     /// Replaces `out` by the echoes at element `n`, in the same order for all elements; hidden ones have amplitude 0.
-    fn echoes(&self, n: usize, echoing: &Echoing, out: &mut Vec<Echo>, scattered: &mut Vec<PathEcho>) {
+    fn echoes(&self, n: usize, echoing: &EchoSources, out: &mut Vec<Echo>, scattered: &mut Vec<PathEcho>) {
         let pair = self.array.pair(self.radar, n);
         out.clear();
         out.extend(echoing.points.iter().map(|r| self.model.echo(pair, r)));

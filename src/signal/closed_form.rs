@@ -224,11 +224,11 @@ fn far<T: Real, const W: usize, const FMA: bool>(distance: Lanes<T, W>, bins: f6
 mod tests {
     use super::super::algorithm::{Algorithm, Precision};
     use super::super::exact;
-    use super::super::plan::Plan;
+    use super::super::plan::SynthesisPlan;
     use super::super::simd::{LANES_F32, LANES_F64, Simd};
     use super::super::synthesis::{BlockProfiles, Synthesis};
     use super::*;
-    use crate::scattering::{Echoing, Sources};
+    use crate::scattering::{EchoSources, Sources};
     use crate::scene::{Block, Object, Point, Post, Scene};
     use crate::task::Task;
     use ndarray::{Array1, Array2};
@@ -247,7 +247,7 @@ mod tests {
     }
 
     /// Largest error of a cell relative to the largest cell, by either precision.
-    fn error<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: Plan) -> f64 {
+    fn error<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: SynthesisPlan) -> f64 {
         let reflectors = sources.into();
         let expected = profiles_of(radar, exact::beat_signal(radar, reflectors).samples);
         let peak = expected.iter().fold(0.0f64, |m, v| m.max(v.norm()));
@@ -269,8 +269,8 @@ mod tests {
         }
     }
 
-    fn plan(tolerance: f64, simd: Simd) -> Plan {
-        Plan { simd, ..Plan::cheapest(1, 1.0, tolerance) }.with_algorithm(Algorithm::ClosedForm)
+    fn plan(tolerance: f64, simd: Simd) -> SynthesisPlan {
+        SynthesisPlan { simd, ..SynthesisPlan::cheapest(1, 1.0, tolerance) }.with_algorithm(Algorithm::ClosedForm)
     }
 
     #[test]
@@ -296,7 +296,7 @@ mod tests {
             Object::Post(Post::new(-2.0, 12.0, 0.2)),
             Object::Point(Point::new(1.5, 25.0)),
         ];
-        let echoing = Echoing::of(&radar, &Scene { objects, ..Scene::default() });
+        let echoing = EchoSources::of(&radar, &Scene { objects, ..Scene::default() });
         for tolerance in [1e-3, 1e-6, 1e-12] {
             let e = error(&radar, &echoing, plan(tolerance, Simd::best()));
             assert!(e < tolerance, "{tolerance:e}: {e:e}");
@@ -311,7 +311,7 @@ mod tests {
             Object::Point(Point { reflectivity: 1e-4, ..Point::new(0.5, 6.0) }),
             Object::Box(Block::new([1.0, 20.0], [1.5, 0.8], 80.0)),
         ];
-        let echoing = Echoing::of(&radar, &Scene { objects, ..Scene::default() });
+        let echoing = EchoSources::of(&radar, &Scene { objects, ..Scene::default() });
         let amplitude = crate::signal::plan::amplitude_bound(&radar, &echoing);
         let quiet = amplitude / echoing.len() as f64;
         for tolerance in [1e-3, 1e-6] {
@@ -350,7 +350,7 @@ mod tests {
     fn other_windows_have_none() {
         let radar = Radar { window: WindowFunction::Blackman, elements: 16, end_elements: 3, ..Radar::default() };
         let reflectors = Scene::of_points([(0.5, 9.0)]).reflectors();
-        assert_eq!(Plan::cheapest(1, 1.0, 1e-3).on_few_rows(&radar, 1).algorithm, Algorithm::Split);
+        assert_eq!(SynthesisPlan::cheapest(1, 1.0, 1e-3).on_few_rows(&radar, 1).algorithm, Algorithm::Split);
         let e = error(&radar, &reflectors, plan(1e-3, Simd::best()));
         assert!(e < 1e-6, "forced, it is evaluated by phasor split: {e:e}");
     }

@@ -12,7 +12,7 @@
 //! [`Sources`](crate::scattering::Sources) are the scatterers: points, and bodies with their shadows.
 //!
 //! * [`path`] (range and amplitude of an echo at a pair of antennas) and [`phase`] are the forward model of every simulation, fit and bound.
-//! * A [`Plan`] has algorithm and precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
+//! * A [`SynthesisPlan`] has algorithm and precision; [`beat_signal`] runs one, [`synthesis`] the block algorithms over the array.
 //! * [`simulate`] goes from a scene to samples over a [`floor`]: the thesis' rounding noise, none, or thermal noise.
 //! * [`built`] adds element errors and interference; [`calibration`] estimates gains and phases; [`chirps`] has moving objects.
 //! * [`echo`] is one reflector's echo as a value, the dictionary atom of sparse methods.
@@ -39,9 +39,9 @@ mod run;
 mod samples;
 pub mod simd;
 mod simulate;
+mod simulation_error;
 pub mod split;
 pub mod synthesis;
-mod unfinished;
 
 pub use algorithm::{Algorithm, Precision};
 pub use built::{add_interference, apply_responses, simulate_built};
@@ -49,9 +49,9 @@ pub use calibration::{Calibration, calibrate};
 pub use chirps::{ChirpSamples, simulate_chirps_for};
 pub use echo::ArrayEcho;
 pub use floor::Floor;
-pub use plan::Plan;
+pub use plan::SynthesisPlan;
 pub use rows::Rows;
 pub use run::beat_signal;
 pub use samples::{BeatSignal, LayoutSamples, TwoEnds};
 pub use simulate::{simulate, simulate_ends_for, simulate_for};
-pub use unfinished::{Made, Unfinished};
+pub use simulation_error::{SimulationError, SimulationResult};

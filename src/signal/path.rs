@@ -6,7 +6,7 @@
 
 mod change;
 
-pub use change::{By, PathChange};
+pub use change::{PathChange, PolarCoordinate};
 
 use super::double::{Double, product, sum};
 use super::simd::Lanes;
@@ -309,12 +309,12 @@ mod tests {
         let range = f64::hypot(x, y);
         let polar = |range: f64, cos: f64| [range * cos, range * (1.0 - cos * cos).sqrt()];
         let moved = |by, step| match by {
-            By::Range => polar(range + step, x / range),
-            By::CosTheta => polar(range, x / range + step),
+            PolarCoordinate::Range => polar(range + step, x / range),
+            PolarCoordinate::CosTheta => polar(range, x / range + step),
         };
         for radar in radars().into_iter().chain([narrow()]) {
             let model = EchoModel::new(&radar);
-            for by in [By::Range, By::CosTheta] {
+            for by in [PolarCoordinate::Range, PolarCoordinate::CosTheta] {
                 for pair in [SEPARATE_PAIR, BENT, Pair::at(0.3)] {
                     for n1 in [0, 300] {
                         let at = |step| {

@@ -4,13 +4,13 @@ use super::path::largest_amplitude;
 use super::simd::Simd;
 use super::{Algorithm, Precision, closed_form};
 use crate::radar::Radar;
-use crate::scattering::{Echoing, SeenObject, Sources};
+use crate::scattering::{EchoSources, ObjectWithOccluders, Sources};
 use rayon::prelude::*;
 use serde::Serialize;
 
 /// Algorithm, precision, tolerance and instructions of a simulation by [`super::beat_signal`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Plan {
+pub struct SynthesisPlan {
     pub algorithm: Algorithm,
     pub precision: Precision,
     /// Largest error of a sample, relative to the sum of the reflectors' amplitudes.
@@ -43,18 +43,18 @@ fn max_f32_reflectors(algorithm: Algorithm) -> usize {
     }
 }
 
-impl Plan {
+impl SynthesisPlan {
     /// The cheapest way to evaluate `count` reflectors whose amplitudes sum to at most `amplitude`, within `tolerance`.
-    pub fn cheapest(count: usize, amplitude: f64, tolerance: f64) -> Plan {
+    pub fn cheapest(count: usize, amplitude: f64, tolerance: f64) -> SynthesisPlan {
         let gridded = count >= MIN_GRIDDED_REFLECTORS && tolerance >= FLOOR_TOLERANCE;
         let algorithm = if gridded { Algorithm::Gridded } else { Algorithm::Split };
         let single = tolerance >= MIN_F32_TOLERANCE && holds(amplitude) && count <= max_f32_reflectors(algorithm);
         let precision = if single { Precision::F32 } else { Precision::F64 };
-        Plan { algorithm, precision, tolerance, simd: Simd::chosen() }
+        SynthesisPlan { algorithm, precision, tolerance, simd: Simd::chosen() }
     }
 
     /// The plan for range profiles of `count` reflectors without a floor: the closed form where few cells exceed the tolerance.
-    pub fn on_few_rows(self, radar: &Radar, count: usize) -> Plan {
+    pub fn on_few_rows(self, radar: &Radar, count: usize) -> SynthesisPlan {
         let cells = count.saturating_mul(2 * closed_form::reach(self.tolerance));
         let holds = self.precision == Precision::F64 || count <= max_f32_reflectors(Algorithm::ClosedForm);
         if cells <= MAX_CLOSED_FORM_CELLS && holds && closed_form::applies(radar) {
@@ -64,14 +64,14 @@ impl Plan {
         }
     }
 
-    pub fn with_algorithm(self, algorithm: Algorithm) -> Plan {
-        Plan { algorithm, ..self }
+    pub fn with_algorithm(self, algorithm: Algorithm) -> SynthesisPlan {
+        SynthesisPlan { algorithm, ..self }
     }
 }
 
 /// The size of a sum over reflectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sum {
+pub struct SumSize {
     pub algorithm: Algorithm,
     pub reflectors: usize,
     /// Bound of the sum of their amplitudes ([`amplitude_bound`]).
@@ -79,7 +79,7 @@ pub struct Sum {
 }
 
 /// The reason for which f32 must not be used for `sum`: too large or too small amplitudes, or too many reflectors. `None` where it may be used.
-pub fn refusal(sum: &Sum) -> Option<&'static str> {
+pub fn refusal(sum: &SumSize) -> Option<&'static str> {
     if !holds(sum.amplitude) {
         Some("f64 although f32 was asked for: f32 can't hold such amplitudes")
     } else if sum.reflectors > max_f32_reflectors(sum.algorithm) {
@@ -114,8 +114,10 @@ pub fn amplitude_bound<'a>(radar: &Radar, sources: impl Into<Sources<'a>>) -> f6
 }
 
 /// [`amplitude_bound`] of each of these objects.
-pub fn amplitude_bounds<'a>(radar: &Radar, seen: impl Iterator<Item = &'a SeenObject>) -> Vec<f64> {
-    let seen: Vec<&SeenObject> = seen.collect();
-    let bound = |one: &&SeenObject| amplitude_bound(radar, &Echoing::seen(radar, std::slice::from_ref(*one)));
+pub fn amplitude_bounds<'a>(radar: &Radar, seen: impl Iterator<Item = &'a ObjectWithOccluders>) -> Vec<f64> {
+    let seen: Vec<&ObjectWithOccluders> = seen.collect();
+    let bound = |one: &&ObjectWithOccluders| {
+        amplitude_bound(radar, &EchoSources::of_objects(radar, std::slice::from_ref(*one)))
+    };
     seen.par_iter().with_min_len(4).map(bound).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::simd::{LANES_F32, LANES_F64};
 use super::synthesis::Synthesis;
-use super::{Algorithm, BeatSignal, Plan, Precision, direct, exact};
+use super::{Algorithm, BeatSignal, Precision, SynthesisPlan, direct, exact};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Sources;
 use crate::task::Task;
@@ -11,7 +11,7 @@ use num_complex::Complex64;
 use std::ops::Range;
 
 /// Runs a plan: the whole array's beat signal, noiseless. The scatterers must have passed [`crate::scene::Scene::validate`].
-pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: &Plan) -> BeatSignal {
+pub fn beat_signal<'a>(radar: &Radar, sources: impl Into<Sources<'a>>, plan: &SynthesisPlan) -> BeatSignal {
     let sources = sources.into();
     match plan.algorithm {
         Algorithm::Direct => direct::beat_signal(radar, sources),
@@ -28,7 +28,7 @@ pub(super) fn samples_of(
     radar: &Radar,
     array: &BuiltArray,
     sources: Sources<'_>,
-    plan: &Plan,
+    plan: &SynthesisPlan,
     elements: Range<usize>,
     task: &Task,
 ) -> Array2<Complex64> {
@@ -51,10 +51,10 @@ mod tests {
     use super::super::simd::Simd;
     use super::*;
     use crate::radar::Carrier;
-    use crate::scattering::Echoing;
+    use crate::scattering::EchoSources;
     use crate::scene::{Block, Object, Point, Post, Reflector, Scene, Wall};
 
-    fn worst_error(radar: &Radar, reflectors: &[Reflector], chosen: &Plan) -> f64 {
+    fn worst_error(radar: &Radar, reflectors: &[Reflector], chosen: &SynthesisPlan) -> f64 {
         let signal = beat_signal(radar, reflectors, chosen);
         let mut worst = 0.0f64;
         let mut peak = 0.0f64;
@@ -80,14 +80,14 @@ mod tests {
             for simd in Simd::available() {
                 for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
                     for algorithm in [Algorithm::Split, Algorithm::Gridded] {
-                        let plan = Plan::cheapest(count, 1.0, tolerance);
-                        let chosen = Plan { simd, algorithm, ..plan };
+                        let plan = SynthesisPlan::cheapest(count, 1.0, tolerance);
+                        let chosen = SynthesisPlan { simd, algorithm, ..plan };
                         let error = worst_error(&radar, &reflectors, &chosen);
                         assert!(error < tolerance, "{count} reflectors, {chosen:?}: {error:e}");
                     }
                 }
             }
-            let best = Plan::cheapest(count, 1.0, BEST_TOLERANCE);
+            let best = SynthesisPlan::cheapest(count, 1.0, BEST_TOLERANCE);
             assert_eq!((best.algorithm, best.precision), (Algorithm::Split, Precision::F64));
             let error = worst_error(&radar, &reflectors, &best);
             assert!(error < 1e-14, "{count}: {error:e}");
@@ -109,12 +109,12 @@ mod tests {
     fn every_algorithm_keeps_its_promise_for_bodies() {
         for carrier in [Carrier::OneWay, Carrier::TwoWay] {
             let radar = Radar { elements: 64, carrier, ..Radar::default() };
-            let echoing = Echoing::of(&radar, &bodies());
+            let echoing = EchoSources::of(&radar, &bodies());
             let scale = crate::signal::plan::amplitude_bound(&radar, &echoing);
             let expected = judge::beat_signal(&radar, &echoing).samples;
             for algorithm in [Algorithm::Direct, Algorithm::Exact, Algorithm::Split, Algorithm::Gridded] {
                 for tolerance in [1e-6, 1e-12] {
-                    let plan = Plan::cheapest(echoing.len(), 1.0, tolerance).with_algorithm(algorithm);
+                    let plan = SynthesisPlan::cheapest(echoing.len(), 1.0, tolerance).with_algorithm(algorithm);
                     let found = beat_signal(&radar, &echoing, &plan).samples;
                     let worst = (&found - &expected).iter().fold(0.0f64, |m, v| m.max(v.norm())) / scale;
                     let bound = if algorithm == Algorithm::Direct { 1e-10 } else { tolerance };
@@ -139,8 +139,8 @@ mod tests {
         ];
         for reflectors in scenes {
             let count = reflectors.len();
-            let best = Plan::cheapest(count, 1.0, 1e-14);
-            let coarse = Plan::cheapest(count, 1.0, 1e-6);
+            let best = SynthesisPlan::cheapest(count, 1.0, 1e-14);
+            let coarse = SynthesisPlan::cheapest(count, 1.0, 1e-6);
             assert_eq!((best.precision, coarse.precision), (Precision::F64, Precision::F32));
             let expected = beat_signal(&radar, &reflectors, &best).samples;
             let found = beat_signal(&radar, &reflectors, &coarse).samples;

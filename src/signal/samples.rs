@@ -64,7 +64,7 @@ impl TwoEnds {
     }
 
     /// Whether each element was measured, those of the first end first. The samples of dead and missing elements are zeros.
-    pub fn hears(&self) -> Vec<bool> {
+    pub fn measured_elements(&self) -> Vec<bool> {
         let elements = self.first.outer_iter().chain(self.last.outer_iter());
         elements.map(|samples| samples.iter().any(|v| v.norm_sqr() > 0.0)).collect()
     }

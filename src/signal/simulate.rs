@@ -3,9 +3,9 @@
 use super::built::{simulate_built_for, tolerance};
 use super::plan::amplitude_bound;
 use super::run::samples_of;
-use super::{BeatSignal, Floor, Made, Plan, TwoEnds, Unfinished, floor};
+use super::{BeatSignal, Floor, SimulationError, SimulationResult, SynthesisPlan, TwoEnds, floor};
 use crate::radar::{BuiltArray, End, Radar};
-use crate::scattering::Echoing;
+use crate::scattering::EchoSources;
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
 
@@ -17,26 +17,38 @@ use crate::task::Task;
 /// # Errors
 /// [`SceneError`] when the scene can't be simulated.
 pub fn simulate(radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Result<BeatSignal, SceneError> {
-    simulate_for(&Task::default(), radar, scene, floor, seed).map_err(Unfinished::of_scene)
+    simulate_for(&Task::default(), radar, scene, floor, seed).map_err(SimulationError::of_scene)
 }
 
 /// As [`simulate`].
 /// # Errors
-/// [`Unfinished`] when the scene can't be simulated, and after a cancellation of `task`.
-pub fn simulate_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<BeatSignal> {
+/// [`SimulationError`] when the scene can't be simulated, and after a cancellation of `task`.
+pub fn simulate_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+) -> SimulationResult<BeatSignal> {
     simulate_built_for(task, radar, scene, &scene.disturbances.elements_of(radar), floor, seed)
 }
 
 /// The two ends of [`simulate`]'s signal, bit for bit, without the elements between them.
 /// # Errors
-/// [`Unfinished`] when the scene can't be simulated, and after a cancellation of `task`.
-pub fn simulate_ends_for(task: &Task, radar: &Radar, scene: &Scene, floor: Floor, seed: u64) -> Made<TwoEnds> {
+/// [`SimulationError`] when the scene can't be simulated, and after a cancellation of `task`.
+pub fn simulate_ends_for(
+    task: &Task,
+    radar: &Radar,
+    scene: &Scene,
+    floor: Floor,
+    seed: u64,
+) -> SimulationResult<TwoEnds> {
     if !scene.disturbances.is_none_to(radar) {
         return Ok(simulate_for(task, radar, scene, floor, seed)?.two_ends(radar));
     }
     scene.validate(radar)?;
-    let echoing = Echoing::of(radar, scene);
-    let plan = Plan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
+    let echoing = EchoSources::of(radar, scene);
+    let plan = SynthesisPlan::cheapest(echoing.len(), amplitude_bound(radar, &echoing), tolerance(floor));
     let variance = floor::noise_variance(radar, &echoing, floor);
     let [first, last] = End::BOTH.map(|end| {
         let elements = radar.end_range(end);

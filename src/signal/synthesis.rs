@@ -8,7 +8,7 @@ use super::lane_fft::LaneFft;
 use super::phase::EchoModel;
 use super::plan::BEST_TOLERANCE;
 use super::simd::{ComplexLanes, Kernel, Lanes, Real, Simd};
-use super::{Algorithm, Plan, Rows, split};
+use super::{Algorithm, Rows, SynthesisPlan, split};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::Sources;
 use crate::task::Task;
@@ -73,7 +73,7 @@ pub struct Synthesis<T: Real, const W: usize> {
     model: EchoModel,
     radar: Radar,
     array: BuiltArray,
-    plan: Plan,
+    plan: SynthesisPlan,
     method: Method<T>,
     window: Vec<T>,
     fft: LaneFft<T>,
@@ -168,7 +168,7 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
 impl<T: Real, const W: usize> Synthesis<T, W> {
     /// Prepares `plan` for `radar`. [`Algorithm::Gridded`] grids and [`Algorithm::ClosedForm`] makes profiles directly; every other
     /// algorithm is evaluated by phasor split.
-    pub fn new(radar: &Radar, plan: Plan) -> Self {
+    pub fn new(radar: &Radar, plan: SynthesisPlan) -> Self {
         let scale = (radar.samples as f64).sqrt().recip();
         Synthesis {
             model: EchoModel::new(radar),
@@ -196,7 +196,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
         BlockEchoes::new(&self.model, sources, |lane| self.array.pair(&self.radar, first_element + lane))
     }
 
-    pub fn plan(&self) -> &Plan {
+    pub fn plan(&self) -> &SynthesisPlan {
         &self.plan
     }
 
@@ -292,7 +292,7 @@ impl<T: Real, const W: usize> Synthesis<T, W> {
 
 /// Windowed range profiles of white noise of unit variance: [`super::floor::unit_noise`] of every element.
 pub fn unit_noise_profiles<T: Real, const W: usize>(radar: &Radar, seed: u64) -> BlockProfiles<T, W> {
-    let synthesis = Synthesis::<T, W>::new(radar, Plan::cheapest(0, 0.0, BEST_TOLERANCE));
+    let synthesis = Synthesis::<T, W>::new(radar, SynthesisPlan::cheapest(0, 0.0, BEST_TOLERANCE));
     let mut out = BlockProfiles::silence(radar);
     out.touched = Rows::all(radar.samples);
     let bins = radar.samples;

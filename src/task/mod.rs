@@ -1,6 +1,6 @@
 //! Long work: progress, cancellation, and a worker thread.
 //!
-//! Uses nothing else of the crate, so that everything may use it.
+//! Uses only [`platform`](crate::platform) of the crate, so that nearly everything may use it.
 
 mod handle;
 mod worker;

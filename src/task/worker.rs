@@ -161,10 +161,10 @@ impl<Q: Send + 'static, T: Send + 'static> Worker<Q, T> {
         }
     }
 
-    /// Cancels the running request if it began longer ago than `patience`; returns whether it did. A waiting one stays.
-    pub fn cancel_older_than(&self, patience: Duration) -> bool {
+    /// Cancels the running request if it began longer ago than `max_age`; returns whether it did. A waiting one stays.
+    pub fn cancel_older_than(&self, max_age: Duration) -> bool {
         match &self.shared.lock().running {
-            Some(running) if running.began.elapsed() > patience => {
+            Some(running) if running.began.elapsed() > max_age => {
                 running.task.cancel();
                 true
             }

@@ -67,7 +67,7 @@ pub fn delay_seconds(range_metres: f64) -> f64 {
 }
 
 /// The beats of all objects at a pair of antennas, nearest first: one for each reflector of a line, a cluster or a body.
-pub fn heard(radar: &Radar, scene: &Scene, element: usize) -> Vec<BeatTone> {
+pub fn beat_tones(radar: &Radar, scene: &Scene, element: usize) -> Vec<BeatTone> {
     let pair = radar.pair(element);
     let tone = |(object, r): (usize, Reflector)| {
         let ways = pair.places_metres().map(|[x, y]| ((r.x_metres - x).hypot(r.y_metres - y), r.y_metres - y));
@@ -111,7 +111,7 @@ mod tests {
             let profiles = range_transform(&radar, &simulate(&radar, &scene, Floor::Exact, 0).unwrap()).profiles;
             for element in [0, 40] {
                 let chirp = ChirpShape::of(&radar);
-                let [one] = heard(&radar, &scene, element)[..] else { panic!("one object") };
+                let [one] = beat_tones(&radar, &scene, element)[..] else { panic!("one object") };
                 let bin = chirp.range_bin(chirp.beat_hz(one.range_metres));
                 let row = profiles.row(element);
                 let peak = (0..512).max_by(|a, b| row[*a].norm().total_cmp(&row[*b].norm())).unwrap();

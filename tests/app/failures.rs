@@ -2,7 +2,7 @@
 
 use crate::session::*;
 use apertura::evaluate::rows::Row;
-use apertura::evaluate::sets::Folder;
+use apertura::evaluate::sets::SceneFolder;
 use apertura::evaluate::worsen::WorseningSearch;
 
 fn methods() -> Vec<Arc<dyn Reconstructor>> {
@@ -87,8 +87,8 @@ fn the_worst_row_can_be_found_changed_kept() {
 
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
     let missed = format!("{} missed", row.missed);
-    let fates = s.app.query_all_by_label_contains(&missed).count();
-    assert!(row.missed == 0 || fates == 2, "those of the row, and those of now: {fates}");
+    let verdicts = s.app.query_all_by_label_contains(&missed).count();
+    assert!(row.missed == 0 || verdicts == 2, "those of the row, and those of now: {verdicts}");
 
     let at = s.handle("point 1: move");
     s.drag(at, vec2(25.0, 10.0), 5);
@@ -96,7 +96,7 @@ fn the_worst_row_can_be_found_changed_kept() {
     let file = s.editor().document().to_file();
     s.ask(RowsCommand::KeepScene("Moved a little.".to_owned()));
     let own = s.path("data/scenes");
-    let kept = apertura::scene::file::load(Folder::open(&own).unwrap().file(0).unwrap()).unwrap();
+    let kept = apertura::scene::file::load(SceneFolder::open(&own).unwrap().file(0).unwrap()).unwrap();
     assert_eq!((kept.scene.objects, kept.radar), (file.scene.objects, file.radar));
     assert_eq!(kept.scene.notes, "Moved a little.");
     s.ask_and_wait(Command::Rows(RowsCommand::Try(choice(Vec::new(), true))));

@@ -94,8 +94,8 @@ struct Watched {
 }
 
 impl Reconstructor for Watched {
-    fn about(&self) -> About {
-        self.method.about()
+    fn info(&self) -> MethodInfo {
+        self.method.info()
     }
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         self.asked[usize::from(request.may_follow)].fetch_add(1, SeqCst);

@@ -184,7 +184,7 @@ fn captured(s: &Session) -> PathBuf {
 }
 
 #[test]
-fn a_capture_is_opened_and_read_another_way() {
+fn a_capture_is_opened_and_reread() {
     let mut s = with_iaa();
     let path = captured(&s);
     s.ask(DocumentCommand::OpenPath(path));
@@ -193,9 +193,9 @@ fn a_capture_is_opened_and_read_another_way() {
     assert_eq!((origin(&s).frames, origin(&s).taken, s.state().radar().elements), (2, 0, 4));
     s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));
     assert_eq!(s.state().doppler_peak(), Some((11, 2)), "four loops, at rest");
-    s.ask(DocumentCommand::ReadAnotherWay(Way::Frame(1)));
+    s.ask(DocumentCommand::Reread(Way::Frame(1)));
     assert_eq!((origin(&s).frame, s.editor().document().title().as_str()), (1, "room.bin"));
-    s.ask(DocumentCommand::ReadAnotherWay(Way::Layout(1)));
+    s.ask(DocumentCommand::Reread(Way::Layout(1)));
     assert_eq!(origin(&s).taken, 1);
     s.undo();
     assert_eq!(origin(&s).taken, 0);

@@ -10,7 +10,7 @@ pub use apertura::interact::{Document, Editor, Place, SelectionMode};
 pub use apertura::maps::Normalisation;
 pub use apertura::radar::{Carrier, Convention, DecibelMilliwatts, Decibels, LayoutKind, Radar, WindowFunction};
 pub use apertura::reconstruct::{
-    About, Baseline, CAPON, IAA, MatchedFilter, ReconstructError, Reconstruction, Reconstructor, Request,
+    Baseline, CAPON, IAA, MatchedFilter, MethodInfo, ReconstructError, Reconstruction, Reconstructor, Request,
 };
 pub use apertura::scene::generate::{Generator, Kind, Purpose, Reading};
 pub use apertura::scene::{Object, Scene};
@@ -227,8 +227,8 @@ impl Stub {
 }
 
 impl Reconstructor for Stub {
-    fn about(&self) -> About {
-        About { name: "stub", description: "does as it is told", told: "", eta: 0.5 }
+    fn info(&self) -> MethodInfo {
+        MethodInfo { name: "stub", description: "does as it is told", prior_knowledge: "", eta: 0.5 }
     }
     fn knows_pairs(&self) -> bool {
         true

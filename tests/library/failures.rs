@@ -3,7 +3,7 @@
 
 use crate::prelude::*;
 use Fault::{Ghost, Merged, Missed, WrongTooth};
-use apertura::evaluate::failure::Fate;
+use apertura::evaluate::verdict::ObjectVerdict;
 use apertura::scene::presets::Preset;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,11 +45,11 @@ fn methods_fail_on_shipped_scenes_as_their_notes_say() {
         let trial = Trial::new(&Radar::default(), &scene, Floor::Thesis, Normalisation::MinMax).unwrap();
         let method = methods::by_name(name).unwrap();
         let answer = trial.ask(method.as_ref(), &Request::default()).unwrap();
-        let failures = trial.failures(&answer);
-        let merged = failures.count(|fate| matches!(fate, Fate::Merged { .. }));
-        let wrong_tooth = failures.count(|fate| matches!(fate, Fate::WrongTooth { .. }));
+        let verdicts = trial.verdicts(&answer);
+        let merged = verdicts.count(|verdict| matches!(verdict, ObjectVerdict::Merged { .. }));
+        let wrong_tooth = verdicts.count(|verdict| matches!(verdict, ObjectVerdict::WrongTooth { .. }));
         let counts =
-            [(Missed, failures.missed()), (Merged, merged), (WrongTooth, wrong_tooth), (Ghost, failures.ghosts.len())];
+            [(Missed, verdicts.missed()), (Merged, merged), (WrongTooth, wrong_tooth), (Ghost, verdicts.ghosts.len())];
         let shown: BTreeSet<Fault> = counts.into_iter().filter(|(_, count)| *count > 0).map(|(kind, _)| kind).collect();
         assert_eq!(shown, expected.iter().copied().collect(), "{id}, {name}: {counts:?}");
         let most = counts.iter().map(|(_, count)| *count).max();

@@ -293,12 +293,10 @@ fn side_lobes_of_the_wall_are_as_high_as_the_lesson_says() {
         })
     };
     let [end, _] = over_the_wall(WindowFunction::Hann);
-    taught("occlusion", &format!("{end:.0} dB below the point in input 0"));
+    taught("occlusion", &format!("lie {end:.0} dB below it in input 0"));
     let [end, whole] = over_the_wall(WindowFunction::Rectangular);
-    taught(
-        "occlusion",
-        &format!("they are {:.0} dB above it, and in the map of all 1024 elements {:.0} dB", -end, -whole),
-    );
+    taught("occlusion", &format!("Without a window the highest is {:.0} dB above it", -end));
+    taught("occlusion", &format!("the highest within 20 columns is {:.0} dB above it", -whole));
     let ratio = (x.hypot(y) / 3f64.hypot(10.0)).powi(2);
     taught("occlusion", &format!("about {ratio:.1}."));
 }

@@ -3,7 +3,7 @@
 use crate::prelude::*;
 use crate::taught::{lesson, physical, taught};
 use apertura::scattering::roughness::coherent;
-use apertura::scattering::{EchoKind, Wave, heard_in_the_middle};
+use apertura::scattering::{EchoKind, Wave, array_centre_echoes};
 
 fn scene(id: &str, step: usize) -> Scene {
     lesson(id).steps[step - 1].scene()
@@ -135,7 +135,7 @@ fn the_right_end_sees_less_by_as_much_as_its_lesson_says() {
 
 fn glint(y_metres: f64, roughness_millimetres: f64) -> f64 {
     let wall = Wall { roughness_millimetres, ..Wall::new(0.0, y_metres, 8.0, 0.0) };
-    let heard = heard_in_the_middle(&physical(), &Scene { objects: vec![Object::Wall(wall)], ..Scene::default() });
+    let heard = array_centre_echoes(&physical(), &Scene { objects: vec![Object::Wall(wall)], ..Scene::default() });
     20.0 * heard.into_iter().find(|(_, e)| e.kind == EchoKind::Glint).unwrap().1.amplitude.norm().log10()
 }
 

@@ -22,7 +22,7 @@ fn no_method_alarms_on_noise_alone() {
             let name = method.name();
             assert_eq!(answer.metrics.detection, None, "{name}: nothing is there to be detected");
             assert_eq!(answer.metrics.false_alarm, 0.0, "{name}");
-            assert!(trial.failures(&answer).ghosts.is_empty(), "{name}");
+            assert!(trial.verdicts(&answer).ghosts.is_empty(), "{name}");
         }
     }
 }

@@ -4,7 +4,7 @@ use super::pairs::with_gaps;
 use crate::prelude::*;
 use apertura::evaluate::squared_error;
 use apertura::radar::BuiltArray;
-use apertura::scattering::Echoing;
+use apertura::scattering::EchoSources;
 use ndarray::{Axis, s};
 
 const C: f64 = 299_792_458.0;
@@ -93,7 +93,7 @@ fn points_with_bodies_are_what_double_double_arithmetic_gives() {
     let bent_back = [bent(&straight(3, 4), 0.04), bent(&straight(4, 5), -0.02)];
     for radar in [straight(3, 4), straight(4, 5)].into_iter().chain(bent_back) {
         for scene in [bodies(), Scene::of_points((0..9).map(|i| (f64::from(i) - 4.0, 1.5 + 0.7 * f64::from(i))))] {
-            let judged = judge::beat_signal(&radar, &Echoing::of(&radar, &scene));
+            let judged = judge::beat_signal(&radar, &EchoSources::of(&radar, &scene));
             for floor in [Floor::Exact, Floor::Thesis] {
                 let off = largest_difference(&judged, &simulate(&radar, &scene, floor, 0).unwrap());
                 assert!(off < 1e-10, "over {floor}: {off:e}");

@@ -3,7 +3,7 @@
 
 use crate::prelude::*;
 use apertura::evaluate::echoes::EchoCounts;
-use apertura::evaluate::rows::{lacks, merge};
+use apertura::evaluate::rows::{merge, missing_rows};
 use apertura::reconstruct::BARTLETT;
 use apertura::scene::{Polygon, file};
 use apertura::share::SharedScene;
@@ -171,7 +171,7 @@ fn rows_of_format_1_are_read_with_all_that_they_say() {
     assert_eq!(rows[2].echoes, Some(EchoCounts([1, 1, 3, 0, 1, 0])));
     assert_eq!(rows[2].echoes_found, Some(EchoCounts([0, 0, 1, 0, 0, 0])));
     assert_eq!((rows[4].floor.unwrap().to_string().as_str(), rows[4].min_range_metres), ("dbm=-20", None));
-    assert_eq!(lacks(&rows), []);
+    assert_eq!(missing_rows(&rows), []);
 }
 
 #[test]
@@ -190,8 +190,8 @@ fn shards_of_format_1_are_merged_with_each_other_alone() {
     let shards =
         || vec![("0.csv".to_owned(), rows("rows-shard-0.csv")), ("1.csv".to_owned(), rows("rows-shard-1.csv"))];
     let merged = merge(shards()).unwrap();
-    assert_eq!((merged.len(), lacks(&merged)), (8, Vec::new()));
-    assert_eq!(lacks(&rows("rows-shard-0.csv"))[0].to_string(), "set 1, baseline: 2 of 4 scenes (shard 1/2)");
+    assert_eq!((merged.len(), missing_rows(&merged)), (8, Vec::new()));
+    assert_eq!(missing_rows(&rows("rows-shard-0.csv"))[0].to_string(), "set 1, baseline: 2 of 4 scenes (shard 1/2)");
     let sets = [SceneSet::Generated(Kind::Set1)];
     let now = Campaign { count: 4, ..Campaign::default() }.empty_rows(&sets, &[&Baseline, &BARTLETT]).unwrap();
     let with_now = [shards(), vec![("now.csv".to_owned(), now[0].clone())]].concat();

@@ -10,7 +10,7 @@ const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const quiet = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 const software = ["--enable-unsafe-swiftshader", "--use-gl=angle", "--use-angle=swiftshader"];
 
-export const PATIENCE_MILLISECONDS = 120000;
+export const MAX_WAIT_MILLISECONDS = 120000;
 export const AUTOSAVE = "/storage/autosave.toml";
 export const DESK = { width: 1440, height: 900 };
 
@@ -32,7 +32,7 @@ export async function open(browser, where = "", { context = null, options = {}, 
   page.on("pageerror", (e) => told.push(String(e)));
   page.on("request", (r) => asked.push(r.url()));
   await page.goto(at + where);
-  await page.waitForFunction(() => document.getElementById("cover").hidden, null, { timeout: PATIENCE_MILLISECONDS });
+  await page.waitForFunction(() => document.getElementById("cover").hidden, null, { timeout: MAX_WAIT_MILLISECONDS });
   await page.waitForTimeout(2000);
   return { context, page, told, asked };
 }
@@ -48,7 +48,7 @@ export async function drag(page, from, to, steps = 5) {
 }
 
 export async function autosave(page) {
-  await page.waitForFunction((key) => localStorage.getItem(key), AUTOSAVE, { timeout: PATIENCE_MILLISECONDS });
+  await page.waitForFunction((key) => localStorage.getItem(key), AUTOSAVE, { timeout: MAX_WAIT_MILLISECONDS });
   return page.evaluate((key) => localStorage.getItem(key), AUTOSAVE);
 }
 
@@ -72,7 +72,7 @@ export async function run(page, name) {
 
 // The file that a command exports.
 export async function exported(page, name) {
-  const download = page.waitForEvent("download", { timeout: PATIENCE_MILLISECONDS });
+  const download = page.waitForEvent("download", { timeout: MAX_WAIT_MILLISECONDS });
   await run(page, name);
   return (await download).path();
 }

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { test } from "node:test";
-import { launch, PATIENCE_MILLISECONDS, address } from "./browser.mjs";
+import { launch, MAX_WAIT_MILLISECONDS, address } from "./browser.mjs";
 
 const MOST = 1.4;
 
@@ -19,7 +19,7 @@ test("the first maps are there soon after the page is opened", { skip: !process.
   const began = performance.now();
   await page.goto(address);
   let bytes = 0;
-  while (bytes < BYTES_OF_A_MAP && performance.now() - began < PATIENCE_MILLISECONDS) {
+  while (bytes < BYTES_OF_A_MAP && performance.now() - began < MAX_WAIT_MILLISECONDS) {
     bytes = (await page.screenshot({ clip: TARGET })).length;
   }
   const milliseconds = performance.now() - began;
@@ -33,7 +33,7 @@ test("the page takes little longer on one thread than the native program", { ski
   const page = await browser.newPage();
   await page.goto(`${address}?measure`);
   const told = () => document.getElementById("message").textContent.trim();
-  await page.waitForFunction(() => document.getElementById("message").textContent.trim().startsWith("["), null, { timeout: PATIENCE_MILLISECONDS });
+  await page.waitForFunction(() => document.getElementById("message").textContent.trim().startsWith("["), null, { timeout: MAX_WAIT_MILLISECONDS });
   const ours = JSON.parse(await page.evaluate(told));
   await browser.close();
   const env = { ...process.env, RAYON_NUM_THREADS: "1", APERTURA_SIMD: "portable" };

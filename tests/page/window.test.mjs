@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
-import { address, autosave, BESIDE, drag, exported, launch, launchWithoutGraphics, open, PATIENCE_MILLISECONDS, plainAddress, POST, run } from "./browser.mjs";
+import { address, autosave, BESIDE, drag, exported, launch, launchWithoutGraphics, open, MAX_WAIT_MILLISECONDS, plainAddress, POST, run } from "./browser.mjs";
 
 let browser;
 before(async () => {
@@ -39,7 +39,7 @@ test("two tabs keep copies of their own", async () => {
   const first = await autosave(page);
   const second = await open(browser, "", { context });
   await run(second.page, "Add point");
-  await second.page.waitForFunction(() => localStorage.getItem("/storage/autosave-2.toml"), null, { timeout: PATIENCE_MILLISECONDS });
+  await second.page.waitForFunction(() => localStorage.getItem("/storage/autosave-2.toml"), null, { timeout: MAX_WAIT_MILLISECONDS });
   assert.equal(await autosave(page), first);
   await context.close();
 });
@@ -124,6 +124,6 @@ test("without WebGL there is a sentence", async () => {
   const bare = await launchWithoutGraphics();
   const page = await bare.newPage();
   await page.goto(address);
-  await page.waitForFunction(() => document.getElementById("message").textContent.includes("WebGL"), null, { timeout: PATIENCE_MILLISECONDS });
+  await page.waitForFunction(() => document.getElementById("message").textContent.includes("WebGL"), null, { timeout: MAX_WAIT_MILLISECONDS });
   await bare.close();
 });

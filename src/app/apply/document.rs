@@ -33,7 +33,7 @@ pub fn apply(state: &mut State, jobs: &mut Jobs, command: DocumentCommand) -> Re
         DocumentCommand::Discard(id) => state.editor.discard(id),
         DocumentCommand::Preset(index) => open_preset(state, index)?,
         DocumentCommand::Recording(index) => open_shipped_recording(state, index)?,
-        DocumentCommand::ReadAnotherWay(way) => read_another_way(state, way),
+        DocumentCommand::Reread(way) => reread(state, way),
         DocumentCommand::ShowFrame(frame) => show_frame(state, jobs, frame),
         DocumentCommand::RandomScene(kind) => open_random_scene(state, kind),
         DocumentCommand::SetNextRandom { seed, number } => {
@@ -94,7 +94,7 @@ pub fn opened(state: &mut State) {
 
 /// Selects a method that takes the radar of the document on screen, or the layout in use, where the method in use doesn't. A notice tells the user.
 pub fn select_usable_method(state: &mut State) {
-    fit_layout(state);
+    select_method_for_layout(state);
     if state.settings.layout.is_some() {
         return;
     }
@@ -108,7 +108,7 @@ pub fn select_usable_method(state: &mut State) {
 
 /// Selects a method that takes the layout in use, where the method in use doesn't. Where the document on screen lacks elements of the layout, the two
 /// ends are used in its place. A notice tells the user of either change.
-pub fn fit_layout(state: &mut State) {
+pub fn select_method_for_layout(state: &mut State) {
     let Some(kind) = &state.settings.layout else { return };
     let has_ends_alone = state.editor.document().recording().is_some_and(|recording| recording.signal().is_none());
     let layout = match kind.numbers(state.radar()) {
@@ -176,7 +176,7 @@ fn open_shipped_recording(state: &mut State, index: usize) -> Result<(), String>
 }
 
 /// Reads the file of the recording on screen with another layout, frame or board. After an error the recording stays as it is.
-fn read_another_way(state: &mut State, way: Way) {
+fn reread(state: &mut State, way: Way) {
     let Some(origin) = state.editor.document().recording().and_then(|r| r.origin.clone()) else { return };
     let read = match way {
         Way::Layout(taken) => origin.with(taken, 0),
@@ -186,7 +186,7 @@ fn read_another_way(state: &mut State, way: Way) {
     };
     match read {
         Ok(recording) => {
-            let Some(document) = state.editor.document().read_another_way(recording) else { return };
+            let Some(document) = state.editor.document().reread(recording) else { return };
             if matches!(way, Way::Frame(_)) {
                 state.editor.open_frame(document);
             } else {
@@ -210,7 +210,7 @@ fn show_frame(state: &mut State, jobs: &mut Jobs, frame: LiveFrame) {
     }
     let on_screen = state.editor.document();
     let is_same_capture = on_screen.recording().is_some_and(|shown| is_live(shown, &config));
-    match on_screen.read_another_way(recording).filter(|_| is_same_capture) {
+    match on_screen.reread(recording).filter(|_| is_same_capture) {
         Some(document) => state.editor.open_frame(document),
         None => {
             jobs.listening.stop();
@@ -223,7 +223,7 @@ fn show_frame(state: &mut State, jobs: &mut Jobs, frame: LiveFrame) {
 pub fn play_frames(state: &mut State, is_playing: bool) {
     state.timeline.play_frames(is_playing);
     if is_playing && state.frames().is_some_and(|[frame, count]| frame + 1 >= count) {
-        read_another_way(state, Way::Frame(0));
+        reread(state, Way::Frame(0));
         state.timeline.frame_took(0.0);
     }
 }
@@ -235,7 +235,7 @@ pub fn next_frame(state: &mut State, step: f64) {
         state.timeline.play_frames(false);
     } else if state.timeline.is_frame_due(step) {
         let began = Instant::now();
-        read_another_way(state, Way::Frame(frame + 1));
+        reread(state, Way::Frame(frame + 1));
         state.timeline.frame_took(began.elapsed().as_secs_f64());
     }
 }

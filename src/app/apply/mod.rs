@@ -28,7 +28,7 @@ pub fn apply(ctx: &Context, state: &mut State, jobs: &mut Jobs, command: Command
     if let Err(error) = done(ctx, state, jobs, command) {
         state.notices.error(error);
     }
-    document::fit_layout(state);
+    document::select_method_for_layout(state);
 }
 
 /// Does a command by the file of its group.

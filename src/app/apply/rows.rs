@@ -4,7 +4,7 @@ use super::work;
 use crate::app::jobs::{FailuresPlan, Jobs, is_table_of_rows, keep, tell};
 use crate::app::state::{FailureChoice, OpenedRow, Panel, RowsCommand, State};
 use crate::evaluate::campaign::Campaign;
-use crate::evaluate::sets::{Folder, SceneSet};
+use crate::evaluate::sets::{SceneFolder, SceneSet};
 use crate::platform::fs;
 use std::path::Path;
 
@@ -41,7 +41,7 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
     if choice.own {
         let folder = jobs.own_scenes(state).ok_or("There is no folder of your own scenes: choose one first.")?;
         let folder =
-            Folder::open(&folder).map_err(|e| format!("{e}\nKeep a scene first, or choose another folder."))?;
+            SceneFolder::open(&folder).map_err(|e| format!("{e}\nKeep a scene first, or choose another folder."))?;
         sets.push(SceneSet::Folder(folder));
     }
     let methods = state.methods.all.iter().filter(|m| choice.methods.contains(&m.name())).cloned().collect();

@@ -68,7 +68,7 @@ pub fn apply(state: &mut State, jobs: &Jobs, command: ViewCommand) {
 
 /// Selects the next method that takes the layout in use.
 fn next_method(state: &mut State) {
-    let layout = state.settings.heard(state.radar());
+    let layout = state.settings.layout_numbers(state.radar());
     let hears = |method: &dyn Reconstructor| {
         layout.as_ref().is_none_or(|layout| method.check_elements(state.radar(), layout).is_ok())
     };

@@ -4,7 +4,7 @@ use crate::app::state::{Cursor, State};
 use crate::app::widgets::angle_degrees;
 use crate::platform;
 use crate::radar::counted;
-use crate::scattering::{PathEcho, heard_in_the_middle};
+use crate::scattering::{PathEcho, array_centre_echoes};
 use crate::scene::Scene;
 use eframe::egui::{self, Align, Color32, Layout, TextStyle, Ui};
 use std::time::Duration;
@@ -118,7 +118,7 @@ fn echo_at(state: &State, cursor: &Cursor) -> Option<String> {
         bin < bins && column < columns
     };
     let strength = |(_, echo): &(usize, PathEcho)| echo.amplitude.norm_sqr();
-    let all = heard_in_the_middle(radar, scene).into_iter().filter(near);
+    let all = array_centre_echoes(radar, scene).into_iter().filter(near);
     let (index, echo) = all.max_by(|a, b| strength(a).total_cmp(&strength(b)))?;
     Some(format!("{} of {}", echo.kind.name(), scene.objects[index].called(index)))
 }

@@ -19,10 +19,10 @@ impl Jobs {
         let output = self.pipeline.output_of(state).filter(|o| marks_found && !o.reflectors.is_empty());
         let source = Source::of(state);
         note(output.is_some_and(|o| o.pair.origin.source != source), "what was found");
-        let judged = super::fates_of(&self.kinds, MethodSlot::First, &self.pipeline);
+        let judged = super::judged_output(&self.kinds, MethodSlot::First, &self.pipeline);
         let marks_kinds = state.settings.show_kinds && !state.is_predicting();
         note(
-            judged.is_some_and(|(fates, current)| marks_kinds && current && fates.scene != source.scene),
+            judged.is_some_and(|(judged, current)| marks_kinds && current && judged.scene != source.scene),
             "kinds of failure",
         );
         note(self.theory.is_fresh_but_old(TheoryRequest::of(state).as_ref()), "theory");

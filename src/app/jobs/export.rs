@@ -68,21 +68,26 @@ impl Exports {
         let (radar, scene) = (state.radar().clone(), state.editor.scene().clone());
         let (floor, normalisation) = (state.settings.floor, state.settings.normalisation);
         let method = state.method().cloned();
-        let layout = state.settings.heard(&radar);
+        let layout = state.settings.layout_numbers(&radar);
         let hear = move |signal: &BeatSignal| layout.map(|layout| Arc::new(signal.of_layout(&layout)));
         if let Some(recording) = seen_recording(state) {
-            let heard = recording.signal().and_then(hear);
+            let layout_samples = recording.signal().and_then(hear);
             let noise = NoisePrior::UNKNOWN;
             let snapshot_range_metres = recording.range_metres;
-            let request = Request { noise, normalisation, snapshot_range_metres, heard, ..Request::default() };
+            let request = Request { noise, normalisation, snapshot_range_metres, layout_samples, ..Request::default() };
             return self.begin(path, move |path| write_recording(path, &recording, method.as_deref(), &request));
         }
         self.begin(path, move |path| {
             let signal = signal::simulate(&radar, &scene, floor, scene.noise_seed).map_err(|e| e.to_string())?;
-            let heard = hear(&signal);
-            let request = Request { noise: floor.into(), normalisation, heard: heard.clone(), ..Request::default() };
+            let layout_samples = hear(&signal);
+            let request = Request {
+                noise: floor.into(),
+                normalisation,
+                layout_samples: layout_samples.clone(),
+                ..Request::default()
+            };
             let (output, without) = output_of(method.as_deref(), &radar, &signal.two_ends(&radar), &request);
-            let written = write_maps(path, &radar, &scene, &signal, heard.as_deref(), output.as_ref());
+            let written = write_maps(path, &radar, &scene, &signal, layout_samples.as_deref(), output.as_ref());
             written.map_err(|e| e.to_string()).map(|_| without)
         })
     }
@@ -130,8 +135,8 @@ fn write_recording(
     let (_, full) = maps_of(recording);
     let ends = recording.two_ends();
     let (output, without) = output_of(method, &recording.radar, &ends, request);
-    let heard = request.heard.as_deref();
-    let written = write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), heard, output.as_ref());
+    let layout_samples = request.layout_samples.as_deref();
+    let written = write_recorded_maps(path, &recording.radar, &ends, full.as_ref(), layout_samples, output.as_ref());
     written.map_err(|e| e.to_string()).map(|()| without)
 }
 

@@ -7,7 +7,7 @@ use crate::app::shared::Shared;
 use crate::engine::ReadyMap;
 use crate::maps::focus::layout_map;
 use crate::maps::{LogMap, Normalisation};
-use crate::signal::{self, BeatSignal, LayoutSamples, Unfinished};
+use crate::signal::{self, BeatSignal, LayoutSamples, SimulationError};
 use crate::task::Task;
 
 /// Samples and map of the elements of a layout.
@@ -21,8 +21,8 @@ impl Heard {
     /// The samples of a scene, or of a recording of every element; `None` for a recording of the two ends alone.
     ///
     /// # Errors
-    /// [`Unfinished`] when the scene can't be simulated, or `task` was cancelled.
-    pub fn of(task: &Task, source: &Source, layout: &[usize]) -> Result<Option<Heard>, Unfinished> {
+    /// [`SimulationError`] when the scene can't be simulated, or `task` was cancelled.
+    pub fn of(task: &Task, source: &Source, layout: &[usize]) -> Result<Option<Heard>, SimulationError> {
         let Source { radar, scene, recording, floor } = source;
         let elements = &scene.disturbances.elements;
         let heard = |signal: &BeatSignal| {

@@ -1,4 +1,4 @@
-//! The fate of every object in the outputs on screen, and their ghosts.
+//! The verdict on every object in the outputs on screen, and their ghosts.
 
 use super::derived::{Derived, Failure, Query};
 use super::memo::Memo;
@@ -7,8 +7,8 @@ use super::scene_maps::MapsResult;
 use super::source::Source;
 use crate::app::shared::Shared;
 use crate::app::state::{MethodSlot, Panel, State};
-use crate::evaluate::failure::{CellIndex, Failures, Footprints};
 use crate::evaluate::median_bound_metres;
+use crate::evaluate::verdict::{CellIndex, Footprints, OutputVerdicts};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Layout;
 use crate::scene::Scene;
@@ -23,7 +23,7 @@ struct Output {
     eta: f32,
 }
 
-/// A query of the fates in both outputs on screen, judged by the target.
+/// A query of the verdicts on both outputs on screen, by the target.
 #[derive(Clone, PartialEq)]
 pub struct KindsQuery {
     source: Source,
@@ -34,23 +34,23 @@ pub struct KindsQuery {
     outputs: [Option<Output>; 2],
 }
 
-/// The fate of one object, or a ghost.
+/// The cells of one object or of a ghost, which a map marks with the verdict.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Verdict {
+pub struct VerdictMark {
     pub object: Option<usize>,
     pub cells: usize,
     /// The brightest of these cells in the output.
     pub brightest: Option<CellIndex>,
 }
 
-/// The fates of all objects in one output, and its ghosts.
+/// One output with the verdicts on it.
 #[derive(Debug, Clone)]
-pub struct Fates {
+pub struct JudgedOutput {
     pub scene: Shared<Scene>,
-    /// Fate of every object, and the ghosts.
-    pub failures: Failures,
+    /// Verdict on every object, and the ghosts.
+    pub verdicts: OutputVerdicts,
     /// Every object of the scene, in its order, then every ghost.
-    pub verdicts: Vec<Verdict>,
+    pub marks: Vec<VerdictMark>,
     pub eta: f32,
     /// Median position bound of the found points, metres: no unbiased estimate is nearer on average. `None` without noise.
     pub bound_metres: Option<f64>,
@@ -58,17 +58,17 @@ pub struct Fates {
     target: Shared<RangeAngleMap>,
 }
 
-/// Fates in either method's output.
-type Made = [Option<Fates>; 2];
+/// The output of either method, judged.
+type Made = [Option<JudgedOutput>; 2];
 
 /// State kept between queries.
 #[derive(Default)]
-pub struct KeptFates {
+pub struct JudgeMemory {
     footprints: Memo<Shared<RangeAngleMap>, Footprints>,
     last: Made,
 }
 
-impl KeptFates {
+impl JudgeMemory {
     fn footprints(&mut self, query: &KindsQuery) -> &Footprints {
         let KindsQuery { source: Source { radar, scene, .. }, target, scale, .. } = query;
         self.footprints.of(target.clone(), |target| Footprints::new(radar, scene, target, *scale))
@@ -76,7 +76,7 @@ impl KeptFates {
 }
 
 impl KindsQuery {
-    /// The query of the outputs on screen, where their fates are shown and they belong to the maps.
+    /// The query of the outputs on screen, where verdicts on them are shown and they belong to the maps.
     pub fn of(state: &State, pipeline: &Pipeline) -> Option<Self> {
         let told = state.arrangement.shown().contains(&Panel::Failures) && state.row_on_screen().is_some();
         // The headline of an output is made once the scene rests, so a drag doesn't pay for it.
@@ -100,10 +100,10 @@ impl KindsQuery {
 
 impl Query for KindsQuery {
     type Value = Made;
-    type State = KeptFates;
+    type State = JudgeMemory;
     const WHAT: &'static str = "Telling kinds of failure apart";
 
-    fn compute(&self, kept: &mut KeptFates, _: &Task) -> Result<Made, Failure> {
+    fn compute(&self, kept: &mut JudgeMemory, _: &Task) -> Result<Made, Failure> {
         if self.outputs.iter().all(Option::is_none) {
             return Ok(kept.last.clone());
         }
@@ -115,62 +115,66 @@ impl Query for KindsQuery {
     }
 }
 
-/// The fates in a method's output, and whether they belong to the output on screen and it is fresh.
-pub fn fates_of<'a>(
+/// The verdicts on a method's output, and whether they belong to the output on screen and it is fresh.
+pub fn judged_output<'a>(
     kinds: &'a Derived<KindsQuery>,
     slot: MethodSlot,
     pipeline: &Pipeline,
-) -> Option<(&'a Fates, bool)> {
-    let fates = kinds.value()?.ok()?[slot as usize].as_ref()?;
+) -> Option<(&'a JudgedOutput, bool)> {
+    let judged = kinds.value()?.ok()?[slot as usize].as_ref()?;
     let pair = &pipeline.method(slot).output()?.pair;
-    let is_of_it = pair.target.as_ref() == Some(&fates.target) && pair.output == fates.output;
-    Some((fates, is_of_it && !pipeline.is_stale(slot.map())))
+    let is_of_it = pair.target.as_ref() == Some(&judged.target) && pair.output == judged.output;
+    Some((judged, is_of_it && !pipeline.is_stale(slot.map())))
 }
 
 fn judge(footprints: &Footprints, request: &KindsQuery) -> Made {
     let KindsQuery { source: Source { radar, scene, floor, .. }, target, layout, .. } = request;
     let heard = layout.as_ref().map_or_else(|| Layout::two_ends(radar), |layout| Layout::of_numbers(radar, layout));
-    let fates = |output: &Output| {
-        let failures = footprints.judge_cells(target, &output.lambda, &output.judged.above(output.eta));
+    let judged = |output: &Output| {
+        let verdicts = footprints.judge_cells(target, &output.lambda, &output.judged.above(output.eta));
         let brightest = |cells: &[CellIndex]| {
             let lambda = |cell: &CellIndex| output.lambda.lambda[*cell];
             cells.iter().copied().max_by(|a, b| lambda(a).total_cmp(&lambda(b)))
         };
-        let verdict = |object, cells: &[CellIndex]| Verdict { object, cells: cells.len(), brightest: brightest(cells) };
-        let objects = footprints.cells().iter().enumerate().map(|(index, cells)| verdict(Some(index), cells));
-        let ghosts = failures.ghosts.iter().map(|ghost| verdict(None, &ghost.cells));
-        let verdicts = objects.chain(ghosts).collect();
+        let mark =
+            |object, cells: &[CellIndex]| VerdictMark { object, cells: cells.len(), brightest: brightest(cells) };
+        let objects = footprints.cells().iter().enumerate().map(|(index, cells)| mark(Some(index), cells));
+        let ghosts = verdicts.ghosts.iter().map(|ghost| mark(None, &ghost.cells));
+        let marks = objects.chain(ghosts).collect();
         let (scene, target) = (scene.clone(), target.clone());
-        let bound_metres = median_bound_metres((radar, &heard), &scene, &failures, *floor);
-        Fates { scene, verdicts, failures, eta: output.eta, bound_metres, output: output.lambda.clone(), target }
+        let bound_metres = median_bound_metres((radar, &heard), &scene, &verdicts, *floor);
+        JudgedOutput { scene, marks, verdicts, eta: output.eta, bound_metres, output: output.lambda.clone(), target }
     };
-    request.outputs.each_ref().map(|output| output.as_ref().map(fates))
+    request.outputs.each_ref().map(|output| output.as_ref().map(judged))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::failure::{Fate, Ghost};
+    use crate::evaluate::verdict::{Ghost, ObjectVerdict};
     use crate::maps::{LogMaps, Normalisation};
     use crate::radar::Radar;
     use crate::signal::{Floor, simulate};
 
-    impl Fates {
-        /// Fates of a scene's objects of 40 cells each, and ghosts of 12 cells, at a threshold of 0.8.
-        pub fn made_up(scene: Scene, fates: &[Fate], ghosts: &[CellIndex]) -> Fates {
-            let object = |index: usize| Verdict { object: Some(index), cells: 40, brightest: None };
-            let ghost = |at: &CellIndex| Verdict { object: None, cells: 12, brightest: Some(*at) };
+    impl JudgedOutput {
+        /// Verdicts on a scene's objects of 40 cells each, and ghosts of 12 cells, at a threshold of 0.8.
+        pub fn made_up(scene: Scene, objects: &[ObjectVerdict], ghosts: &[CellIndex]) -> JudgedOutput {
+            let object = |index: usize| VerdictMark { object: Some(index), cells: 40, brightest: None };
+            let ghost = |at: &CellIndex| VerdictMark { object: None, cells: 12, brightest: Some(*at) };
             let nothing = || Shared::new(RangeAngleMap { lambda: ndarray::Array2::zeros((1, 1)) });
-            let failures = Failures {
-                objects: fates.to_vec(),
-                covered: fates.iter().map(|fate| if *fate == Fate::Found { 1.0 } else { 0.0 }).collect(),
+            let verdicts = OutputVerdicts {
+                objects: objects.to_vec(),
+                covered: objects
+                    .iter()
+                    .map(|verdict| if *verdict == ObjectVerdict::Found { 1.0 } else { 0.0 })
+                    .collect(),
                 ghosts: ghosts.iter().map(|at| Ghost { cells: vec![*at; 12] }).collect(),
             };
-            let verdicts = (0..fates.len()).map(object).chain(ghosts.iter().map(ghost)).collect();
-            Fates {
+            let marks = (0..objects.len()).map(object).chain(ghosts.iter().map(ghost)).collect();
+            JudgedOutput {
                 scene: Shared::new(scene),
-                failures,
                 verdicts,
+                marks,
                 eta: 0.8,
                 bound_metres: None,
                 output: nothing(),
@@ -199,17 +203,17 @@ mod tests {
         request.outputs[0] = Some(Output { lambda: judged.clone(), judged, eta: 0.9 });
         let KindsQuery { source: Source { radar, scene, .. }, target, scale, .. } = &request;
         let footprints = Footprints::new(radar, scene, target, *scale);
-        let [Some(fates), None] = judge(&footprints, &request) else { panic!("of the first alone") };
+        let [Some(judged), None] = judge(&footprints, &request) else { panic!("of the first alone") };
         let expected = footprints.judge(target, &output, 0.9);
-        assert_eq!(fates.failures, expected);
-        assert_eq!(fates.failures.objects, [Fate::Found, Fate::Missed]);
-        let [_, _, ghost] = fates.verdicts.as_slice() else { panic!("{:?}", fates.verdicts) };
+        assert_eq!(judged.verdicts, expected);
+        assert_eq!(judged.verdicts.objects, [ObjectVerdict::Found, ObjectVerdict::Missed]);
+        let [_, _, ghost] = judged.marks.as_slice() else { panic!("{:?}", judged.marks) };
         assert_eq!((ghost.object, ghost.cells, ghost.brightest), (None, 40, Some([402, 205])));
     }
 
     #[test]
     fn footprints_are_made_once_a_target() {
-        let (query, mut kept) = (query(Radar { elements: 64, ..Radar::default() }), KeptFates::default());
+        let (query, mut kept) = (query(Radar { elements: 64, ..Radar::default() }), JudgeMemory::default());
         assert_eq!(kept.footprints(&query).cells().len(), 2);
         let source = Source { scene: Shared::new(Scene::default()), ..query.source.clone() };
         let of_the_same_target = KindsQuery { source, ..query };

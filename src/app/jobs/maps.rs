@@ -4,16 +4,16 @@ use super::rest::Rest;
 use super::scene_maps::{MapsRequest, MapsResult, MapsState};
 use crate::engine::EngineStage;
 use crate::platform::Instant;
-use crate::signal::Unfinished;
+use crate::signal::SimulationError;
 use crate::task::{Reply, Task, Worker};
 use std::time::Duration;
 
 /// Longest time for maps of a scene that has changed; longer work is cancelled.
-const PATIENCE: Duration = Duration::from_millis(400);
+const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(400);
 
 /// The worker of the maps, its last request and its last result.
 pub struct MapsJob {
-    worker: Worker<MapsRequest, Result<MapsResult, Unfinished>>,
+    worker: Worker<MapsRequest, Result<MapsResult, SimulationError>>,
     /// The task of all requests at rest, until the scene changes.
     settling: Task,
     /// Whether maps were cancelled since the last ones arrived. The next ones are then finished, so that the user sees some.
@@ -62,9 +62,11 @@ impl MapsJob {
                     result.took = elapsed;
                     self.take_in(result, &mut on_maps);
                 }
-                Reply::Done { result: Err(Unfinished::Scene(error)), .. } => self.scene_error = Some(error.to_string()),
+                Reply::Done { result: Err(SimulationError::Scene(error)), .. } => {
+                    self.scene_error = Some(error.to_string())
+                }
                 // The newer request is on its way.
-                Reply::Done { result: Err(Unfinished::Cancelled(_)), .. } => {}
+                Reply::Done { result: Err(SimulationError::Cancelled(_)), .. } => {}
                 Reply::Panicked { message, .. } => {
                     self.waiting.get_or_insert_with(Instant::now);
                     messages.push(format!(
@@ -97,7 +99,7 @@ impl MapsJob {
 
     /// Asks for maps, unless the last request was the same; at rest if the scene rests. `held` while an object is dragged.
     pub fn ask(&mut self, mut request: MapsRequest, held: bool) {
-        let rests_in = self.rest.look(&request.source, held, Instant::now());
+        let rests_in = self.rest.time_until_rest(&request.source, held, Instant::now());
         self.rests_in = rests_in.filter(|left| !left.is_zero());
         // Maps that follow a drag come first: those at rest may take long, and would replace a waiting request.
         let follows = self.result.as_ref().is_some_and(|r| r.request.source == request.source);
@@ -121,7 +123,7 @@ impl MapsJob {
     fn make_way(&mut self, held: bool) {
         std::mem::take(&mut self.settling).cancel();
         if !held && !self.gave_up {
-            self.gave_up = self.worker.cancel_older_than(PATIENCE);
+            self.gave_up = self.worker.cancel_older_than(MAX_OUTDATED_WORK_TIME);
         }
     }
 

@@ -18,7 +18,7 @@ use std::time::Duration;
 
 /// Longest time of a reconstruction whose scene has changed since; a slower one is cancelled. During a drag none is cancelled, so that the user sees
 /// its output.
-const PATIENCE: Duration = Duration::from_millis(400);
+const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(400);
 
 /// Most entries of [`MethodJob::wanted`]. An output older than all of them is marked as outdated in any case.
 const MAX_ORIGINS: usize = 64;
@@ -29,7 +29,7 @@ pub struct Basis {
     radar: Radar,
     ends: Shared<TwoEnds>,
     /// Samples of the layout in use, in place of the two ends.
-    heard: Option<Shared<LayoutSamples>>,
+    layout_samples: Option<Shared<LayoutSamples>>,
     noise: NoisePrior,
     normalisation: Normalisation,
     snapshot_range_metres: Option<f64>,
@@ -42,7 +42,7 @@ impl Basis {
         Some(Basis {
             radar: radar.clone(),
             ends: result.frame.ends.as_ref()?.into(),
-            heard: if layout.is_some() { Some(result.heard.clone()?) } else { None },
+            layout_samples: if layout.is_some() { Some(result.layout_samples.clone()?) } else { None },
             noise: if recording.is_some() { NoisePrior::UNKNOWN } else { wanted.floor.into() },
             normalisation: wanted.normalisation,
             snapshot_range_metres: recording.as_ref().and_then(|r| r.range_metres),
@@ -55,7 +55,7 @@ impl Basis {
             normalisation: self.normalisation,
             snapshot_range_metres: self.snapshot_range_metres,
             may_follow,
-            heard: self.heard.as_deref().cloned(),
+            layout_samples: self.layout_samples.as_deref().cloned(),
             task,
         }
     }
@@ -236,7 +236,7 @@ impl MethodJob {
     }
 
     /// Gives the output the document, origin and target of new maps, where they are of the same samples. They are when a drag ends.
-    pub fn aim(&mut self, maps: &MapsResult) {
+    pub fn attach_maps(&mut self, maps: &MapsResult) {
         if let Some(output) = &mut self.output
             && Basis::of(maps).is_some_and(|basis| basis == output.basis)
         {
@@ -250,7 +250,7 @@ impl MethodJob {
     /// outdated. They draw the output, and the pictures and figures of `pictured`, which is the output or an earlier one. The time counts from the
     /// change of the scene until its pictures are there: maps, output and pictures take their time one after another. An output that became outdated
     /// while no panel drew it is dropped, since the time is unknown.
-    pub fn look(&mut self, wanted: Option<Origin>, pictured: Option<&Pair>) {
+    pub fn track_outdated_output(&mut self, wanted: Option<Origin>, pictured: Option<&Pair>) {
         let Some(wanted) = wanted else {
             (self.wanted, self.outdated) = (Vec::new(), None);
             return;
@@ -277,7 +277,7 @@ impl MethodJob {
     pub fn ask(&mut self, request: MethodRequest, held: bool) {
         if !self.last_request.as_ref().is_some_and(|last| last.serves(&request)) {
             if !held {
-                self.worker.cancel_older_than(PATIENCE);
+                self.worker.cancel_older_than(MAX_OUTDATED_WORK_TIME);
             }
             self.worker.request(request.clone());
             self.last_request = Some(request);
@@ -293,7 +293,7 @@ impl MethodJob {
     }
 
     /// Cancels the work while no panel shows its output. The next frame with such a panel sends the request again.
-    pub fn rest(&mut self) {
+    pub fn cancel_hidden_work(&mut self) {
         if self.worker.is_busy() {
             self.worker.cancel();
             self.last_request = None;
@@ -367,7 +367,7 @@ mod tests {
         let mut job = MethodJob::start("old pictures", || ());
         let mut since = |wanted: usize, pictured: usize| {
             let pair = Pair { origin: origins[pictured].clone(), target: None, output: output.clone(), doubt: None };
-            job.look(Some(origins[wanted].clone()), Some(&pair));
+            job.track_outdated_output(Some(origins[wanted].clone()), Some(&pair));
             job.outdated()
         };
         assert_eq!(since(0, 0), None);

@@ -51,7 +51,7 @@ pub use failures::{
 };
 pub use frame_log::FrameLog;
 use kinds::KindsQuery;
-pub use kinds::{Fates, Verdict, fates_of};
+pub use kinds::{JudgedOutput, VerdictMark, judged_output};
 pub use lessons::Lessons;
 pub use listening::{Listening, is_live};
 pub use memo::Memo;
@@ -85,7 +85,7 @@ pub struct Jobs {
     pub run_time: RowJob<RunTimePlan>,
     pub training: Option<Watched>,
     pub several: SeveralMaps,
-    /// The fate of every object in the outputs.
+    /// The verdict on every object in the outputs.
     pub kinds: Derived<KindsQuery>,
     /// Predictions and position bound of one reflector by formulas.
     pub theory: Derived<TheoryRequest>,

@@ -50,7 +50,7 @@ impl Pipeline {
     /// Takes in the workers' results since the last frame, and the methods' durations in `times`. Returns messages for the user.
     pub fn poll(&mut self, times: &mut MethodTimes) -> Vec<String> {
         let Pipeline { maps, methods } = self;
-        let mut messages = maps.poll(|maps| methods.iter_mut().for_each(|method| method.aim(maps)));
+        let mut messages = maps.poll(|maps| methods.iter_mut().for_each(|method| method.attach_maps(maps)));
         for method in methods {
             messages.extend(method.poll(maps.result(), times));
         }
@@ -67,11 +67,11 @@ impl Pipeline {
             let wanted = state.method_in(slot).filter(|_| read[slot as usize]).map(|method| Origin {
                 source: source.clone(),
                 normalisation: state.settings.normalisation,
-                layout: state.settings.heard(state.radar()),
+                layout: state.settings.layout_numbers(state.radar()),
                 method: method.name(),
             });
             let pictured = self.maps.result().and_then(|maps| maps.request.pairs[slot as usize].as_ref());
-            self.methods[slot as usize].look(wanted, pictured);
+            self.methods[slot as usize].track_outdated_output(wanted, pictured);
         }
         let request = self.maps_request(state, source, (pictures, read), wants);
         let is_recorded = request.source.recording.is_some();
@@ -80,7 +80,7 @@ impl Pipeline {
         for slot in MethodSlot::BOTH {
             match read[slot as usize] {
                 true => self.ask_method(state, slot, slot == MethodSlot::First && listed),
-                false if slot == MethodSlot::Second => self.methods[slot as usize].rest(),
+                false if slot == MethodSlot::Second => self.methods[slot as usize].cancel_hidden_work(),
                 false => {}
             }
         }
@@ -98,7 +98,7 @@ impl Pipeline {
         let all = wants.contains(&Want::EveryMap);
         let output = read.contains(&true);
         let settings = &state.settings;
-        let layout = settings.heard(state.radar());
+        let layout = settings.layout_numbers(state.radar());
         let on_one_scale = settings.one_scale && (map(MapKind::Input0) || map(MapKind::Input1) || all);
         let wanted = MapRequest {
             floor: settings.floor,

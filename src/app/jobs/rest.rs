@@ -5,7 +5,7 @@ use crate::platform::Instant;
 use std::time::Duration;
 
 /// Time without a change until a scene rests. It is longer than the time between two repeats of a held key, so that nudging stays as quick as dragging.
-const QUIET: Duration = Duration::from_millis(100);
+const QUIET_TIME: Duration = Duration::from_millis(100);
 
 /// The last source on screen and the time of its last change.
 #[derive(Default)]
@@ -13,7 +13,7 @@ pub struct Rest(Option<(Source, Instant)>);
 
 impl Rest {
     /// Time until the scene rests, zero once it does: `source` is compared with the last one at `now`. `None` while an object is `held`.
-    pub fn look(&mut self, source: &Source, held: bool, now: Instant) -> Option<Duration> {
+    pub fn time_until_rest(&mut self, source: &Source, held: bool, now: Instant) -> Option<Duration> {
         if held {
             self.0 = None;
             return None;
@@ -22,7 +22,7 @@ impl Rest {
             Some(still) if still.0 == *source => self.0.insert(still),
             _ => self.0.insert((source.clone(), now)),
         };
-        Some(QUIET.saturating_sub(now.saturating_duration_since(*since)))
+        Some(QUIET_TIME.saturating_sub(now.saturating_duration_since(*since)))
     }
 }
 
@@ -40,7 +40,7 @@ mod tests {
         let (mut rest, start) = (Rest::default(), Instant::now());
         move |scene, floor, held, after| {
             let source = Source { radar: Radar::default(), scene: scenes[scene].clone(), recording: None, floor };
-            rest.look(&source, held, start + after)
+            rest.time_until_rest(&source, held, start + after)
         }
     }
 
@@ -51,13 +51,13 @@ mod tests {
     #[test]
     fn a_scene_rests_a_moment_after_its_last_change_or_hold() {
         let mut look = looks();
-        assert_eq!(look(0, Floor::Thesis, false, at(0)), Some(QUIET));
+        assert_eq!(look(0, Floor::Thesis, false, at(0)), Some(QUIET_TIME));
         assert_eq!(look(0, Floor::Thesis, false, at(40)), Some(at(60)));
         assert_eq!(look(0, Floor::Thesis, false, at(100)), Some(at(0)));
-        assert_eq!(look(1, Floor::Thesis, false, at(101)), Some(QUIET), "another scene");
-        assert_eq!(look(1, Floor::Exact, false, at(150)), Some(QUIET), "another floor");
+        assert_eq!(look(1, Floor::Thesis, false, at(101)), Some(QUIET_TIME), "another scene");
+        assert_eq!(look(1, Floor::Exact, false, at(150)), Some(QUIET_TIME), "another floor");
         assert_eq!(look(1, Floor::Exact, false, at(250)), Some(at(0)));
         assert_eq!(look(1, Floor::Exact, true, at(900)), None);
-        assert_eq!(look(1, Floor::Exact, false, at(901)), Some(QUIET), "let go just now");
+        assert_eq!(look(1, Floor::Exact, false, at(901)), Some(QUIET_TIME), "let go just now");
     }
 }

@@ -17,7 +17,7 @@ use crate::maps::{Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Radar};
 use crate::recording::Recording;
-use crate::signal::{LayoutSamples, Unfinished};
+use crate::signal::{LayoutSamples, SimulationError};
 use crate::task::Task;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -92,7 +92,7 @@ pub struct MapsResult {
     /// The engine's maps of the scene, or those of a recording.
     pub frame: EngineFrame,
     /// Samples of the layout's elements, where a layout is in use.
-    pub heard: Option<Shared<LayoutSamples>>,
+    pub layout_samples: Option<Shared<LayoutSamples>>,
     /// The unexplained part of a recording, where its map is in sight, or the reason why it can't be fitted.
     pub unexplained: Option<Result<Unexplained, String>>,
     pub detected: Detected,
@@ -143,9 +143,9 @@ impl MapsState {
     ///
     /// # Errors
     /// The reason why a scene has no maps, or that `task` was cancelled.
-    pub fn work(&mut self, request: MapsRequest, task: &Task) -> Result<MapsResult, Unfinished> {
+    pub fn work(&mut self, request: MapsRequest, task: &Task) -> Result<MapsResult, SimulationError> {
         let (mut frame, unexplained) = self.frame(&request, task)?;
-        let heard = self.heard(&request, task, &mut frame)?;
+        let layout_samples = self.heard(&request, task, &mut frame)?;
         let shows = |kind| request.pictures.contains(&kind) || request.scores;
         let output =
             |slot: usize, above| request.pairs[slot].as_ref().filter(|_| shows(above)).map(|pair| &*pair.output);
@@ -177,7 +177,7 @@ impl MapsState {
         Ok(MapsResult {
             request,
             frame,
-            heard,
+            layout_samples,
             unexplained,
             detected,
             on_one_scale,
@@ -194,7 +194,7 @@ impl MapsState {
         &mut self,
         request: &MapsRequest,
         task: &Task,
-    ) -> Result<(EngineFrame, Option<Result<Unexplained, String>>), Unfinished> {
+    ) -> Result<(EngineFrame, Option<Result<Unexplained, String>>), SimulationError> {
         let MapsRequest { source: Source { radar, scene, recording, .. }, wanted, .. } = request;
         if let Some(recording) = recording {
             scene.validate(radar)?;
@@ -220,7 +220,7 @@ impl MapsState {
         request: &MapsRequest,
         task: &Task,
         frame: &mut EngineFrame,
-    ) -> Result<Option<Shared<LayoutSamples>>, Unfinished> {
+    ) -> Result<Option<Shared<LayoutSamples>>, SimulationError> {
         let Some(layout) = &request.layout else {
             self.heard = Memo::default();
             return Ok(None);

@@ -18,7 +18,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 /// Longest time for maps of an earlier request; slower ones are cancelled. During a drag all are finished, so that the user sees the movement.
-const PATIENCE: Duration = Duration::from_millis(100);
+const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(100);
 
 /// A request for one map with several variants.
 #[derive(Clone, PartialEq)]
@@ -90,7 +90,7 @@ impl SeveralMaps {
         }
         self.requests += 1;
         if state.editor.dragged().is_none() {
-            self.worker.cancel_older_than(PATIENCE);
+            self.worker.cancel_older_than(MAX_OUTDATED_WORK_TIME);
         }
         self.keep_pictures(&request.variants);
         self.worker.request((self.requests, request.clone()));
@@ -154,17 +154,17 @@ fn map(request: &Request, variant: &Variant, task: &Task) -> Result<RangeAngleMa
     let normalisation = request.normalisation;
     let elements = &request.scene.disturbances.elements;
     let numbers = request.layout.as_ref().map(|layout| layout.numbers(radar)).transpose()?;
-    let heard = numbers.map(|numbers| Arc::new(signal.of_layout(&numbers)));
+    let layout_samples = numbers.map(|numbers| Arc::new(signal.of_layout(&numbers)));
     let aperture = match request.map {
-        MapKind::Input0 if let Some(heard) = &heard => {
-            return Ok(layout_map(radar, elements, heard).log_magnitude().normalise(normalisation));
+        MapKind::Input0 if let Some(layout_samples) = &layout_samples => {
+            return Ok(layout_map(radar, elements, layout_samples).log_magnitude().normalise(normalisation));
         }
         MapKind::Input0 => Aperture::End(End::First),
         MapKind::Input1 => Aperture::End(End::Last),
         MapKind::Output => {
             let method = method.as_ref().ok_or("there is no method")?;
             let (noise, task) = ((*floor).into(), task.clone());
-            let wanted = MethodRequest { noise, normalisation, heard, task, ..MethodRequest::default() };
+            let wanted = MethodRequest { noise, normalisation, layout_samples, task, ..MethodRequest::default() };
             let made = method.reconstruct(radar, &signal.two_ends(radar), &wanted);
             return made.map(|made| made.lambda).map_err(|e| e.to_string());
         }

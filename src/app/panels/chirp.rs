@@ -7,7 +7,7 @@ use crate::app::widgets::legend::{self, Sign};
 use crate::app::widgets::{Axis, Chart, Computed, Drawn, Inks, NumberField, axes, labelled, padded};
 use crate::radar::{Carrier, Radar};
 use crate::scene::Interferer;
-use crate::theory::chirp::{BeatTone, ChirpShape, delay_seconds, heard};
+use crate::theory::chirp::{BeatTone, ChirpShape, beat_tones, delay_seconds};
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{self, CursorIcon, FontId, Rect, RichText, Sense, Stroke, Ui, vec2};
 use egui_plot::{LineStyle, PlotPoints, Points};
@@ -65,7 +65,7 @@ pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>) -> Ve
 fn contents(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>, height: f32, asked: &mut Vec<Command>) {
     let (radar, top) = (state.radar(), ui.cursor().top());
     let element = state.settings.chirp.element.min(radar.elements - 1);
-    let echoes = if state.is_recorded() { Vec::new() } else { heard(radar, state.scene(), element) };
+    let echoes = if state.is_recorded() { Vec::new() } else { beat_tones(radar, state.scene(), element) };
     let interferer = state.scene().disturbances.interferer.filter(|_| !state.is_recorded());
     let longest = delay_seconds(radar.max_range_metres());
     let chirp = ChirpShape::of(radar);

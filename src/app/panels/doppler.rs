@@ -100,7 +100,7 @@ fn timeline(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
 fn frames_played(ui: &mut Ui, state: &State, frames: [u64; 2], asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         play(ui, state, "Show one frame after another; all maps and methods follow", asked);
-        asked.extend(frame_slider(ui, frames).map(|way| DocumentCommand::ReadAnotherWay(way).into()));
+        asked.extend(frame_slider(ui, frames).map(|way| DocumentCommand::Reread(way).into()));
     });
 }
 

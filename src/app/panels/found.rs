@@ -177,7 +177,7 @@ mod tests {
     use crate::app::widgets::seen::User;
     use crate::radar::{Decibels, Radar};
     use crate::reconstruct::search::Nomp;
-    use crate::reconstruct::{Reconstructor, Refusal, Request, Tried, Verdict};
+    use crate::reconstruct::{AttemptVerdict, Proposal, Reconstructor, Refusal, Request};
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
     use egui_kittest::Harness;
@@ -260,13 +260,13 @@ mod tests {
         panel
     }
 
-    fn attempt(tried: Tried, verdict: Verdict) -> Attempt {
+    fn attempt(tried: Proposal, verdict: AttemptVerdict) -> Attempt {
         Attempt { rung: "tones", tried, gain_decades: 3.25, verdict, work: 12 }
     }
 
     #[test]
     fn attempts_are_listed_once_the_group_is_opened() {
-        let point = attempt(Tried::Point { at_metres: [3.0, 9.0] }, Verdict::Refused(Refusal::EndsDisagree));
+        let point = attempt(Proposal::Point { at_metres: [3.0, 9.0] }, AttemptVerdict::Refused(Refusal::EndsDisagree));
         let mut panel = attempts_panel(vec![point], Scene::default());
         assert!(panel.query_by_label("tones").is_none());
         panel.clicks(&[ATTEMPTS_HEADING]);

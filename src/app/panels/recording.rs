@@ -6,7 +6,7 @@ use crate::app::widgets::{Inks, NumberField, button, choice, labelled, scrolled,
 use crate::platform;
 use crate::recording::card::{CardSummary, USUAL_PORT};
 use crate::recording::raw::boards;
-use crate::recording::{Offer, Origin, Recording};
+use crate::recording::{Origin, ReadingOption, Recording};
 use eframe::egui::{self, Sense, Slider, Ui, vec2};
 use egui_plot::{Line, Plot, PlotPoints};
 
@@ -66,7 +66,7 @@ pub fn show(
             ui.add_space(6.0);
             origin.sentences.iter().for_each(|sentence| _ = ui.weak(sentence));
         }
-        asked.extend(ways.into_iter().map(|way| Command::from(DocumentCommand::ReadAnotherWay(way))));
+        asked.extend(ways.into_iter().map(|way| Command::from(DocumentCommand::Reread(way))));
     })
 }
 
@@ -125,7 +125,7 @@ fn layouts(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
 }
 
 /// Draws the powers of range bins as a small chart without axes.
-fn profile(ui: &mut Ui, number: usize, offer: &Offer, is_taken: bool) -> egui::Response {
+fn profile(ui: &mut Ui, number: usize, offer: &ReadingOption, is_taken: bool) -> egui::Response {
     let colour = if is_taken { Inks::of(ui.visuals()).selected } else { ui.visuals().weak_text_color() };
     let peak = offer.power.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let decibels = |power: &f64| (10.0 * (power / peak).max(f64::MIN_POSITIVE).log10()).max(-SHOWN_DB);
@@ -174,7 +174,7 @@ pub mod tests {
 
     /// A recording of 20 frames, whose layout is in doubt.
     pub fn some_recording() -> Recording {
-        let offer = |description: &str, log_odds: f64| Offer {
+        let offer = |description: &str, log_odds: f64| ReadingOption {
             description: description.to_owned(),
             log_odds,
             power: (0..64).map(|bin| if bin == 9 { 1e6 } else { 1.0 }).collect(),
@@ -226,7 +226,7 @@ pub mod tests {
         seen::assert_readable(panel.output());
         assert_eq!(panel.query_all_by_label("Range profile").count(), 2, "one a layout");
         panel.clicks(&["Q I in pairs"]);
-        assert_eq!(panel.state(), &[Command::Document(DocumentCommand::ReadAnotherWay(Way::Layout(1)))]);
+        assert_eq!(panel.state(), &[Command::Document(DocumentCommand::Reread(Way::Layout(1)))]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::view::MapView;
 use crate::evaluate::campaign::Campaign;
 use crate::evaluate::rows::Row;
-use crate::evaluate::sets::{Case, SceneSet};
+use crate::evaluate::sets::{SceneCase, SceneSet};
 use crate::interact::Document;
 use crate::maps::Normalisation;
 use crate::radar::Radar;
@@ -33,7 +33,7 @@ impl Conditions {
     ///
     /// # Errors
     /// The reason why there is none: its folder or file is gone.
-    pub fn case(&self, row: &Row) -> Result<Case, String> {
+    pub fn case(&self, row: &Row) -> Result<SceneCase, String> {
         let set = SceneSet::by_name(&row.set).map_err(|e| e.to_string())?;
         set.case(&self.radar, &self.campaign(row.seed).generator(), row.index).map_err(|e| e.to_string())
     }
@@ -48,7 +48,7 @@ impl Conditions {
         {
             return Document::read(path).map_err(|e| e.to_string());
         }
-        let Case { radar, scene } = self.case(row)?;
+        let SceneCase { radar, scene } = self.case(row)?;
         // The scene can be made again, so opening many rows leaves no unsaved scenes behind.
         Ok(Document::shipped(SceneFile { scene, radar }))
     }
@@ -100,7 +100,7 @@ mod tests {
         let campaign = Campaign { count: 2, ..conditions.campaign(5) };
         let sets = [SceneSet::Generated(Kind::Set2)];
         let rows = campaign.run(&sets, &[&Baseline], &Task::default(), |_| ()).unwrap();
-        let Case { radar, scene } = conditions.case(&rows[1]).unwrap();
+        let SceneCase { radar, scene } = conditions.case(&rows[1]).unwrap();
         let (floor, normalisation) = (conditions.floor, conditions.normalisation);
         let trial = crate::evaluate::trial::Trial::new(&radar, &scene, floor, normalisation).unwrap();
         let request = Request { noise: floor.into(), normalisation, ..Request::default() };

@@ -44,7 +44,7 @@ impl Methods {
 
     /// A method that makes maps from the elements of `layout`, if there is one.
     pub fn hearing(&self, radar: &Radar, layout: &[usize]) -> Option<&'static str> {
-        let preferred = crate::methods::preferred_hearing(radar, layout).name();
+        let preferred = crate::methods::preferred_for_layout(radar, layout).name();
         let mut able = self.all.iter().filter(|method| method.check_elements(radar, layout).is_ok());
         let first = able.clone().next();
         able.find(|method| method.name() == preferred).or(first).map(|method| method.name())

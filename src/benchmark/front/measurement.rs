@@ -3,7 +3,7 @@
 use super::super::times::{bare_ms, quantile};
 use super::reference::{Reference, SEED, maps_of, profile};
 use super::{Entrant, Front, FrontRequest, FrontRow, FrontTask, LambdaError, MapConvention};
-use crate::engine::{Engine, Forced, MapRequest};
+use crate::engine::{Engine, MapRequest, PlanOverrides};
 use crate::maps::tolerance;
 use crate::platform::Instant;
 use crate::radar::Radar;
@@ -11,7 +11,7 @@ use crate::scene::{Scene, SceneError};
 use crate::signal::Floor;
 use crate::signal::plan::{self, BEST_TOLERANCE};
 use crate::signal::simd::Simd;
-use crate::signal::{Plan, Precision, beat_signal};
+use crate::signal::{Precision, SynthesisPlan, beat_signal};
 
 /// Updates before the timed ones: the first two moves of a drag let the dragged reflector leave the sum at rest.
 const WARM_UP: usize = 3;
@@ -25,7 +25,7 @@ const MAX_PLAIN_REFLECTORS: usize = 1000;
 struct Job {
     task: FrontTask,
     entrant: Entrant,
-    plan: Plan,
+    plan: SynthesisPlan,
 }
 
 /// Measures every combination of `request` on `radar`, with reflectors scattered before the array.
@@ -82,7 +82,7 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
     let amplitude = plan::amplitude_bound(radar, &reference.reflectors);
     let mut jobs = Vec::new();
     for tolerance in &request.tolerances {
-        let mut planned = Plan::cheapest(count, amplitude, *tolerance);
+        let mut planned = SynthesisPlan::cheapest(count, amplitude, *tolerance);
         if MapConvention::for_tolerance(*tolerance).floor == Floor::Exact {
             planned = planned.on_few_rows(radar, count);
         }
@@ -94,12 +94,12 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
                 (Entrant::Forced(algorithm), Precision::F64) => (algorithm, &[Precision::F64]),
             };
             for precision in precisions {
-                let sum = plan::Sum { algorithm, reflectors: count, amplitude };
+                let sum = plan::SumSize { algorithm, reflectors: count, amplitude };
                 let MapConvention { floor, normalisation } = MapConvention::for_tolerance(*tolerance);
                 if tolerance::refusal(*precision, &sum, floor, normalisation).is_some() {
                     continue;
                 }
-                let plan = Plan { algorithm, precision: *precision, ..planned };
+                let plan = SynthesisPlan { algorithm, precision: *precision, ..planned };
                 jobs.extend(request.tasks.iter().map(|task| Job { task: *task, entrant: *entrant, plan }));
             }
         }
@@ -110,8 +110,8 @@ fn jobs(radar: &Radar, request: &FrontRequest, reference: &Reference) -> Vec<Job
             && count <= MAX_PLAIN_REFLECTORS
             && request.tasks.contains(&FrontTask::Scratch)
         {
-            let best = Plan::cheapest(count, amplitude, BEST_TOLERANCE);
-            let plan = Plan { tolerance: 1e-12, precision: Precision::F64, ..best };
+            let best = SynthesisPlan::cheapest(count, amplitude, BEST_TOLERANCE);
+            let plan = SynthesisPlan { tolerance: 1e-12, precision: Precision::F64, ..best };
             let plan = plan.with_algorithm(algorithm);
             jobs.push(Job { task: FrontTask::Scratch, entrant: *entrant, plan });
         }
@@ -133,7 +133,7 @@ fn fast_row(
 ) -> Result<FrontRow, SceneError> {
     let convention = MapConvention::for_tolerance(job.plan.tolerance);
     let mut engine = Engine::new(radar.clone());
-    engine.force(Forced {
+    engine.force(PlanOverrides {
         algorithm: match job.entrant {
             Entrant::Planned => None,
             Entrant::Forced(algorithm) => Some(algorithm),

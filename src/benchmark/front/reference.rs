@@ -6,7 +6,7 @@ use crate::maps::{Aperture, LogMaps, RangeAngleMap, channels_range_transform};
 use crate::radar::{End, Radar};
 use crate::scene::Reflector;
 use crate::signal::plan::BEST_TOLERANCE;
-use crate::signal::{BeatSignal, Plan, beat_signal, exact, floor, judge};
+use crate::signal::{BeatSignal, SynthesisPlan, beat_signal, exact, floor, judge};
 use ndarray::{Array2, ArrayView2};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -35,7 +35,7 @@ impl Reference {
             0..=MAX_EXACT_REFLECTORS => exact::beat_signal(radar, &reflectors),
             many => {
                 let amplitude = crate::signal::plan::amplitude_bound(radar, &reflectors);
-                beat_signal(radar, &reflectors, &Plan::cheapest(many, amplitude, BEST_TOLERANCE))
+                beat_signal(radar, &reflectors, &SynthesisPlan::cheapest(many, amplitude, BEST_TOLERANCE))
             }
         };
         let noise = UnitNoise::new(radar);

@@ -2,7 +2,7 @@
 
 use crate::benchmark::front::{MapConvention, scattered};
 use crate::commands::{CommandError, print};
-use crate::engine::{Engine, Forced, MapRequest};
+use crate::engine::{Engine, MapRequest, PlanOverrides};
 use crate::evaluate::upper_median;
 use crate::files::npz::write_npz;
 use crate::maps::channels_range_transform;
@@ -118,7 +118,7 @@ impl Reference {
     ) -> Result<Row, CommandError> {
         let scene = scattered(self.count);
         let mut engine = Engine::new(radar.clone());
-        engine.force(Forced { tolerance: Some(tolerance), ..Forced::default() });
+        engine.force(PlanOverrides { tolerance: Some(tolerance), ..PlanOverrides::default() });
         let mut times = Vec::new();
         for repeat in 0..=repeats {
             let wanted = MapRequest {

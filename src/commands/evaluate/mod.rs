@@ -12,9 +12,10 @@ use super::radar_arg::RadarArg;
 use super::{CommandError, print, print_json};
 use crate::evaluate::campaign::{Campaign, Shard};
 use crate::evaluate::rows::{
-    KeptError, Key, Lack, Row, RowFile, RunRows, WHY_NO_OTHER_FORMAT, key, lacks, merge, read_table, write_merged,
+    MissingRows, Row, RowFile, RowFileError, RowIdentity, RunRows, WHY_NO_OTHER_FORMAT, merge, missing_rows,
+    read_table, row_identity, write_merged,
 };
-use crate::evaluate::sets::{Folder, SceneSet};
+use crate::evaluate::sets::{SceneFolder, SceneSet};
 use crate::maps::cfar::Cfar;
 use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
@@ -152,7 +153,7 @@ impl Args {
 
     fn sets(&self) -> Result<Vec<SceneSet>, CommandError> {
         match &self.scenes {
-            Some(folder) => Ok(vec![SceneSet::Folder(Folder::open(folder)?)]),
+            Some(folder) => Ok(vec![SceneSet::Folder(SceneFolder::open(folder)?)]),
             None => Ok(self.set.iter().copied().map(SceneSet::Generated).collect()),
         }
     }
@@ -224,8 +225,8 @@ impl Args {
         }
     }
 
-    fn done(&self, file: Option<&RowFile>, maps: u64) -> HashSet<Key> {
-        let done: HashSet<Key> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
+    fn done(&self, file: Option<&RowFile>, maps: u64) -> HashSet<RowIdentity> {
+        let done: HashSet<RowIdentity> = file.iter().flat_map(|file| file.present.iter().map(key)).collect();
         if let (Some(path), false) = (&self.rows, done.is_empty()) {
             let (path, there) = (path.display(), done.len());
             match there as u64 == maps {
@@ -236,7 +237,7 @@ impl Args {
         done
     }
 
-    fn merged(&self) -> Result<(Vec<Row>, Vec<Lack>), CommandError> {
+    fn merged(&self) -> Result<(Vec<Row>, Vec<MissingRows>), CommandError> {
         let (mut tables, mut problems) = (Vec::new(), Vec::new());
         for path in &self.merge {
             let on_file = CommandError::on(path);
@@ -251,7 +252,7 @@ impl Args {
             tables.push((path.display().to_string(), table.rows));
         }
         let rows = merge(tables).map_err(CommandError)?;
-        let missing = lacks(&rows);
+        let missing = missing_rows(&rows);
         problems.extend(missing.iter().map(|lack| format!("missing: {lack}")));
         if rows.is_empty() || !(problems.is_empty() || self.partial) {
             let listed = problems.join("\n  ");
@@ -294,9 +295,9 @@ fn hearing<'a>(
     }
 }
 
-fn told(error: KeptError) -> CommandError {
+fn told(error: RowFileError) -> CommandError {
     let help = match error {
-        KeptError::Other { .. } => "; name another file, or write over this one with --overwrite",
+        RowFileError::Other { .. } => "; name another file, or write over this one with --overwrite",
         _ => "",
     };
     CommandError(format!("{error}{help}"))

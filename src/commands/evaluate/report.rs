@@ -3,7 +3,7 @@
 use super::by_echo::{self, EchoReport};
 use super::percent::{percent, percent_of};
 use crate::evaluate::Estimate;
-use crate::evaluate::rows::{Column, Lack, Row};
+use crate::evaluate::rows::{Column, MissingRows, Row};
 use crate::evaluate::sets::{NOISE_LEVEL, false_alarm};
 use crate::evaluate::statistics::Paired;
 use crate::evaluate::tables::{
@@ -25,7 +25,7 @@ pub struct EvaluationReport {
     reading: Option<Reading>,
     radar: Option<String>,
     layout: String,
-    missing: Vec<Lack>,
+    missing: Vec<MissingRows>,
     sets: Vec<SetReport>,
 }
 
@@ -154,7 +154,7 @@ fn names<'a>(rows: &[&'a Row], name: impl Fn(&'a Row) -> &'a str) -> Vec<&'a str
 
 impl EvaluationReport {
     /// The tables of `rows`; `missing` are the scenes that lack in the whole run.
-    pub fn of(rows: &[Row], missing: Vec<Lack>) -> EvaluationReport {
+    pub fn of(rows: &[Row], missing: Vec<MissingRows>) -> EvaluationReport {
         let all: Vec<&Row> = rows.iter().collect();
         let sets: Vec<SetReport> = names(&all, |row| &row.set)
             .into_iter()
@@ -262,7 +262,7 @@ impl SetReport {
         }
         self.write_cfar(width, text);
         for Against { first, second, paired } in &self.against {
-            let _ = writeln!(text, "{}", paired.told(first, second));
+            let _ = writeln!(text, "{}", paired.sentence(first, second));
         }
     }
 

@@ -251,7 +251,8 @@ fn what_is_cancelled_leaves_nothing_half_made() {
     let (before, after) = (Scene::of_points([(0.3, 1.0), (-0.4, 1.7)]), Scene::of_points([(0.3, 1.0), (0.1, 1.2)]));
     let cancelled = Task::default();
     cancelled.cancel();
-    let is_cancelled = |frame: Result<EngineFrame, Unfinished>| matches!(frame, Err(Unfinished::Cancelled(_)));
+    let is_cancelled =
+        |frame: Result<EngineFrame, SimulationError>| matches!(frame, Err(SimulationError::Cancelled(_)));
     // Without the samples of the ends the cancellation happens among the range profiles.
     for ends in [true, false] {
         let wanted = MapRequest { ends, ..MapRequest::default() };
@@ -315,7 +316,7 @@ fn only_rows_that_changed_are_recomputed() {
 #[test]
 fn single_precision_is_refused_below_its_rounding() {
     let scene = Scene::of_points([(0.3, 1.0), (-0.2, 1.4)]);
-    let forced = Forced { precision: Some(Precision::F32), tolerance: Some(1e-6), ..Forced::default() };
+    let forced = PlanOverrides { precision: Some(Precision::F32), tolerance: Some(1e-6), ..PlanOverrides::default() };
     let signal = |engine: &mut Engine, scene: &Scene, floor, normalisation| {
         let frame = engine.update(scene, &MapRequest { floor, normalisation, ..MapRequest::default() }).unwrap();
         said(&frame, EngineStage::Signal)

@@ -30,7 +30,7 @@ impl CampaignError {
 
 /// A method that failed on scenes of a set, so that they have no rows of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Unfit {
+pub struct MethodFailure {
     /// Name of the method.
     pub method: &'static str,
     /// The set.
@@ -41,17 +41,17 @@ pub struct Unfit {
     pub reason: String,
 }
 
-impl Unfit {
+impl MethodFailure {
     /// Adds a method's failure on a scene to `all`.
     /// # Errors
     /// Any other error, and a failure that is the cancellation of the campaign.
-    pub(super) fn note(all: &mut Vec<Unfit>, error: CampaignError) -> Result<(), CampaignError> {
+    pub(super) fn note(all: &mut Vec<MethodFailure>, error: CampaignError) -> Result<(), CampaignError> {
         match error {
             error if error.is_cancelled() => Err(error),
             CampaignError::Method { method, set, source, .. } => {
                 match all.iter_mut().find(|unfit| unfit.method == method && unfit.set == set) {
                     Some(unfit) => unfit.scenes += 1,
-                    None => all.push(Unfit { method, set, scenes: 1, reason: source.to_string() }),
+                    None => all.push(MethodFailure { method, set, scenes: 1, reason: source.to_string() }),
                 }
                 Ok(())
             }

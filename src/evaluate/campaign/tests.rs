@@ -1,5 +1,5 @@
 use super::*;
-use crate::reconstruct::{About, Baseline, ReconstructError, Reconstruction};
+use crate::reconstruct::{Baseline, MethodInfo, ReconstructError, Reconstruction};
 use crate::scene::generate::Kind;
 use crate::signal::TwoEnds;
 
@@ -33,8 +33,8 @@ fn rows_tell_what_the_detector_makes_of_every_output() {
 struct Refuses;
 
 impl Reconstructor for Refuses {
-    fn about(&self) -> About {
-        About { name: "refuses", ..Baseline.about() }
+    fn info(&self) -> MethodInfo {
+        MethodInfo { name: "refuses", ..Baseline.info() }
     }
 
     fn estimate(&self, _: &Radar, _: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -50,6 +50,6 @@ fn a_campaign_goes_on_without_a_method_that_refuses_its_scenes() {
     assert!(campaign.run(&sets, &methods, &Task::default(), |_| ()).is_err());
     let (rows, unfit) = campaign.run_fit(&sets, &methods, &Task::default(), |_, _, _| ()).unwrap();
     assert_eq!(rows.iter().map(|row| &*row.method).collect::<Vec<_>>(), ["baseline"; 2]);
-    let [Unfit { method: "refuses", set, scenes: 2, reason }] = &unfit[..] else { panic!("{unfit:?}") };
+    let [MethodFailure { method: "refuses", set, scenes: 2, reason }] = &unfit[..] else { panic!("{unfit:?}") };
     assert!(set == "set 1" && reason.contains("made for no radar"), "{reason}");
 }

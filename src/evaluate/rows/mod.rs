@@ -5,21 +5,21 @@
 mod cell;
 mod columns;
 mod file;
-mod kept;
-mod lacks;
 mod lines;
 mod merge;
+mod missing_rows;
 mod order;
+mod row_file;
 mod whole;
 
 pub use cell::{CellKind, Text, Value};
 pub use file::{RowTable, header, read_rows, read_table, row_writer, write_rows};
-pub use kept::{KeptError, Key, RowFile, RunRows, key, write_merged};
-pub use lacks::{Lack, lacks};
 pub use lines::MAX_ROWS;
 pub use merge::merge;
+pub use missing_rows::{MissingRows, missing_rows};
 pub use order::{Histogram, estimate, sorted_by};
-pub use whole::Whole;
+pub use row_file::{RowFile, RowFileError, RowIdentity, RunRows, row_identity, write_merged};
+pub use whole::WholeRun;
 
 use super::echoes::{EchoCounts, EchoTally};
 use super::shard::Shard;
@@ -129,7 +129,7 @@ columns! {
         /// The shard of the scenes that this run tried.
         #[serde(with = "by_text")]
         shard: Option<Shard> = Shard,
-        /// The sets of the whole run with their numbers of scenes, as [`Whole`] writes them.
+        /// The sets of the whole run with their numbers of scenes, as [`WholeRun`] writes them.
         whole: Text = Whole,
         /// The methods of the whole run.
         methods: Text = Methods,
@@ -198,8 +198,8 @@ impl Row {
     }
 
     /// The run of the row; `None` where the row doesn't record it.
-    pub fn whole_run(&self) -> Option<Whole> {
-        self.version.and_then(|_| Whole::read(&self.whole, &self.methods))
+    pub fn whole_run(&self) -> Option<WholeRun> {
+        self.version.and_then(|_| WholeRun::read(&self.whole, &self.methods))
     }
 
     fn check(&self) -> Result<(), (Column, &'static str)> {
@@ -233,7 +233,7 @@ impl Row {
         )?;
         expected(self.reading.is_some() == is_generated, Column::Reading, "program or text, beside a carrier")?;
         expected(self.shard.is_some(), Column::Shard, "I/N with I from 0 to N - 1")?;
-        let is_whole = Whole::read(&self.whole, &self.methods).is_some();
+        let is_whole = WholeRun::read(&self.whole, &self.methods).is_some();
         expected(
             is_whole,
             Column::Whole,

@@ -1,6 +1,6 @@
 //! The next scene to try: moved objects, turned bodies, changed echoes, new noise.
 
-use super::wanted::{Aim, Finding, WorseningSearch};
+use super::wanted::{Finding, WorseningGoal, WorseningSearch};
 use crate::scene::{Object, Scene};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -35,9 +35,9 @@ impl WorseningSearch {
     pub(super) fn candidate(&self, start: &Scene, state: &WorseningState, n: u32) -> Scene {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(u64::from(n) + 1);
-        match self.aim {
-            Aim::Worsen => self.worse_candidate(start, state, &mut rng),
-            Aim::Repair => self.repair_candidate(start, state, &mut rng),
+        match self.goal {
+            WorseningGoal::Worsen => self.worse_candidate(start, state, &mut rng),
+            WorseningGoal::Repair => self.repair_candidate(start, state, &mut rng),
         }
     }
 

@@ -8,11 +8,11 @@
 mod candidate;
 mod wanted;
 
-pub use wanted::{Aim, Finding, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
+pub use wanted::{Finding, WorseningGoal, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
 
 use super::Target;
-use super::failure::Failures;
 use super::trial::Trial;
+use super::verdict::OutputVerdicts;
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
@@ -84,7 +84,7 @@ impl WorseningSearch {
     }
 
     fn is_reached(&self, state: &WorseningState) -> bool {
-        self.aim == Aim::Repair && state.path.len() == 1 && self.is_right(&state.path[0], &state.path[0])
+        self.goal == WorseningGoal::Repair && state.path.len() == 1 && self.is_right(&state.path[0], &state.path[0])
     }
 
     fn trial(&self, scene: &Scene) -> Result<Trial, SceneError> {
@@ -107,26 +107,26 @@ impl WorseningSearch {
     ) -> Result<Finding, String> {
         let failed = |error| format!("{}: {error}", method.name());
         let answer = trial.ask(method, request).map_err(failed)?;
-        let failures = match self.measure {
-            WorseningMeasure::SquaredError => Failures::default(),
-            _ => trial.failures(&answer),
+        let verdicts = match self.measure {
+            WorseningMeasure::SquaredError => OutputVerdicts::default(),
+            _ => trial.verdicts(&answer),
         };
         let moves = start.objects.iter().zip(&scene.objects).map(|(a, b)| distance(a, b));
         let moved_metres = moves.fold(0.0, f64::max);
-        Ok(Finding { scene: scene.clone(), metrics: answer.metrics, failures, moved_metres, tries })
+        Ok(Finding { scene: scene.clone(), metrics: answer.metrics, verdicts, moved_metres, tries })
     }
 
     fn is_better(&self, found: &Finding, path: &[Finding]) -> bool {
         let [start, .., last] = path else {
             let start = &path[0];
-            return match self.aim {
-                Aim::Worsen => self.measure.of(found) > self.measure.of(start),
-                Aim::Repair => self.is_right(found, start),
+            return match self.goal {
+                WorseningGoal::Worsen => self.measure.of(found) > self.measure.of(start),
+                WorseningGoal::Repair => self.is_right(found, start),
             };
         };
-        match self.aim {
-            Aim::Worsen => self.measure.of(found) > self.measure.of(last),
-            Aim::Repair => self.is_right(found, start) && found.moved_metres < last.moved_metres,
+        match self.goal {
+            WorseningGoal::Worsen => self.measure.of(found) > self.measure.of(last),
+            WorseningGoal::Repair => self.is_right(found, start) && found.moved_metres < last.moved_metres,
         }
     }
 

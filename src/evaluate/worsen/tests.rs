@@ -1,7 +1,7 @@
 use super::*;
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::Radar;
-use crate::reconstruct::{About, ReconstructError, Reconstruction};
+use crate::reconstruct::{MethodInfo, ReconstructError, Reconstruction};
 use crate::signal::TwoEnds;
 
 fn radar() -> Radar {
@@ -12,8 +12,13 @@ fn radar() -> Radar {
 struct ShortSighted;
 
 impl Reconstructor for ShortSighted {
-    fn about(&self) -> About {
-        About { name: "short-sighted", description: "sees near objects only", told: "nothing", eta: 0.8 }
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
+            name: "short-sighted",
+            description: "sees near objects only",
+            prior_knowledge: "nothing",
+            eta: 0.8,
+        }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -27,8 +32,8 @@ impl Reconstructor for ShortSighted {
     }
 }
 
-fn search(aim: Aim, measure: WorseningMeasure) -> WorseningSearch {
-    WorseningSearch { radar: radar(), aim, measure, tries: 80, seed: 4, ..WorseningSearch::default() }
+fn search(goal: WorseningGoal, measure: WorseningMeasure) -> WorseningSearch {
+    WorseningSearch { radar: radar(), goal, measure, tries: 80, seed: 4, ..WorseningSearch::default() }
 }
 
 fn run(search: &WorseningSearch, y_metres: f64) -> WorseningOutcome {
@@ -40,7 +45,7 @@ fn run(search: &WorseningSearch, y_metres: f64) -> WorseningOutcome {
 #[test]
 fn a_search_finds_where_the_method_stops_seeing() {
     for measure in WorseningMeasure::ALL.into_iter().take(2) {
-        let search = search(Aim::Worsen, measure);
+        let search = search(WorseningGoal::Worsen, measure);
         let found = run(&search, 1.7);
         let (start, worst) = found.ends().unwrap();
         let worst = worst.unwrap();
@@ -53,14 +58,14 @@ fn a_search_finds_where_the_method_stops_seeing() {
 
 #[test]
 fn a_repair_is_the_smallest_move_that_helps() {
-    let found = run(&search(Aim::Repair, WorseningMeasure::Missed), 3.0);
+    let found = run(&search(WorseningGoal::Repair, WorseningMeasure::Missed), 3.0);
     let (start, end) = found.ends().unwrap();
     let end = end.unwrap();
-    assert_eq!((start.failures.missed(), end.failures.missed()), (1, 0));
+    assert_eq!((start.verdicts.missed(), end.verdicts.missed()), (1, 0));
     // From 3.0 m to where the bin's middle is nearer than that of half the range, 2.44 m.
     assert!((0.5..0.75).contains(&end.moved_metres), "{}", end.moved_metres);
     assert!(found.path[1..].is_sorted_by(|a, b| a.moved_metres > b.moved_metres));
-    assert_eq!(run(&search(Aim::Repair, WorseningMeasure::Missed), 1.7).tries, 0, "nothing to repair");
+    assert_eq!(run(&search(WorseningGoal::Repair, WorseningMeasure::Missed), 1.7).tries, 0, "nothing to repair");
 }
 
 #[test]
@@ -68,7 +73,7 @@ fn a_stopped_search_keeps_what_it_has() {
     let refuse = |search: &WorseningSearch, scene: &Scene| {
         search.run(scene, &ShortSighted, &Task::default(), |_, _| true).unwrap_err()
     };
-    let worsen = search(Aim::Worsen, WorseningMeasure::SquaredError);
+    let worsen = search(WorseningGoal::Worsen, WorseningMeasure::SquaredError);
     assert!(refuse(&worsen, &Scene::default()).contains("the scene is empty"));
     let far = WorseningSearch { within_metres: f64::NAN, ..worsen.clone() };
     assert!(refuse(&far, &Scene::of_points([(0.0, 2.0)])).contains("a reach of NaN m"));
@@ -82,8 +87,8 @@ fn a_stopped_search_keeps_what_it_has() {
 struct Dazzled;
 
 impl Reconstructor for Dazzled {
-    fn about(&self) -> About {
-        About { name: "dazzled", description: "is dazzled by glints", told: "nothing", eta: 0.8 }
+    fn info(&self) -> MethodInfo {
+        MethodInfo { name: "dazzled", description: "is dazzled by glints", prior_knowledge: "nothing", eta: 0.8 }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -98,14 +103,15 @@ impl Reconstructor for Dazzled {
 fn a_wall_is_turned_until_it_shines() {
     let wall = crate::scene::Wall::new(0.0, 1.6, 0.6, 25.0);
     let scene = Scene { objects: vec![crate::scene::Object::Wall(wall)], ..Scene::default() };
-    let search = WorseningSearch { within_metres: 1e-3, ..search(Aim::Worsen, WorseningMeasure::SquaredError) };
+    let search =
+        WorseningSearch { within_metres: 1e-3, ..search(WorseningGoal::Worsen, WorseningMeasure::SquaredError) };
     let found = search.run(&scene, &Dazzled, &Task::default(), |_, _| true).unwrap();
     let (start, worst) = found.ends().unwrap();
     let worst = worst.unwrap();
     assert!(worst.metrics.squared_error > start.metrics.squared_error);
     let turned = worst.scene.objects[0].turned_degrees(&scene.objects[0]);
     assert!((-45.0..-10.0).contains(&turned), "it faces the array: {turned}");
-    let repair = WorseningSearch { aim: Aim::Repair, ..search };
+    let repair = WorseningSearch { goal: WorseningGoal::Repair, ..search };
     let path = repair.run(&worst.scene, &Dazzled, &Task::default(), |_, _| true).unwrap().path;
     let holds = path.iter().all(|f| f.scene.objects[0].turned_degrees(&worst.scene.objects[0]) == 0.0);
     assert!(holds, "repairs only move");

@@ -1,7 +1,7 @@
 //! The goal of a search, and its result.
 
 use crate::evaluate::Metrics;
-use crate::evaluate::failure::{Failures, Fate};
+use crate::evaluate::verdict::{ObjectVerdict, OutputVerdicts};
 use crate::maps::Normalisation;
 use crate::radar::Radar;
 use crate::scene::Scene;
@@ -48,9 +48,9 @@ impl FromStr for WorseningMeasure {
     }
 }
 
-/// The aim of a search.
+/// The goal of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Aim {
+pub enum WorseningGoal {
     /// The worst scene.
     #[default]
     Worsen,
@@ -69,8 +69,8 @@ pub struct WorseningSearch {
     pub normalisation: Normalisation,
     /// Numbers of the elements whose samples the method gets in place of the two ends.
     pub layout: Option<Vec<usize>>,
-    /// The aim.
-    pub aim: Aim,
+    /// The goal.
+    pub goal: WorseningGoal,
     /// The measure that the search compares scenes by.
     pub measure: WorseningMeasure,
     /// Largest distance that an object may move, metres.
@@ -88,7 +88,7 @@ impl Default for WorseningSearch {
             floor: Floor::Thesis,
             normalisation: Normalisation::MinMax,
             layout: None,
-            aim: Aim::default(),
+            goal: WorseningGoal::default(),
             measure: WorseningMeasure::default(),
             within_metres: 2.0,
             tries: 256,
@@ -104,8 +104,8 @@ pub struct Finding {
     pub scene: Scene,
     /// Figures of the method's answer.
     pub metrics: Metrics,
-    /// Failures of the method's answer.
-    pub failures: Failures,
+    /// Verdicts on the method's answer.
+    pub verdicts: OutputVerdicts,
     /// Distance of the object that moved farthest, metres.
     pub moved_metres: f64,
     /// Number of tries until it was found; 0 for the start.
@@ -115,7 +115,7 @@ pub struct Finding {
 /// The result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorseningOutcome {
-    /// The start, and every scene that was better for the aim than all before it.
+    /// The start, and every scene that was better by the goal than all before it.
     pub path: Vec<Finding>,
     /// Scenes tried.
     pub tries: u32,
@@ -134,20 +134,26 @@ impl WorseningMeasure {
     pub(super) fn of(self, finding: &Finding) -> (usize, f64) {
         let count = match self {
             WorseningMeasure::SquaredError => 0,
-            WorseningMeasure::Missed => finding.failures.objects.iter().filter(|f| !f.is_right()).count(),
-            WorseningMeasure::Ghosts => finding.failures.ghosts.len(),
+            WorseningMeasure::Missed => finding.verdicts.objects.iter().filter(|f| !f.is_right()).count(),
+            WorseningMeasure::Ghosts => finding.verdicts.ghosts.len(),
         };
         (count, finding.metrics.squared_error)
     }
 }
 
-/// The number of objects of each fate, in words: "2 found, 1 missed".
-pub fn summary(failures: &Failures) -> String {
-    let count = |name: &str| failures.objects.iter().filter(|f| f.name() == name).count();
-    let fates = [Fate::Found, Fate::Missed, Fate::Merged { with: 0 }, Fate::WrongTooth { columns: 0 }, Fate::Hidden];
-    let objects = fates.into_iter().map(|f| (count(f.name()), f.name().to_owned()));
-    let alarms = if failures.ghosts.len() == 1 { "false alarm" } else { "false alarms" };
-    let ghosts = (failures.ghosts.len(), alarms.to_owned());
+/// The number of objects of each verdict, in words: "2 found, 1 missed".
+pub fn summary(verdicts: &OutputVerdicts) -> String {
+    let count = |name: &str| verdicts.objects.iter().filter(|f| f.name() == name).count();
+    let kinds = [
+        ObjectVerdict::Found,
+        ObjectVerdict::Missed,
+        ObjectVerdict::Merged { with: 0 },
+        ObjectVerdict::WrongTooth { columns: 0 },
+        ObjectVerdict::Hidden,
+    ];
+    let objects = kinds.into_iter().map(|f| (count(f.name()), f.name().to_owned()));
+    let alarms = if verdicts.ghosts.len() == 1 { "false alarm" } else { "false alarms" };
+    let ghosts = (verdicts.ghosts.len(), alarms.to_owned());
     let parts = objects.chain([ghosts]).filter(|(n, _)| *n > 0).map(|(n, name)| format!("{n} {name}"));
     parts.collect::<Vec<_>>().join(", ")
 }

@@ -246,14 +246,14 @@ mod tests {
     use crate::radar::WindowFunction;
     use crate::scene::Scene;
     use crate::signal::simd::{LANES_F32, LANES_F64};
-    use crate::signal::{Plan, exact, synthesis::Synthesis};
+    use crate::signal::{SynthesisPlan, exact, synthesis::Synthesis};
     use crate::task::Task;
 
     fn compare(radar: &Radar, simd: Simd) {
         let scene = Scene::of_points([(1.0, 6.0), (-2.0, 9.5), (4.0, 3.3)]);
         let reflectors = scene.reflectors();
         let expected = LogMaps::of_signal(radar, &exact::beat_signal(radar, &reflectors));
-        let plan = Plan { simd, ..Plan::cheapest(3, 10.0, 1e-15) };
+        let plan = SynthesisPlan { simd, ..SynthesisPlan::cheapest(3, 10.0, 1e-15) };
         macro_rules! check {
             ($t:ty, $lanes:expr, $down:expr, $error:expr) => {{
                 let mut profiles = BlockProfiles::silence(radar);
@@ -285,7 +285,7 @@ mod tests {
         let radar = Radar { elements: 64, samples: 128, end_elements: 4, ..Radar::default() };
         let reflectors = Scene::of_points([(0.1, 1.0)]).reflectors();
         let mut profiles = BlockProfiles::<f64, LANES_F64>::silence(&radar);
-        let plan = Plan::cheapest(1, 100.0, 1e-3).on_few_rows(&radar, 1);
+        let plan = SynthesisPlan::cheapest(1, 100.0, 1e-3).on_few_rows(&radar, 1);
         Synthesis::new(&radar, plan).range_profiles(&reflectors, &mut profiles, &Task::default());
         let touched = profiles.touched.clone();
         assert!(!touched.is_empty() && touched.count() < 128);

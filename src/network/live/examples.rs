@@ -98,7 +98,7 @@ pub struct Example {
     /// Radar of the scene.
     pub radar: Radar,
     /// The samples of the sparse array, with errors of its elements.
-    pub heard: EndSamples,
+    pub end_samples: EndSamples,
     /// The live network's input.
     pub input: Option<LiveInput>,
     /// Half the log10 of the mean power of the samples.
@@ -110,7 +110,7 @@ pub struct Example {
 impl Example {
     /// The samples of the two ends; `None` for a layout.
     pub fn ends(&self) -> Option<&TwoEnds> {
-        match &self.heard {
+        match &self.end_samples {
             EndSamples::Ends(ends) => Some(ends),
             EndSamples::Elements(_) => None,
         }
@@ -227,13 +227,13 @@ impl Examples {
             scene.disturbances.elements = drawn;
         }
         let measured = simulate(&scene, floor)?;
-        let heard = match layout {
+        let end_samples = match layout {
             None => EndSamples::Ends(measured.two_ends(&radar)),
             Some(layout) => EndSamples::Elements(measured.samples.select(Axis(0), layout)),
         };
         let silent = || failed("the samples are silent; put a reflector into the scene".to_owned());
-        let gain = heard.gain().ok_or_else(silent)?;
-        let input = self.input(&radar, &heard).map_err(|e| failed(e.to_string()))?;
+        let gain = end_samples.gain().ok_or_else(silent)?;
+        let input = self.input(&radar, &end_samples).map_err(|e| failed(e.to_string()))?;
         let elements = &scene.disturbances.elements;
         let is_measured =
             |target: &Target| *target == Target::Measured || (*target == Target::Calibrated && elements.is_ideal());
@@ -249,11 +249,11 @@ impl Examples {
             _ => other_map(*target).map(|map| (*target, map)),
         };
         let maps = targets.iter().map(of).collect::<Result<_, _>>()?;
-        Ok(Example { kind, floor, heard, input, gain, targets: maps, radar })
+        Ok(Example { kind, floor, end_samples, input, gain, targets: maps, radar })
     }
 
-    fn input(&self, radar: &Radar, heard: &EndSamples) -> Result<Option<LiveInput>, ReconstructError> {
-        let EndSamples::Ends(ends) = heard else { return Ok(None) };
+    fn input(&self, radar: &Radar, end_samples: &EndSamples) -> Result<Option<LiveInput>, ReconstructError> {
+        let EndSamples::Ends(ends) = end_samples else { return Ok(None) };
         match &self.extractor {
             _ if !self.has_features() => Ok(None),
             Some(extractor) => extractor.extract(ends).map(Some),

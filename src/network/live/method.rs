@@ -8,7 +8,7 @@ use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::network::domain::{Domain, is_alike};
 use crate::network::weights::{WeightFile, WeightsError};
 use crate::radar::{Decibels, Radar};
-use crate::reconstruct::{About, Family, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
+use crate::reconstruct::{Family, MethodInfo, ReconstructError, Reconstruction, Reconstructor, Request, Weights};
 use crate::reconstruct::{TrainedNoise, level_above_mean_decades, own_threshold};
 use crate::signal::TwoEnds;
 use crate::signal::simd::powers::each;
@@ -163,12 +163,16 @@ impl Reconstructor for LiveMethod {
         Family::Network
     }
 
-    fn about(&self) -> About {
+    fn info(&self) -> MethodInfo {
         let is_shipped = self.name == NAME;
-        About {
+        MethodInfo {
             name: self.name,
             description: if is_shipped { DESCRIPTION } else { "the live network with weights from a file" },
-            told: if is_shipped { TRAINED_ON } else { "what its weights were trained on, which their file says" },
+            prior_knowledge: if is_shipped {
+                TRAINED_ON
+            } else {
+                "what its weights were trained on, which their file says"
+            },
             eta: self.eta,
         }
     }

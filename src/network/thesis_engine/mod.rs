@@ -114,7 +114,7 @@ impl ThesisEngine {
 pub(super) mod tests {
     use super::*;
     use crate::network::kernels::convolution::tests::numbers;
-    use crate::network::students::Student;
+    use crate::network::trainable_network::TrainableNetwork;
     use burn::store::{BurnToPyTorchAdapter, ModuleSnapshot, SafetensorsStore};
     use burn::tensor::{Device, Tensor, TensorData};
 

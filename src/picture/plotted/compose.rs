@@ -3,7 +3,7 @@
 use super::error::Composed;
 use super::{DetectedCells, Drawing, InputMap, Panels, PictureError, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
-use crate::evaluate::failure::Footprints;
+use crate::evaluate::verdict::Footprints;
 use crate::maps::cfar::{Cfar, DETECTED};
 use crate::maps::{LogMaps, Normalisation};
 use crate::picture::ColourMap;
@@ -79,9 +79,9 @@ pub fn compose(
     let Style { floor, normalisation, .. } = *style;
     let elements = &scene.disturbances.elements;
     let maps = LogMaps::of_elements(radar, elements, signal);
-    let (heard, inputs) =
+    let (layout_samples, inputs) =
         InputMap::of(radar, elements, Some(signal), [&maps.first, &maps.last], (style.layout.as_ref(), normalisation))?;
-    let request = Request { noise: floor.into(), normalisation, heard, ..Request::default() };
+    let request = Request { noise: floor.into(), normalisation, layout_samples, ..Request::default() };
     let output = method.reconstruct(radar, &signal.two_ends(radar), &request)?;
     let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
     let reflectors = match (scene.reflector_count(), bodies) {
@@ -96,7 +96,7 @@ pub fn compose(
     let detected = style.cfar.map(detect).transpose()?;
     let eta = style.eta.unwrap_or_else(|| method.eta_of(&output));
     let above = detected.as_ref().map_or_else(|| output.lambda.above(eta), |cells| cells.output.above(DETECTED));
-    let failures = Footprints::new(radar, scene, &target, scale).judge_cells(&target, &output.lambda, &above);
+    let verdicts = Footprints::new(radar, scene, &target, scale).judge_cells(&target, &output.lambda, &above);
     let panels = Panels {
         scene,
         found: None,
@@ -107,7 +107,7 @@ pub fn compose(
         output: &output.lambda,
         method: method.name(),
         etas: [eta, style.target_eta],
-        failures: Some(&failures),
+        verdicts: Some(&verdicts),
         detected: detected.as_ref(),
         colours: style.colours,
     };

@@ -5,7 +5,7 @@ use super::lettering::Lettered;
 use super::map_panel::{MapCells, MapPanel};
 use super::scene_panel::{self, SceneContent};
 use super::{Drawing, InputMap, PictureError, text};
-use crate::evaluate::failure::Failures;
+use crate::evaluate::verdict::OutputVerdicts;
 use crate::evaluate::{Metrics, eta_text, squared_error};
 use crate::maps::cfar::{Cfar, CfarError, DETECTED};
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -38,7 +38,7 @@ pub struct Panels<'a> {
     /// The threshold eta of either method.
     pub etas: [f32; 2],
     /// The verdicts on the scene's objects, and the false alarms; `None` of a recording.
-    pub failures: Option<&'a Failures>,
+    pub verdicts: Option<&'a OutputVerdicts>,
     /// The cells that a detector found, in the place of those above the thresholds.
     pub detected: Option<&'a DetectedCells>,
     pub colours: ColourMap,
@@ -184,7 +184,7 @@ impl<'a> Panels<'a> {
     }
 
     fn told_apart(&self, target: &RangeAngleMap, judged: &Judged<'_>) -> Array2<CellVerdict> {
-        let ghosts = self.failures.map_or(&[][..], |failures| &failures.ghosts);
+        let ghosts = self.verdicts.map_or(&[][..], |verdicts| &verdicts.ghosts);
         let verdicts = told_apart(judged.output.lambda.view(), target.lambda.view(), judged.etas, ghosts);
         let drawn = self.radar.left_to_right(&verdicts);
         in_place(self.radar, drawn).unwrap_or_else(|| drawn.to_owned())
@@ -209,7 +209,7 @@ impl<'a> Panels<'a> {
             ("P_D", metrics.detection.map_or_else(|| "no target cell".to_owned(), percent)),
             ("P_FA", percent(metrics.false_alarm)),
         ];
-        let verdict = self.failures.filter(|failures| !failures.objects.is_empty()).map(Failures::verdict);
+        let verdict = self.verdicts.filter(|verdicts| !verdicts.objects.is_empty()).map(OutputVerdicts::headline);
         let below = if let Some(verdict) = verdict {
             text::line(area, (0, 0), &verdict, 23, text::Weight::Bold, &INK)?;
             32
@@ -249,7 +249,7 @@ fn strongest_of(found: &[Detection]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::failure::Fate;
+    use crate::evaluate::verdict::ObjectVerdict;
     use crate::maps::{LogMaps, Normalisation};
     use crate::picture::{encode_png, is_our_png};
     use crate::radar::{BuiltArray, Decibels};
@@ -264,8 +264,8 @@ mod tests {
         let file = presets::default_scene();
         let (array, ends) = (BuiltArray::default(), [&maps.first, &maps.last]);
         let (_, inputs) = InputMap::of(&radar, &array, None, ends, (None, Normalisation::MinMax)).unwrap();
-        let found = file.scene.objects.iter().map(|_| Fate::Found).collect();
-        let failures = Failures { objects: found, ..Failures::default() };
+        let found = file.scene.objects.iter().map(|_| ObjectVerdict::Found).collect();
+        let verdicts = OutputVerdicts { objects: found, ..OutputVerdicts::default() };
         let panels = Panels {
             scene: &file.scene,
             radar: &radar,
@@ -276,14 +276,14 @@ mod tests {
             output: &flat,
             method: "baseline",
             etas: [0.8, 0.9],
-            failures: Some(&failures),
+            verdicts: Some(&verdicts),
             detected: None,
             colours: ColourMap::Grey,
         };
         let svg = render_svg(&panels).unwrap();
         assert!(svg.trim_end().ends_with("</svg>") && svg.contains("Target"));
         let place = |text: &str| svg.find(text).unwrap();
-        assert!(place(&failures.verdict()) < place(">\nSE\n"), "the headline comes before the cells' figures");
+        assert!(place(&verdicts.headline()) < place(">\nSE\n"), "the headline comes before the cells' figures");
         assert_eq!(svg.matches("<image").count(), 7, "six maps and the one seen from above are one image each");
         let without = render_svg(&Panels { target: None, ..panels }).unwrap();
         assert_eq!(without.matches("<image").count(), 5, "no target, no map of it and of its threshold");

@@ -52,17 +52,18 @@ pub fn compose_recording(
     composed(recording, method, style, format)
 }
 
-fn request(recording: &Recording, style: &Style, heard: Option<Arc<LayoutSamples>>) -> Request {
+fn request(recording: &Recording, style: &Style, layout_samples: Option<Arc<LayoutSamples>>) -> Request {
     let (normalisation, snapshot_range_metres) = (style.normalisation, recording.range_metres);
-    Request { noise: NoisePrior::UNKNOWN, normalisation, snapshot_range_metres, heard, ..Request::default() }
+    Request { noise: NoisePrior::UNKNOWN, normalisation, snapshot_range_metres, layout_samples, ..Request::default() }
 }
 
 fn panels(recording: &Recording, method: &dyn Reconstructor, style: &Style, format: PictureFormat) -> Composed {
     let radar = &recording.radar;
     let ([first, last], full) = maps_of(recording);
     let shown = (style.layout.as_ref(), style.normalisation);
-    let (heard, inputs) = InputMap::of(radar, &BuiltArray::default(), recording.signal(), [&first, &last], shown)?;
-    let request = request(recording, style, heard);
+    let (layout_samples, inputs) =
+        InputMap::of(radar, &BuiltArray::default(), recording.signal(), [&first, &last], shown)?;
+    let request = request(recording, style, layout_samples);
     let (output, found) = reconstruct_and_find(method, radar, &recording.two_ends(), &request)?;
     let target = full.as_ref().map(|map| map.normalise(style.normalisation));
     let detect = |cfar| {
@@ -90,7 +91,7 @@ fn panels(recording: &Recording, method: &dyn Reconstructor, style: &Style, form
         output: &output.lambda,
         method: method.name(),
         etas: [style.eta.unwrap_or_else(|| method.eta_of(&output)), style.target_eta],
-        failures: None,
+        verdicts: None,
         detected: detected.as_ref(),
         colours: style.colours,
     };
@@ -107,8 +108,8 @@ fn curves(recording: &Recording, method: &dyn Reconstructor, style: &Style, form
     let ends = recording.two_ends();
     let in_decibels = Style { normalisation: Normalisation::DynamicRange(CURVE_RANGE), ..style.clone() };
     let of_layout = |layout: &LayoutKind| layout_samples(radar, recording.signal(), layout);
-    let heard = style.layout.as_ref().map(of_layout).transpose()?;
-    let request = request(recording, &in_decibels, heard);
+    let layout_samples = style.layout.as_ref().map(of_layout).transpose()?;
+    let request = request(recording, &in_decibels, layout_samples);
     let (output, found) = reconstruct_and_find(method, radar, &ends, &request)?;
     let of_samples = |name, samples: ArrayView2<'_, Complex64>, colour| Curve {
         name,

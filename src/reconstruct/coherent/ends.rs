@@ -31,7 +31,7 @@ impl Ends {
         let (mut x_metres, mut pairs) = (Vec::new(), Vec::new());
         let mut channels = Vec::new();
         let mut first_count = 0;
-        let mut hears = ends.hears().into_iter();
+        let mut hears = ends.measured_elements().into_iter();
         for end in End::BOTH {
             for (element, channel) in radar.end_range(end).zip(ends.end(end).outer_iter()) {
                 let is_in_both = end == End::Last && element < radar.end_elements;

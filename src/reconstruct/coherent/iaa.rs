@@ -2,7 +2,7 @@
 
 use super::method::{CoherentMethod, TOLD_TO_COHERENT};
 use super::model::Update;
-use crate::reconstruct::reconstructor::About;
+use crate::reconstruct::reconstructor::MethodInfo;
 
 /// The power of every direction by weighted least squares, with weights from the powers of all other directions, iterated until they agree; over
 /// the elements with samples.
@@ -12,10 +12,10 @@ use crate::reconstruct::reconstructor::About;
 /// M. Xue and J. Li, "Nonparametric missing sample spectral analysis and its applications to interrupted SAR", IEEE J. Sel. Top.
 /// Signal Process. 6, 2012.
 pub const IAA: CoherentMethod = CoherentMethod {
-    about: About {
+    about: MethodInfo {
         name: "iaa",
         description: "weighted least squares for every direction, both ends as one aperture, and the exact map of its peaks",
-        told: TOLD_TO_COHERENT,
+        prior_knowledge: TOLD_TO_COHERENT,
         eta: 0.809, // by examples/choose_eta.rs
     },
     update: Update {

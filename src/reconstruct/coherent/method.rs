@@ -11,9 +11,9 @@ use crate::reconstruct::answer::{Reconstruction, Request};
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::family::Family;
-use crate::reconstruct::hearing::Hearing;
-use crate::reconstruct::reconstructor::{About, Hears, Reconstructor};
-use crate::reconstruct::seen::no_plane_waves;
+use crate::reconstruct::noise_model::NoiseModel;
+use crate::reconstruct::polar::no_plane_waves;
+use crate::reconstruct::reconstructor::{LayoutSupport, MethodInfo, Reconstructor};
 use crate::signal::TwoEnds;
 use crate::task::Task;
 use rayon::prelude::*;
@@ -30,13 +30,13 @@ const SAME_PEAK: [f64; 2] = [1.0, 0.75];
 /// Largest length of the array, range bins: it has as many sectors.
 const MAX_SECTORS: f64 = 1000.0;
 
-/// [`About::told`](crate::reconstruct::About::told) of the coherent methods.
+/// [`MethodInfo::prior_knowledge`](crate::reconstruct::MethodInfo::prior_knowledge) of the coherent methods.
 pub(super) const TOLD_TO_COHERENT: &str = "nothing about the scene or the floor; it measures the noise itself";
 
 /// A method that finds the powers of steering vectors of both ends together.
 #[derive(Debug, Clone, Copy)]
 pub struct CoherentMethod {
-    pub(super) about: About,
+    pub(super) about: MethodInfo,
     pub(super) update: Update,
     /// Least power of a reflector over the largest of its model.
     pub(super) min_peak_part: f64,
@@ -47,7 +47,7 @@ impl Reconstructor for CoherentMethod {
         Family::Sparse
     }
 
-    fn about(&self) -> About {
+    fn info(&self) -> MethodInfo {
         self.about
     }
 
@@ -59,8 +59,8 @@ impl Reconstructor for CoherentMethod {
         1
     }
 
-    fn hears(&self) -> Hears {
-        Hears::Halves
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::Halves
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -73,7 +73,7 @@ impl Reconstructor for CoherentMethod {
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction, ReconstructError> {
         let task = &request.task;
-        let hearing = Hearing::beneath(radar, ends, request.noise);
+        let hearing = NoiseModel::beneath(radar, ends, request.noise);
         let found = if radar.samples == 1 {
             // A single sample has no ranges along which reflectors could be moved.
             gains(radar, &self.peaks(radar, ends, &hearing, task)?, ends, task)?
@@ -107,7 +107,7 @@ impl CoherentMethod {
         &self,
         radar: &Radar,
         ends: &TwoEnds,
-        hearing: &Hearing,
+        hearing: &NoiseModel,
         task: &Task,
     ) -> Result<Vec<Peak>, ReconstructError> {
         let elements = Ends::new(radar, ends);

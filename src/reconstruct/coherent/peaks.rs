@@ -80,7 +80,7 @@ pub(in crate::reconstruct) fn gains(
     ends: &TwoEnds,
     task: &Task,
 ) -> Result<Vec<Gained>, ReconstructError> {
-    let (samples, hears) = (ends.flat(), ends.hears());
+    let (samples, hears) = (ends.flat(), ends.measured_elements());
     let echoes: Vec<ArrayEcho> = peaks
         .iter()
         .map(|p| ArrayEcho::at(radar, p.range_metres, p.cos_theta).masked(&hears))

@@ -4,8 +4,8 @@ use super::ends::Ends;
 use super::sectors::{Sector, Sectors, end_beam_cos};
 use crate::radar::Radar;
 use crate::reconstruct::error::ReconstructError;
+use crate::reconstruct::polar::row_ranges_metres;
 use crate::reconstruct::profiles::range_response;
-use crate::reconstruct::seen::row_ranges_metres;
 use crate::signal::simd::{Kernel, Simd};
 use crate::task::Task;
 use num_complex::Complex64;
@@ -173,7 +173,7 @@ fn vertex(before: f64, here: f64, after: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::hearing::ends_noise_variance;
+    use crate::reconstruct::noise_model::ends_noise_variance;
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
     use crate::task::Task;

@@ -2,7 +2,7 @@
 
 use super::method::{CoherentMethod, TOLD_TO_COHERENT};
 use super::model::Update;
-use crate::reconstruct::reconstructor::About;
+use crate::reconstruct::reconstructor::MethodInfo;
 
 /// Each direction's gain has a normal distribution with its own variance. The powers are the variances of maximum likelihood; most are zero.
 ///
@@ -10,10 +10,10 @@ use crate::reconstruct::reconstructor::About;
 /// update; for directions of arrival P. Gerstoft, C. F. Mecklenbraeuker, A. Xenaki and S. Nannuru, "Multisnapshot sparse Bayesian
 /// learning for DOA", IEEE Signal Process. Lett. 23, 2016.
 pub const SBL: CoherentMethod = CoherentMethod {
-    about: About {
+    about: MethodInfo {
         name: "sbl",
         description: "the fewest directions that explain what both ends heard as one aperture, and the exact map of them",
-        told: TOLD_TO_COHERENT,
+        prior_knowledge: TOLD_TO_COHERENT,
         eta: 0.782, // by examples/choose_eta.rs
     },
     update: Update {

@@ -2,7 +2,7 @@
 
 use super::groups::BinSpans;
 use crate::radar::{End, Radar};
-use crate::reconstruct::hearing::range_energy;
+use crate::reconstruct::noise_model::range_energy;
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 

@@ -11,7 +11,7 @@ use super::sensor::Sensor;
 use super::solver::{RidgeSolver, damped_step};
 use super::work::WorkBudget;
 use crate::radar::Radar;
-use crate::reconstruct::hearing::Hearing;
+use crate::reconstruct::noise_model::NoiseModel;
 use crate::scene::Reflector;
 use crate::task::Task;
 use faer::Mat;
@@ -57,7 +57,7 @@ pub struct Fitter<'a> {
     pub squared: Vec<f64>,
     moments: Moments,
     max_range_metres: f64,
-    pub noise_model: Hearing,
+    pub noise_model: NoiseModel,
     pub task: &'a Task,
     /// The budget, shared with the fitters of range gates.
     pub work: Arc<WorkBudget>,
@@ -115,7 +115,7 @@ impl<'a> Fitter<'a> {
             squared: window.iter().map(|w| w * w).collect(),
             moments: Moments::new(window),
             max_range_metres: radar.max_range_metres(),
-            noise_model: Hearing::any(),
+            noise_model: NoiseModel::any(),
             task,
             work: Arc::new(WorkBudget::new(max_work)),
         }
@@ -126,7 +126,7 @@ impl<'a> Fitter<'a> {
         Fitter { sensor: self.sensor.with_channels_of(flat), ..self }
     }
 
-    pub fn with_noise(self, noise_model: Hearing) -> Self {
+    pub fn with_noise(self, noise_model: NoiseModel) -> Self {
         Fitter { noise_model, ..self }
     }
 

@@ -8,7 +8,7 @@
 use super::cells::GridCells;
 use crate::maps::centred_spectrum;
 use crate::radar::{End, Radar, hann};
-use crate::reconstruct::seen::seen_by;
+use crate::reconstruct::polar::polar_from_pair;
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Axis, Zip, s};
 use num_complex::Complex64;
@@ -144,7 +144,7 @@ impl<'a> Backprojector<'a> {
         let ranges = &self.cells.range_metres;
         places.axis_iter_mut(Axis(0)).into_par_iter().zip(ranges).for_each(|(mut row, range_metres)| {
             for (place, direction) in row.iter_mut().zip(&self.cells.directions) {
-                let seen = seen_by(pair, *range_metres, direction.cos_theta);
+                let seen = polar_from_pair(pair, *range_metres, direction.cos_theta);
                 let bins = radar.bin_of_range(seen.range_metres);
                 let turns = (per_element * seen.cos_theta + 0.5).rem_euclid(1.0);
                 *place = Place {

@@ -1,14 +1,14 @@
 //! The cells of the whole array's polar grid: every range bin by every direction of the radar.
 
 use crate::radar::Radar;
-use crate::reconstruct::seen::{Direction, directions, row_ranges_metres};
+use crate::reconstruct::polar::{Direction, directions, row_ranges_metres};
 use crate::scene::{Reflector, touched_element};
 use crate::signal::{ArrayEcho, TwoEnds};
 use ndarray::Array2;
 
 pub(super) struct GridCells<'a> {
     radar: &'a Radar,
-    hears: Vec<bool>,
+    is_measured: Vec<bool>,
     pub range_metres: Vec<f64>,
     /// Directions; several may share a column of the map.
     pub directions: Vec<Direction>,
@@ -23,13 +23,13 @@ pub(super) struct GridCell {
 impl<'a> GridCells<'a> {
     /// The cells of `radar`'s map, with echoes at all its elements.
     pub fn new(radar: &'a Radar) -> Self {
-        let hears = vec![true; 2 * radar.end_elements];
-        GridCells { radar, hears, range_metres: row_ranges_metres(radar), directions: directions(radar) }
+        let is_measured = vec![true; 2 * radar.end_elements];
+        GridCells { radar, is_measured, range_metres: row_ranges_metres(radar), directions: directions(radar) }
     }
 
     /// The cells of `radar`'s map, with echoes at the elements of `ends` that have samples.
-    pub fn heard_by(radar: &'a Radar, ends: &TwoEnds) -> Self {
-        GridCells { hears: ends.hears(), ..GridCells::new(radar) }
+    pub fn with_measured_elements(radar: &'a Radar, ends: &TwoEnds) -> Self {
+        GridCells { is_measured: ends.measured_elements(), ..GridCells::new(radar) }
     }
 
     pub fn radar(&self) -> &'a Radar {
@@ -64,7 +64,7 @@ impl<'a> GridCells<'a> {
         if range_metres <= 0.0 || cos_theta.abs() > 1.0 {
             return None;
         }
-        let echo = ArrayEcho::at(self.radar, range_metres, cos_theta).masked(&self.hears);
+        let echo = ArrayEcho::at(self.radar, range_metres, cos_theta).masked(&self.is_measured);
         (echo.norm().is_finite() && echo.norm() > 0.0).then_some(echo)
     }
 

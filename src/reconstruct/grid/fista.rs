@@ -5,10 +5,10 @@ use super::cells::{GridCell, GridCells};
 use crate::radar::Radar;
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::Result;
-use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::seen::too_many_folds;
+use crate::reconstruct::noise_model::ends_noise_variance;
+use crate::reconstruct::polar::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
-use crate::reconstruct::{About, Family, Hears, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{Family, LayoutSupport, MethodInfo, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{ArrayEcho, TwoEnds};
 use crate::task::Task;
 use ndarray::{Array2, Zip};
@@ -215,18 +215,18 @@ impl Reconstructor for Fista {
         Family::Sparse
     }
 
-    fn about(&self) -> About {
-        About {
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
             name: "fista",
             description: "sparse fit with an l1 penalty on the near-field polar grid, among the cells heard most, and its exact map",
-            told: "that a scene holds few reflectors, each in one of the 1024 cells from which both ends heard most or of at most 1024 more that \
+            prior_knowledge: "that a scene holds few reflectors, each in one of the 1024 cells from which both ends heard most or of at most 1024 more that \
                 these leave unexplained; its penalty was chosen on scenes like the tables', the noise it measures itself",
             eta: 0.847, // by examples/choose_eta.rs
         }
     }
 
-    fn hears(&self) -> Hears {
-        Hears::Halves
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::Halves
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {
@@ -234,7 +234,7 @@ impl Reconstructor for Fista {
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
-        let cells = GridCells::heard_by(radar, ends);
+        let cells = GridCells::with_measured_elements(radar, ends);
         let backprojector = Backprojector::new(&cells, RangeWindow::None);
         let count = self.candidates.min(MOST_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
@@ -296,7 +296,7 @@ mod tests {
         let scene = Scene::of_points([(3.0, 12.0), (-5.0, 9.0)]);
         let ends = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar);
         let request = Request::default();
-        let cells = GridCells::heard_by(&radar, &ends);
+        let cells = GridCells::with_measured_elements(&radar, &ends);
         let heard = Backprojector::new(&cells, RangeWindow::None).amplitudes(&ends);
         let chosen = candidates(&radar, &cells, heard, 300, &[], 0.0);
         let problem =

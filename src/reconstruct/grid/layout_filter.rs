@@ -6,9 +6,9 @@ use crate::radar::{Layout, Pair, Radar};
 use crate::reconstruct::answer::Request;
 use crate::reconstruct::error::{ReconstructError, Result};
 use crate::reconstruct::noise::noise_variance;
+use crate::reconstruct::polar::polar_from_pair;
 use crate::reconstruct::power::{focused_gain, lambda_of_power};
 use crate::reconstruct::profiles::Profiles;
-use crate::reconstruct::seen::seen_by;
 use ndarray::{Array2, ArrayView2, Axis};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ pub fn layout_matched_filter(
     power.axis_iter_mut(Axis(0)).into_par_iter().zip(&cells.range_metres).try_for_each(|(mut row, range_metres)| {
         request.task.check()?;
         for (cell, direction) in row.iter_mut().zip(&cells.directions) {
-            let distance = |pair: &Pair| seen_by(*pair, *range_metres, direction.cos_theta).range_metres;
+            let distance = |pair: &Pair| polar_from_pair(*pair, *range_metres, direction.cos_theta).range_metres;
             let heard = pairs.iter().enumerate().map(|(channel, pair)| profiles.at(channel, distance(pair)));
             let sum: Complex64 = heard.sum();
             *cell = (sum * scale).norm_sqr();

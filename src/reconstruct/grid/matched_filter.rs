@@ -4,10 +4,10 @@ use super::backprojector::{Backprojector, RangeWindow};
 use super::cells::GridCells;
 use crate::radar::{Layout, Radar};
 use crate::reconstruct::error::Result;
-use crate::reconstruct::hearing::ends_noise_variance;
+use crate::reconstruct::noise_model::ends_noise_variance;
+use crate::reconstruct::polar::too_many_folds;
 use crate::reconstruct::power::{focused_gain, of_power};
-use crate::reconstruct::seen::too_many_folds;
-use crate::reconstruct::{About, Hears, Reconstruction, Reconstructor, Request, layout_matched_filter};
+use crate::reconstruct::{LayoutSupport, MethodInfo, Reconstruction, Reconstructor, Request, layout_matched_filter};
 use crate::signal::TwoEnds;
 use ndarray::Zip;
 
@@ -24,7 +24,7 @@ pub enum MatchedFilter {
 }
 
 impl Reconstructor for MatchedFilter {
-    fn about(&self) -> About {
+    fn info(&self) -> MethodInfo {
         // Thresholds by examples/choose_eta.rs.
         let (name, description, eta) = match self {
             MatchedFilter::Coherent => {
@@ -35,7 +35,12 @@ impl Reconstructor for MatchedFilter {
                 ("matched-filter-incoherent", "both ends projected back onto the scene, powers added", 0.960)
             }
         };
-        About { name, description, told: "nothing about the scene or the floor; it measures the noise itself", eta }
+        MethodInfo {
+            name,
+            description,
+            prior_knowledge: "nothing about the scene or the floor; it measures the noise itself",
+            eta,
+        }
     }
 
     fn finds_reflectors(&self) -> bool {
@@ -55,14 +60,14 @@ impl Reconstructor for MatchedFilter {
         too_many_folds(radar).map_or(Ok(()), |reason| Err(self.unusable(reason)))
     }
 
-    fn hears(&self) -> Hears {
-        if *self == MatchedFilter::Coherent { Hears::Layouts } else { Hears::Ends }
+    fn layout_support(&self) -> LayoutSupport {
+        if *self == MatchedFilter::Coherent { LayoutSupport::AnyLayout } else { LayoutSupport::TwoEnds }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
-        if let Some(heard) = &request.heard {
-            let layout = Layout::of_numbers(radar, &heard.layout);
-            let lambda = layout_matched_filter(radar, &layout, heard.samples.view(), request)?;
+        if let Some(layout_samples) = &request.layout_samples {
+            let layout = Layout::of_numbers(radar, &layout_samples.layout);
+            let lambda = layout_matched_filter(radar, &layout, layout_samples.samples.view(), request)?;
             return Ok(Reconstruction::of_map(lambda));
         }
         let cells = GridCells::new(radar);

@@ -6,10 +6,10 @@ use super::pursuit::{MOST_RELAXED, Pick, Pursuit, energy, unit_gains};
 use crate::radar::Radar;
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::Result;
-use crate::reconstruct::hearing::ends_noise_variance;
-use crate::reconstruct::seen::too_many_folds;
+use crate::reconstruct::noise_model::ends_noise_variance;
+use crate::reconstruct::polar::too_many_folds;
 use crate::reconstruct::significance::decades_above_cells;
-use crate::reconstruct::{About, Family, Hears, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{Family, LayoutSupport, MethodInfo, Reconstruction, Reconstructor, Request};
 use crate::signal::TwoEnds;
 use ndarray::{Array2, Zip, s};
 use num_complex::Complex64;
@@ -50,11 +50,11 @@ const LEAST_OF_ALL: f64 = 1e-10;
 impl Omp {
     fn pursue(&self, radar: &Radar, ends: &TwoEnds, noise_variance: f64, request: &Request) -> Result<Vec<Gained>> {
         let samples = ends.flat();
-        let heard = ends.hears().into_iter().filter(|hears| *hears).count() * radar.samples;
+        let heard = ends.measured_elements().into_iter().filter(|is_measured| *is_measured).count() * radar.samples;
         let noise = noise_variance * heard as f64 * 1.1;
         let all = energy(&samples);
         let enough = noise.max(all * ROUNDING_ENERGY);
-        let mut cells = GridCells::heard_by(radar, ends);
+        let mut cells = GridCells::with_measured_elements(radar, ends);
         // No reflector stands at the centre: an echo in bin 0 is one range period away.
         if radar.samples > 1 {
             cells.range_metres[0] = radar.max_range_metres();
@@ -130,17 +130,17 @@ impl Reconstructor for Omp {
         Family::Sparse
     }
 
-    fn about(&self) -> About {
-        About {
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
             name: "omp",
             description: "greedy sparse fit of exact near-field echoes, each moved off the polar grid to where it explains most, and their exact map",
-            told: "that a scene holds single reflectors, 64 at most; it measures the noise itself",
+            prior_knowledge: "that a scene holds single reflectors, 64 at most; it measures the noise itself",
             eta: 0.819, // by examples/choose_eta.rs
         }
     }
 
-    fn hears(&self) -> Hears {
-        Hears::Halves
+    fn layout_support(&self) -> LayoutSupport {
+        LayoutSupport::Halves
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {
@@ -185,7 +185,7 @@ mod tests {
     /// Part of the energy of `ends` in the residual of `found`.
     fn left(radar: &Radar, ends: &TwoEnds, found: &[Reflector]) -> f64 {
         let samples = ends.flat();
-        let cells = GridCells::heard_by(radar, ends);
+        let cells = GridCells::with_measured_elements(radar, ends);
         let pick = |r: &Reflector| {
             let place = radar.polar_of(r.x_metres, r.y_metres);
             Pick {

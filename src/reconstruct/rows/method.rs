@@ -9,10 +9,10 @@ use crate::radar::{End, Radar};
 use crate::reconstruct::coherent::{Peak, found_in_residuals, gains};
 use crate::reconstruct::echoes::of_echoes;
 use crate::reconstruct::error::Result;
-use crate::reconstruct::hearing::{Hearing, ends_noise_variance};
+use crate::reconstruct::noise_model::{NoiseModel, ends_noise_variance};
+use crate::reconstruct::polar::{Direction, directions, no_plane_waves, row_ranges_metres, too_many_folds};
 use crate::reconstruct::power::of_power;
-use crate::reconstruct::seen::{Direction, directions, no_plane_waves, row_ranges_metres, too_many_folds};
-use crate::reconstruct::{About, ReconstructError, Reconstruction, Reconstructor, Request};
+use crate::reconstruct::{MethodInfo, ReconstructError, Reconstruction, Reconstructor, Request};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::{Array2, Axis};
 use num_complex::Complex64;
@@ -22,11 +22,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Power of a row relative to the strongest below which the row has only side lobes: plain beamforming draws it.
 const ACTIVE_ROW: f64 = 1e-12;
 
-/// [`About::told`] of the methods that draw a spectrum.
+/// [`MethodInfo::prior_knowledge`] of the methods that draw a spectrum.
 const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
     It does not use the phase between the ends";
 
-const TOLD_PEAKS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
+const PEAK_ASSUMPTIONS: &str = "that what an end hears is plane waves, and that a scene is single reflectors; nothing else about the \
     scene or the floor, it measures the noise itself. Its peaks do not use the phase between the ends; their places and amplitudes \
     are then fitted to both ends together, as those of iaa and sbl are";
 
@@ -56,7 +56,7 @@ const LEAST_PEAK_OVER_NOISE: f64 = 10.0;
 pub struct RowMethod {
     pub(super) name: &'static str,
     pub(super) description: &'static str,
-    /// [`About::eta`].
+    /// [`MethodInfo::eta`].
     pub(super) eta: f32,
     /// Power over angle, one value a column in the order of the transform, or `None` to leave the row to plain beamforming.
     pub(super) estimate: fn(&RowSnapshot<'_>) -> Option<Vec<f64>>,
@@ -64,9 +64,14 @@ pub struct RowMethod {
 }
 
 impl Reconstructor for RowMethod {
-    fn about(&self) -> About {
+    fn info(&self) -> MethodInfo {
         let RowMethod { name, description, eta, render, .. } = *self;
-        About { name, description, told: if render == Render::Peaks { TOLD_PEAKS } else { ASSUMPTIONS }, eta }
+        MethodInfo {
+            name,
+            description,
+            prior_knowledge: if render == Render::Peaks { PEAK_ASSUMPTIONS } else { ASSUMPTIONS },
+            eta,
+        }
     }
 
     fn check_radar(&self, radar: &Radar) -> Result<()> {
@@ -81,9 +86,9 @@ impl Reconstructor for RowMethod {
         }
         // The task reports the progress of all looks, not of one.
         let quiet = Request { task: request.task.quiet(), ..request.clone() };
-        let hearing = Hearing::beneath(radar, ends, request.noise);
+        let noise_model = NoiseModel::beneath(radar, ends, request.noise);
         let look = |left: &TwoEnds| -> Result<Vec<Peak>> {
-            let noise_variance = hearing.ends_noise_variance(radar, left);
+            let noise_variance = noise_model.ends_noise_variance(radar, left);
             Ok(self.peaks(radar, &self.power(radar, left, noise_variance, &quiet)?, noise_variance))
         };
         let found = if radar.samples == 1 {

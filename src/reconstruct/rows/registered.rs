@@ -1,7 +1,7 @@
 //! Combination of the ends' maps on the polar grid of the array's centre.
 
 use crate::radar::{End, Radar};
-use crate::reconstruct::seen::{Direction, directions, row_ranges_metres, seen_from};
+use crate::reconstruct::polar::{Direction, directions, polar_from, row_ranges_metres};
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
@@ -18,7 +18,7 @@ pub(super) fn joined(radar: &Radar, maps: &[Array2<f64>; 2]) -> Array2<f64> {
     out.axis_iter_mut(Axis(0)).into_par_iter().zip(&ranges).for_each(|(mut row, range)| {
         for Direction { cos_theta, column } in &directions {
             let [first, last] = [0, 1].map(|end| {
-                let seen = seen_from(centres[end], *range, *cos_theta);
+                let seen = polar_from(centres[end], *range, *cos_theta);
                 let place = (radar.bin_of_range(seen.range_metres), radar.column_of_cos(seen.cos_theta));
                 bilinear(&maps[end], place.0, place.1)
             });
@@ -49,7 +49,7 @@ mod tests {
         let (bin, column) = (200usize, 700usize);
         let maps = End::BOTH.map(|end| {
             let (range, cos) = (radar.range_of_bin_metres(bin as f64), radar.cos_of_column(column as f64));
-            let seen = seen_from(radar.end_centre_metres(end), range, cos);
+            let seen = polar_from(radar.end_centre_metres(end), range, cos);
             let (row, col) = (radar.bin_of_range(seen.range_metres), radar.column_of_cos(seen.cos_theta));
             assert!((row - bin as f64).abs() > 3.0, "the ends see it elsewhere");
             Array2::from_shape_fn((512, 1024), |(r, c)| {

@@ -12,9 +12,9 @@ use super::settings::Settings;
 use super::state::NEARLY_COMPLETE_RESIDUAL_PART;
 use super::trace::{CALIBRATION, MAX_ATTEMPTS, decades};
 use crate::radar::{Radar, hann};
-use crate::reconstruct::attempt::{Attempt, Verdict};
+use crate::reconstruct::attempt::{Attempt, AttemptVerdict};
 use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, Samples, Tie};
-use crate::reconstruct::hearing::range_energy;
+use crate::reconstruct::noise_model::range_energy;
 use crate::reconstruct::{NoisePrior, ReconstructError, Request};
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
@@ -109,7 +109,7 @@ impl Calibration<'_> {
             rung: CALIBRATION,
             tried: gains.tried(),
             gain_decades: decades(before, after),
-            verdict: Verdict::Kept,
+            verdict: AttemptVerdict::Kept,
             work: 0,
         };
         let trace = std::iter::once(attempt).chain(found.trace).take(MAX_ATTEMPTS).collect();

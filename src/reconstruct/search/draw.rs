@@ -13,7 +13,7 @@ use crate::signal::floor::{snr_over, thesis_noise_variance};
 use crate::signal::plan::amplitude_bound;
 use crate::signal::simd::{LANES_F32, LANES_F64, Real};
 use crate::signal::synthesis::{BlockProfiles, Synthesis};
-use crate::signal::{Plan, Precision, Rows};
+use crate::signal::{Precision, Rows, SynthesisPlan};
 use crate::task::Task;
 use rayon::prelude::*;
 use std::f64::consts::EULER_GAMMA;
@@ -59,7 +59,7 @@ pub fn expected_lambda(
         Noise::Rounding | Noise::RoundingScaled(_) => None,
     };
     let tolerance = request.noise.tolerance(request.normalisation, snr);
-    let plan = Plan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance);
+    let plan = SynthesisPlan::cheapest(reflectors.len(), amplitude_bound(radar, &reflectors), tolerance);
     let map = match plan.precision {
         Precision::F64 => log_map::<f64, LANES_F64>(radar, &reflectors, plan, &request.task),
         Precision::F32 => log_map::<f32, LANES_F32>(radar, &reflectors, plan, &request.task),
@@ -78,7 +78,12 @@ pub fn expected_noise(radar: &Radar, normalisation: Normalisation) -> Expected {
 }
 
 /// The whole array's map without noise, decades of amplitude.
-fn log_map<T: Real, const W: usize>(radar: &Radar, reflectors: &[Reflector], plan: Plan, task: &Task) -> FastLogMap {
+fn log_map<T: Real, const W: usize>(
+    radar: &Radar,
+    reflectors: &[Reflector],
+    plan: SynthesisPlan,
+    task: &Task,
+) -> FastLogMap {
     let mut profiles = BlockProfiles::silence(radar);
     Synthesis::<T, W>::new(radar, plan).range_profiles(reflectors, &mut profiles, task);
     let gain = (radar.samples as f64 * radar.elements as f64).sqrt();

@@ -1,7 +1,7 @@
 //! Complex gains of the ends' elements.
 
 use crate::radar::Radar;
-use crate::reconstruct::attempt::Tried;
+use crate::reconstruct::attempt::Proposal;
 use crate::signal::TwoEnds;
 use num_complex::Complex64;
 
@@ -32,11 +32,11 @@ impl ElementGains {
     }
 
     /// The gains for the record of attempts.
-    pub fn tried(&self) -> Tried {
+    pub fn tried(&self) -> Proposal {
         let rms = |of: fn(&Complex64) -> f64| {
             (self.0.iter().map(|g| of(g).powi(2)).sum::<f64>() / self.0.len() as f64).sqrt()
         };
-        Tried::Gains { decibels: rms(|g| 20.0 * g.norm().log10()), degrees: rms(|g| g.arg().to_degrees()) }
+        Proposal::Gains { decibels: rms(|g| 20.0 * g.norm().log10()), degrees: rms(|g| g.arg().to_degrees()) }
     }
 
     /// The gains with a geometric mean of 1 and, if `without_slope`, without the offset and the slope of phase along each end.

@@ -9,7 +9,7 @@ use super::state::{Search, State};
 use super::trace::Trace;
 use crate::radar::{Radar, hann};
 use crate::reconstruct::fit::{Fitter, Samples, Tie};
-use crate::reconstruct::hearing::Hearing;
+use crate::reconstruct::noise_model::NoiseModel;
 use crate::reconstruct::reconstructor::unit_gain;
 use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::TwoEnds;
@@ -66,7 +66,7 @@ fn found_in(
     let window = hann(radar.samples);
     let fitter = Fitter::new(radar, &window, &request.task, settings.max_work)
         .with_channels_of(&flat)
-        .with_noise(Hearing::beneath(radar, ends, request.noise));
+        .with_noise(NoiseModel::beneath(radar, ends, request.noise));
     let samples = Samples::new(&fitter.sensor, &flat);
     let detector = Detector::of(radar);
     let trace = Trace::default();

@@ -5,7 +5,7 @@ use super::propose::runs::{MIN_ECHO_OVER_NOISE, MIN_LONG_RUN_BINS, longest_run_b
 use super::state::{Search, ends_agree, tried};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
-use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
+use crate::reconstruct::attempt::{AttemptVerdict, Proposal, Refusal};
 use crate::reconstruct::fit::{Atom, BinSpans, Fit, Gains, Limits, Profile, Samples, Tie, bin_spans, groups, union_of};
 use crate::scene::Reflector;
 use num_complex::Complex64;
@@ -45,8 +45,8 @@ const MAX_GROUP_ATOMS: usize = 48;
 const MAX_NEW_POINTS: usize = 16;
 
 impl Search<'_> {
-    pub fn record_refusal(&self, tried: Tried, gain_decades: f64, why: Refusal) {
-        self.trace.add(tried, gain_decades, Verdict::Refused(why), self.fitter.work.done());
+    pub fn record_refusal(&self, tried: Proposal, gain_decades: f64, why: Refusal) {
+        self.trace.add(tried, gain_decades, AttemptVerdict::Refused(why), self.fitter.work.done());
     }
 
     /// Increase of the residual energy of `fit` without this object, the others unchanged, in decades.

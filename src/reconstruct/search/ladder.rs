@@ -6,7 +6,7 @@
 
 use super::state::{Search, State};
 use crate::reconstruct::ReconstructError;
-use crate::reconstruct::attempt::{Refusal, Tried};
+use crate::reconstruct::attempt::{Proposal, Refusal};
 
 /// The state of a search after a rung, from that before.
 type RungWork = fn(&Search, State) -> Result<State, ReconstructError>;
@@ -55,7 +55,7 @@ pub(super) fn after_rungs(search: &Search, rungs: &[Rung], mut state: State) -> 
         state = (rung.work)(search, state)?;
         search.record_changes(&before, &state.fit);
         if search.trace.count() == attempts {
-            search.record_refusal(Tried::Nothing, 0.0, Refusal::NothingFound);
+            search.record_refusal(Proposal::Nothing, 0.0, Refusal::NothingFound);
         }
         if state.is_complete {
             break;

@@ -77,7 +77,7 @@ use super::error::ReconstructError;
 use super::family::Family;
 use super::own_threshold::own_threshold;
 use super::prior::NoisePrior;
-use super::reconstructor::{About, Reconstructor};
+use super::reconstructor::{MethodInfo, Reconstructor};
 use crate::maps::RangeAngleMap;
 use crate::radar::Radar;
 use crate::scene::Reflector;
@@ -120,11 +120,11 @@ impl Reconstructor for Nomp {
         Family::Search
     }
 
-    fn about(&self) -> About {
-        About {
+    fn info(&self) -> MethodInfo {
+        MethodInfo {
             name: "nomp",
             description: "finds reflectors and lines by Newton steps on the raw samples, then draws their exact map",
-            told: "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
+            prior_knowledge: "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
                 along or across the array's axis; the kind of floor beneath the samples, and how the thesis' program rounds; \
                 by about how much elements are off, where they are",
             eta: ETA,

@@ -4,7 +4,7 @@ use super::on_row::is_on_row;
 use super::state::{MAX_ROUNDS, Search, State};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
-use crate::reconstruct::attempt::{Refusal, Tried};
+use crate::reconstruct::attempt::{Proposal, Refusal};
 use crate::reconstruct::fit::{Limits, Tie};
 
 /// Largest residual energy of a round, over that of the round before, for which another one follows.
@@ -15,14 +15,14 @@ impl Search<'_> {
     pub fn tone_points(&self, mut state: State) -> Result<State, ReconstructError> {
         state.pairs = self.tone_pairs(&state.fit);
         let Some(pairs) = &state.pairs else {
-            self.record_refusal(Tried::Nothing, 0.0, Refusal::TooManyTones);
+            self.record_refusal(Proposal::Nothing, 0.0, Refusal::TooManyTones);
             return Ok(state);
         };
         let fit = self.paired(state.fit.clone(), pairs, false)?;
         if self.is_explained(&fit) {
             return Ok(State { is_complete: true, ..State::of(fit) });
         }
-        let tried = Tried::Together { count: fit.atoms.len().saturating_sub(state.fit.atoms.len()) };
+        let tried = Proposal::Together { count: fit.atoms.len().saturating_sub(state.fit.atoms.len()) };
         self.record_refusal(tried, decades(state.fit.cost(), fit.cost()), Refusal::LeavesSomething);
         Ok(state)
     }

@@ -6,7 +6,7 @@ use super::settings::Settings;
 use super::trace::{ORDERING, Trace, decades};
 use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
-use crate::reconstruct::attempt::{Refusal, Tried, Verdict};
+use crate::reconstruct::attempt::{AttemptVerdict, Proposal, Refusal};
 use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Samples, Tie};
 
 /// Largest residual of a list in which no object is missing but places are inexact, as a part of the samples' energy.
@@ -78,7 +78,7 @@ impl Search<'_> {
         }
         for (atom, gains) in fit.atoms.iter().zip(&fit.gains).filter(|(atom, _)| !is_in(atom, before)) {
             let gain_decades = self.own_decades(fit, atom, gains);
-            self.trace.add(tried(atom), gain_decades, Verdict::Kept, self.fitter.work.done());
+            self.trace.add(tried(atom), gain_decades, AttemptVerdict::Kept, self.fitter.work.done());
         }
     }
 
@@ -122,7 +122,7 @@ impl Search<'_> {
             fit = self.fitter.solve(self.samples, agreed, Tie::PerEnd, 0.0);
         }
         if fit.cost() > known.cost() {
-            let tried = Tried::Together { count: pairs.points.len() };
+            let tried = Proposal::Together { count: pairs.points.len() };
             self.record_refusal(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
             return Ok(known);
         }
@@ -137,10 +137,10 @@ pub fn ends_agree(gains: &Gains, max_ratio: f64) -> bool {
 }
 
 /// `atom` for the record of attempts.
-pub fn tried(atom: &Atom) -> Tried {
+pub fn tried(atom: &Atom) -> Proposal {
     let [from_metres, to_metres] = [0.0, atom.reflector_count() as f64 - 1.0].map(|i| atom.position_metres(i));
     match *atom {
-        Atom::Point { .. } => Tried::Point { at_metres: from_metres },
-        Atom::Row { count, .. } => Tried::Line { from_metres, to_metres, count },
+        Atom::Point { .. } => Proposal::Point { at_metres: from_metres },
+        Atom::Row { count, .. } => Proposal::Line { from_metres, to_metres, count },
     }
 }

@@ -1,6 +1,6 @@
 //! The record of a search's attempts.
 
-use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
+use crate::reconstruct::attempt::{Attempt, AttemptVerdict, Proposal};
 use std::sync::{Mutex, PoisonError};
 
 /// Largest number of attempts in a record; later ones are not recorded.
@@ -40,7 +40,7 @@ impl Trace {
     }
 
     /// Adds an attempt; `done` is the work of the search until then.
-    pub fn add(&self, tried: Tried, gain_decades: f64, verdict: Verdict, done: usize) {
+    pub fn add(&self, tried: Proposal, gain_decades: f64, verdict: AttemptVerdict, done: usize) {
         let mut record = self.record();
         let work = done.saturating_sub(record.done);
         record.done = done;
@@ -72,13 +72,13 @@ mod tests {
         let trace = Trace::default();
         trace.enter("first rung");
         for i in 0..MAX_ATTEMPTS + 5 {
-            trace.add(Tried::Together { count: i }, 0.0, Verdict::Kept, 3 * i);
+            trace.add(Proposal::Together { count: i }, 0.0, AttemptVerdict::Kept, 3 * i);
         }
         let attempts = trace.into_attempts();
         assert_eq!(attempts.len(), MAX_ATTEMPTS);
         assert_eq!(
             (attempts[1].rung, attempts[1].tried, attempts[1].work),
-            ("first rung", Tried::Together { count: 1 }, 3)
+            ("first rung", Proposal::Together { count: 1 }, 3)
         );
     }
 

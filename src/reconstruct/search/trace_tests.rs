@@ -1,7 +1,7 @@
 //! Tests of the traces of whole searches.
 
 use super::*;
-use crate::reconstruct::attempt::{Attempt, Tried, Verdict};
+use crate::reconstruct::attempt::{Attempt, AttemptVerdict, Proposal};
 use crate::scene::{Line, Object, Scene};
 use crate::signal::{Floor, simulate};
 
@@ -14,7 +14,7 @@ fn found_in(scene: &Scene) -> Found {
 #[test]
 fn two_points_are_found_by_their_tones_alone() {
     let found = found_in(&Scene::of_points([(4.0, 9.0), (-12.0, 15.0)]));
-    let kept: Vec<&Attempt> = found.trace.iter().filter(|a| a.verdict == Verdict::Kept).collect();
+    let kept: Vec<&Attempt> = found.trace.iter().filter(|a| a.verdict == AttemptVerdict::Kept).collect();
     assert_eq!(kept.len(), 2, "{:?}", found.trace);
     for [x, y] in [[4.0, 9.0], [-12.0, 15.0]] {
         let near = |a: &&&Attempt| a.tried.place_metres().is_some_and(|p| (p[0] - x).hypot(p[1] - y) < 0.05);
@@ -31,6 +31,7 @@ fn a_line_is_found_by_a_later_step_than_the_tones() {
     let found = found_in(&Scene { objects: vec![Object::Line(line)], ..Scene::default() });
     let steps: Vec<&str> = found.trace.iter().map(|a| a.rung).collect();
     assert_eq!(steps[0], "tones", "{:?}", found.trace);
-    let is_line = |a: &&Attempt| matches!(a.tried, Tried::Line { count: 45, .. }) && a.verdict == Verdict::Kept;
+    let is_line =
+        |a: &&Attempt| matches!(a.tried, Proposal::Line { count: 45, .. }) && a.verdict == AttemptVerdict::Kept;
     assert!(found.trace.iter().find(is_line).is_some_and(|a| a.rung != "tones"), "{:?}", found.trace);
 }

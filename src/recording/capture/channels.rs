@@ -1,7 +1,7 @@
 //! Corrections of channels by the `.cfg`: transmitters that send at once are separated, channels are multiplied by factors, and the range bias is
 //! removed.
 
-use super::plan::Plan;
+use super::plan::CapturePlan;
 use crate::radar::SPEED_OF_LIGHT;
 use crate::recording::profile::RadarProfile;
 use ndarray::{Array3, ArrayView3, Axis};
@@ -21,7 +21,7 @@ pub(super) struct Channels {
 }
 
 impl Channels {
-    pub fn new(profile: Option<&RadarProfile>, plan: &Plan) -> Channels {
+    pub fn new(profile: Option<&RadarProfile>, plan: &CapturePlan) -> Channels {
         let Some(profile) = profile else { return Channels::default() };
         let masks = &profile.chirp_transmitters;
         let is_bpm = profile.both_transmitters;

@@ -93,9 +93,9 @@ fn range_profiles(frame: &Frame) -> Array3<Complex64> {
     let fft = Simd::chosen().forward_fft::<f64>(samples);
     let mut out = Array3::zeros((loops, chirps * receivers, samples));
     for (row, mut to) in frame.samples.lanes(Axis(3)).into_iter().zip(out.lanes_mut(Axis(2))) {
-        let mut line = row.to_vec();
-        fft.process(&mut line);
-        to.iter_mut().zip(line).for_each(|(to, v)| *to = v);
+        let mut spectrum = row.to_vec();
+        fft.process(&mut spectrum);
+        to.iter_mut().zip(spectrum).for_each(|(to, v)| *to = v);
     }
     out
 }
@@ -105,9 +105,9 @@ fn samples_of_profiles(rows: &mut Array3<Complex64>) {
     let fft = Simd::chosen().forward_fft::<f64>(samples);
     let scale = (samples.max(1) as f64).recip();
     for mut row in rows.lanes_mut(Axis(2)) {
-        let mut line: Vec<Complex64> = row.iter().map(|v| v.conj() * scale).collect();
-        fft.process(&mut line);
-        row.iter_mut().zip(line).for_each(|(to, v)| *to = v.conj());
+        let mut inverse: Vec<Complex64> = row.iter().map(|v| v.conj() * scale).collect();
+        fft.process(&mut inverse);
+        row.iter_mut().zip(inverse).for_each(|(to, v)| *to = v.conj());
     }
 }
 
@@ -134,9 +134,9 @@ impl Cells {
     fn powers(&self, profiles: &Array2<Complex64>) -> Vec<f64> {
         let mut powers = vec![0.0; self.weights.len()];
         for channel in profiles.axis_iter(Axis(1)) {
-            let mut line: Vec<Complex64> = channel.iter().zip(&self.weights).map(|(v, w)| v * w).collect();
-            self.transform.process(&mut line);
-            powers.iter_mut().zip(line).for_each(|(p, v)| *p += v.norm_sqr());
+            let mut spectrum: Vec<Complex64> = channel.iter().zip(&self.weights).map(|(v, w)| v * w).collect();
+            self.transform.process(&mut spectrum);
+            powers.iter_mut().zip(spectrum).for_each(|(p, v)| *p += v.norm_sqr());
         }
         powers
     }

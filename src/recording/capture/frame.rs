@@ -1,12 +1,12 @@
 //! One frame of a capture.
 
-use super::plan::Plan;
+use super::plan::CapturePlan;
 use super::quality::Quality;
 use super::table::{Capture, Treatment};
 use crate::recording::Fault;
 use crate::recording::analytic::{analytic_lanes, subtract_mean};
-use crate::recording::layout::Parts;
-use crate::recording::layout::stream::Stream;
+use crate::recording::layout::PartOrder;
+use crate::recording::layout::stream::CaptureStream;
 use ndarray::{Array3, Array4, Axis, s};
 use num_complex::Complex64;
 use std::io::{Read, Seek};
@@ -20,8 +20,12 @@ pub(in crate::recording) struct Frame {
 
 impl Frame {
     /// Reads the loops of the plan, and subtracts constant part and static clutter where `capture` says so.
-    pub fn read<R: Read + Seek>(stream: &mut Stream<R>, capture: &Capture, plan: &Plan) -> Result<Frame, Fault> {
-        let Plan { samples, receivers, chirps, loops, layout, .. } = *plan;
+    pub fn read<R: Read + Seek>(
+        stream: &mut CaptureStream<R>,
+        capture: &Capture,
+        plan: &CapturePlan,
+    ) -> Result<Frame, Fault> {
+        let CapturePlan { samples, receivers, chirps, loops, layout, .. } = *plan;
         let size = layout.chirp_bytes(samples, receivers);
         let mut all = Array4::zeros((loops, chirps, receivers, samples));
         let mut quality = Quality::new(loops * chirps);
@@ -40,7 +44,7 @@ impl Frame {
             let mean = all.sum_axis(Axis(0)).mapv_into(|v| v / loops as f64);
             all.outer_iter_mut().for_each(|mut turn| turn -= &mean);
         }
-        if layout.parts == Parts::Real {
+        if layout.part_order == PartOrder::Real {
             all = analytic_lanes(all.view(), samples.div_ceil(2));
         } else if quality.is_real() {
             all = analytic_lanes(all.view(), samples);

@@ -21,12 +21,12 @@ mod table;
 mod tests;
 
 pub(super) use frame::Frame;
-pub(super) use plan::Plan;
+pub(super) use plan::CapturePlan;
 pub use table::{Capture, Treatment};
 
 use super::Fault;
 use super::axes::{ChirpChoice, Join};
-use super::layout::stream::Stream;
+use super::layout::stream::CaptureStream;
 use super::profile::RadarProfile;
 use channels::Channels;
 use ndarray::{Array3, Array4};
@@ -52,9 +52,9 @@ impl Capture {
         &self,
         file: impl Read + Seek,
         profile: Option<&RadarProfile>,
-    ) -> Result<(Vec<usize>, Frame, Plan), Fault> {
-        let mut stream = Stream::new(file)?;
-        let plan = Plan::new(self, profile, stream.bytes())?;
+    ) -> Result<(Vec<usize>, Frame, CapturePlan), Fault> {
+        let mut stream = CaptureStream::new(file)?;
+        let plan = CapturePlan::new(self, profile, stream.bytes())?;
         Ok((plan.chosen_chirps(self)?, Frame::read(&mut stream, self, &plan)?, plan))
     }
 

@@ -3,7 +3,7 @@
 use super::table::Capture;
 use crate::recording::Fault;
 use crate::recording::axes::ChirpChoice;
-use crate::recording::layout::{Layout, Parts};
+use crate::recording::layout::{Layout, PartOrder};
 use crate::recording::numbers::{MAX_NUMBERS, bounded_count};
 use crate::recording::profile::RadarProfile;
 use std::fmt::Display;
@@ -15,7 +15,7 @@ const MAX_COUNT: usize = 1 << 16;
 
 #[derive(Debug, Clone, PartialEq)]
 /// Counts of a capture, and the bytes of the file that are read.
-pub(in crate::recording) struct Plan {
+pub(in crate::recording) struct CapturePlan {
     pub layout: Layout,
     /// Samples of a chirp in the file.
     pub samples: usize,
@@ -31,11 +31,11 @@ pub(in crate::recording) struct Plan {
     pub notes: Vec<String>,
 }
 
-impl Plan {
-    pub fn new(capture: &Capture, profile: Option<&RadarProfile>, bytes: u64) -> Result<Plan, Fault> {
+impl CapturePlan {
+    pub fn new(capture: &Capture, profile: Option<&RadarProfile>, bytes: u64) -> Result<CapturePlan, Fault> {
         let layout = layout(capture)?;
         let [samples, receivers, chirps, all_loops] = counts(capture, profile)?;
-        let lanes = layout.parts.group();
+        let lanes = layout.part_order.group();
         let numbers = bounded_count(&[chirps, receivers, samples])
             .ok_or_else(|| Fault::Data(format!("a loop holds more than {MAX_NUMBERS} numbers")))?;
         if !(samples * receivers).is_multiple_of(lanes) {
@@ -45,12 +45,12 @@ impl Plan {
         }
         let header = layout.header_bytes.min(MAX_COUNT) as u64;
         let chirp_numbers = (samples * receivers) as u64;
-        let size = |numbers: u64| numbers * layout.parts.bytes() as u64 + numbers / chirp_numbers.max(1) * header;
+        let size = |numbers: u64| numbers * layout.part_order.bytes() as u64 + numbers / chirp_numbers.max(1) * header;
         let loop_bytes = size(numbers as u64);
         let frame_numbers = profile.map_or(0, |p| p.frame_numbers as u64).max(numbers as u64 * all_loops as u64);
         let before = size(profile.map_or(0, |p| p.numbers_before as u64));
         let frame_bytes = size(frame_numbers);
-        let mut plan = Plan {
+        let mut plan = CapturePlan {
             layout,
             samples,
             receivers,
@@ -76,7 +76,7 @@ impl Plan {
         let [loop_bytes, frame_bytes, before] = sizes;
         let file_loops = bytes.saturating_sub(before) / loop_bytes.max(1);
         if file_loops == 0 {
-            let Plan { chirps, receivers, samples, .. } = *self;
+            let CapturePlan { chirps, receivers, samples, .. } = *self;
             let expected = before + loop_bytes;
             return Err(Fault::Data(format!(
                 "has {bytes} bytes; expected at least {expected}: a loop has {chirps} chirps of {receivers} receivers and {samples} samples"
@@ -158,19 +158,19 @@ fn is_choice(numbers: &[usize], last: usize) -> bool {
 }
 
 fn layout(capture: &Capture) -> Result<Layout, Fault> {
-    let parts = match (capture.parts, capture.lanes) {
-        (Some(parts), None) => parts,
-        (None, Some(2)) => Parts::TwoLanes,
-        (None, Some(4)) => Parts::FourLanes,
+    let part_order = match (capture.part_order, capture.lanes) {
+        (Some(part_order), None) => part_order,
+        (None, Some(2)) => PartOrder::TwoLanes,
+        (None, Some(4)) => PartOrder::FourLanes,
         (None, Some(lanes)) => return Err(unfit("lanes", format!("is {lanes}"), "2 or 4")),
         (None, None) => return Err(unfit("parts", "is missing", "one of lanes and parts")),
         (Some(_), Some(_)) => return Err(unfit("lanes", "stands beside parts", "one of lanes and parts")),
     };
-    let Capture { words, q_first, receivers, header_bytes, .. } = *capture;
+    let Capture { encoding, q_first, receivers, header_bytes, .. } = *capture;
     if header_bytes > MAX_COUNT {
         return Err(unfit("header_bytes", format!("is {header_bytes}"), "at most 65536"));
     }
-    Ok(Layout { words, parts, q_first, receivers, header_bytes, packets: false })
+    Ok(Layout { encoding, part_order, q_first, receivers, header_bytes, packets: false })
 }
 
 /// Samples, receivers, chirps of a loop and loops of a frame.

@@ -1,7 +1,7 @@
 //! Doubts about a frame: zeros of lost packets, saturation, constant parts, real samples stored as complex.
 
-use super::plan::Plan;
-use crate::recording::layout::{Layout, Parts};
+use super::plan::CapturePlan;
+use crate::recording::layout::{Layout, PartOrder};
 use ndarray::{Array4, Axis};
 use num_complex::Complex64;
 
@@ -32,14 +32,14 @@ impl Quality {
     /// Counts zeros and saturated numbers in the bytes of chirp `n` of the frame.
     pub fn add_chirp(&mut self, n: usize, bytes: &[u8], layout: Layout) {
         self.zeros[n] = bytes.chunks_exact(MIN_ZERO_RUN_BYTES).any(|part| part.iter().all(|b| *b == 0));
-        let max = layout.words.max_value();
+        let max = layout.encoding.max_value();
         let at_end = |b: &&[u8]| {
-            let value = layout.words.number([b[0], b[1]]);
+            let value = layout.encoding.number([b[0], b[1]]);
             value == max || value == -max - 1
         };
         self.numbers += bytes.len() as u64 / 2;
         self.saturated_count += bytes.chunks_exact(2).filter(at_end).count() as u64;
-        self.is_complex = layout.parts != Parts::Real;
+        self.is_complex = layout.part_order != PartOrder::Real;
     }
 
     /// Measures the constant part of all samples, `[loops, chirps, receivers, samples]`, before any part is subtracted.
@@ -73,7 +73,7 @@ impl Quality {
     }
 
     /// Doubts about the frame, a sentence each; `is_out` where the constant part was subtracted.
-    pub fn sentences(&self, plan: &Plan, is_out: bool) -> Vec<String> {
+    pub fn sentences(&self, plan: &CapturePlan, is_out: bool) -> Vec<String> {
         let chirps_with_zeros: Vec<usize> = (0..self.zeros.len()).filter(|n| self.zeros[*n]).collect();
         let lost = chirps_with_zeros.first().zip(chirps_with_zeros.last()).map(|(first, last)| {
             let (chirps, many) = (self.zeros.len(), chirps_with_zeros.len());
@@ -84,7 +84,7 @@ impl Quality {
         });
         let part = self.saturated_count as f64 / self.numbers.max(1) as f64;
         let saturated = (part > MIN_SATURATED_PART).then(|| {
-            let (percent, max) = (100.0 * part, plan.layout.words.max_value());
+            let (percent, max) = (100.0 * part, plan.layout.encoding.max_value());
             format!(
                 "The receivers are saturated: {percent:.1} % of the numbers are {max} or {}, the ends of their type. Harmonics of strong echoes \
                  appear at multiples of their range.",
@@ -101,7 +101,7 @@ impl Quality {
             )
         });
         let stored = self.is_real().then(|| stored.to_owned());
-        let real = (plan.layout.parts == Parts::Real).then(|| real.to_owned());
+        let real = (plan.layout.part_order == PartOrder::Real).then(|| real.to_owned());
         [lost, saturated, stored, real, constant].into_iter().flatten().collect()
     }
 }

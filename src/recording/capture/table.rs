@@ -1,7 +1,7 @@
 //! The table `[recording.capture]`.
 
 use crate::recording::axes::ChirpChoice;
-use crate::recording::layout::{Parts, ReceiverOrder, Words};
+use crate::recording::layout::{NumberEncoding, PartOrder, ReceiverOrder};
 use serde::{Deserialize, Serialize};
 
 /// The keys of the table: the layout of a capture, and the frame, loops, chirps and receivers that are read of it.
@@ -17,9 +17,10 @@ pub struct Capture {
     /// Files of the other chips of a cascade, in the order of their receivers; each holds four receivers sample by sample, in pairs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub chips: Vec<String>,
-    #[serde(default)]
-    pub words: Words,
-    pub parts: Option<Parts>,
+    #[serde(default, rename = "words")]
+    pub encoding: NumberEncoding,
+    #[serde(rename = "parts")]
+    pub part_order: Option<PartOrder>,
     /// Lanes of the radar in place of `parts`: 2 (xWR16xx, 18xx, 68xx) or 4 (xWR12xx, 14xx).
     pub lanes: Option<usize>,
     #[serde(default)]

@@ -1,4 +1,4 @@
-use super::super::layout::{Parts, ReceiverOrder};
+use super::super::layout::{PartOrder, ReceiverOrder};
 use super::super::profile::tests::CFG;
 use super::*;
 use proptest::prelude::*;
@@ -78,7 +78,7 @@ fn contradictions_are_refused() {
     for (changed, part) in [
         (Capture { lanes: Some(3), ..usual() }, "2 or 4"),
         (Capture { lanes: None, ..usual() }, "parts is missing"),
-        (Capture { parts: Some(Parts::Pairs), ..usual() }, "lanes stands beside parts"),
+        (Capture { part_order: Some(PartOrder::Pairs), ..usual() }, "lanes stands beside parts"),
         (Capture { samples: Some(8), ..usual() }, "samples is 8; expected it not beside a .cfg"),
         (Capture { chirps: None, ..usual() }, "chirps is missing; expected some of 0 to 1"),
         (Capture { chirps: Some(vec![0, 0]), ..usual() }, "each once"),
@@ -119,7 +119,7 @@ fn zeros_saturation_constants_and_real_samples_are_noted() {
     let notes = |change: &dyn Fn(usize) -> [i16; 2]| {
         let words = |n: usize| change(n).into_iter().flat_map(i16::to_le_bytes);
         let bytes: Vec<u8> = (0..2 * 4 * 64).flat_map(words).collect();
-        let pairs = Capture { lanes: None, parts: Some(Parts::Pairs), ..capture(2, order) };
+        let pairs = Capture { lanes: None, part_order: Some(PartOrder::Pairs), ..capture(2, order) };
         read(&pairs, &bytes, &long).unwrap().1.join(" ")
     };
     let wave = |n: usize, of: f64| [(of * (n as f64).cos()) as i16, (of * (n as f64).sin()) as i16];

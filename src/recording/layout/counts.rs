@@ -9,8 +9,8 @@ use super::breaks::Breaks;
 use super::marks::{HEADER_BYTES, Marks};
 use super::period::{Period, period};
 use super::spectrum::{Spectrum, correlation};
-use super::stream::Stream;
-use super::{Counts, Layout, Parts, ReceiverOrder, Words};
+use super::stream::CaptureStream;
+use super::{Counts, Layout, NumberEncoding, PartOrder, ReceiverOrder};
 use ndarray::Array2;
 use num_complex::Complex64;
 use std::io::{self, Read, Seek};
@@ -34,8 +34,6 @@ const MIN_CLIPPED_LINE_PART: f64 = 0.75;
 const MIN_PEAK_HEIGHT_NEPERS: f64 = 3.0;
 /// Number of receivers of most radars.
 const USUAL_RECEIVERS: usize = 4;
-/// A file is saturated where more than this many times as many words have the limits of their type as have the values next to the limits.
-const SATURATION_RATIO: usize = 8;
 /// Number of the file's first numbers from which the order of parts and the length of rows are found.
 const SEARCHED_NUMBERS: usize = 1 << 16;
 /// Lengths of rows whose spectra decide on the order of parts, in complex numbers.
@@ -84,7 +82,7 @@ pub(super) const CLIPPED_NOTE: &str = "Many samples stand at the ends of their t
 /// Counts that a file may have, with their log-odds.
 pub(super) struct LikelyCounts {
     /// The order of parts for which they were found; `None` where they hold for every order.
-    pub parts: Option<Parts>,
+    pub part_order: Option<PartOrder>,
     pub counts: Counts,
     /// The note where receivers and chirps are a guess.
     pub guessed: Option<&'static str>,
@@ -108,18 +106,18 @@ struct Cut {
 /// # Errors
 /// Those of reading the stream.
 pub(super) fn search<R: Read + Seek>(
-    stream: &mut Stream<R>,
+    stream: &mut CaptureStream<R>,
     marks: Option<Marks>,
 ) -> io::Result<(Vec<LikelyCounts>, bool)> {
     let bytes = sample_bytes(stream, marks, 4 * SEARCHED_NUMBERS)?;
     let chirp_bytes = marks.filter(|m| m.apart > 0).map(|m| m.apart - HEADER_BYTES);
-    let words = likely_words(&bytes);
+    let encoding = NumberEncoding::likely(&bytes);
     let mut all = Vec::new();
-    for parts in Parts::ALL {
-        let layout = layout_of(words, parts);
-        let count = bytes.len() / parts.bytes();
+    for part_order in PartOrder::ALL {
+        let layout = layout_of(encoding, part_order);
+        let count = bytes.len() / part_order.bytes();
         let numbers = layout.numbers(&bytes, count.min(SEARCHED_NUMBERS));
-        if let Some(level) = spectrum_level(&numbers, parts == Parts::Real) {
+        if let Some(level) = spectrum_level(&numbers, part_order == PartOrder::Real) {
             all.push((level, layout, numbers));
         }
     }
@@ -142,7 +140,8 @@ pub(super) fn search<R: Read + Seek>(
 /// The likely cuts of the numbers into rows, each with others that are almost as likely. `chirp_bytes` is the length of a chirp of all receivers
 /// where the file has headers.
 fn cuts(layout: Layout, numbers: &[Complex64], file_bytes: u64, chirp_bytes: Option<usize>) -> Vec<(Cut, Vec<Cut>)> {
-    let fits = |length: &usize| chirp_bytes.is_none_or(|bytes| bytes.is_multiple_of(length * layout.parts.bytes()));
+    let fits =
+        |length: &usize| chirp_bytes.is_none_or(|bytes| bytes.is_multiple_of(length * layout.part_order.bytes()));
     let lengths: Vec<usize> = (USUAL_SAMPLES[0]..=MAX_ROW_LENGTH).filter(fits).collect();
     let likeliest = |stride: usize| {
         let breaks = Breaks::of(numbers, stride);
@@ -177,8 +176,8 @@ fn cuts(layout: Layout, numbers: &[Complex64], file_bytes: u64, chirp_bytes: Opt
 /// A length whose largest odd divisor is `n` fits by chance in one file of `n`.
 fn length_log_odds(layout: &Layout, length: usize, file_bytes: u64) -> f64 {
     let odd = (length >> length.trailing_zeros()) as f64;
-    let fills =
-        if file_bytes.is_multiple_of((length * layout.parts.bytes()) as u64) { odd.ln() } else { UNFILLED_LOG_ODDS };
+    let row_bytes = (length * layout.part_order.bytes()) as u64;
+    let fills = if file_bytes.is_multiple_of(row_bytes) { odd.ln() } else { UNFILLED_LOG_ODDS };
     let is_usual = USUAL_SAMPLES.contains(&length)
         || INTERLEAVED_RECEIVERS.iter().any(|r| length.is_multiple_of(*r) && USUAL_SAMPLES.contains(&(length / r)));
     fills + if is_usual { USUAL_LENGTH_LOG_ODDS } else { 0.0 }
@@ -273,12 +272,23 @@ fn peaks_repeat(logs: &[f64], shift: usize, least: f64) -> bool {
 }
 
 /// The layout of these encodings without headers, receivers one after another.
-fn layout_of(words: Words, parts: Parts) -> Layout {
-    Layout { words, parts, q_first: false, receivers: ReceiverOrder::OneAfterAnother, header_bytes: 0, packets: false }
+fn layout_of(encoding: NumberEncoding, part_order: PartOrder) -> Layout {
+    Layout {
+        encoding,
+        part_order,
+        q_first: false,
+        receivers: ReceiverOrder::OneAfterAnother,
+        header_bytes: 0,
+        packets: false,
+    }
 }
 
 /// The first `most` bytes of the samples, without headers.
-fn sample_bytes<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>, most: usize) -> io::Result<Vec<u8>> {
+fn sample_bytes<R: Read + Seek>(
+    stream: &mut CaptureStream<R>,
+    marks: Option<Marks>,
+    most: usize,
+) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; stream.bytes().min(most as u64 + (most / 8) as u64) as usize];
     stream.read_at(0, &mut bytes)?;
     if let Some(Marks { apart, .. }) = marks.filter(|m| m.apart > HEADER_BYTES) {
@@ -290,39 +300,13 @@ fn sample_bytes<R: Read + Seek>(stream: &mut Stream<R>, marks: Option<Marks>, mo
     Ok(bytes)
 }
 
-/// The encoding by which the numbers have the least variance. By a wrong one they jump between large and small values.
-fn likely_words(bytes: &[u8]) -> Words {
-    let words = || bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
-    // By offset binary, saturated samples would be the smallest numbers. Small numbers come with the values next to them, saturated ones don't.
-    let count = |of: [u16; 2]| words().filter(|w| of.contains(w)).count();
-    let is_saturated = count([0x7fff, 0x8000]) > SATURATION_RATIO * count([0x7ffe, 0x8001]).max(1);
-    let power = |of: Words| {
-        let counts = move |b: &&[u8]| !is_saturated || ![[0xff, 0x7f], [0x00, 0x80]].contains(&[b[0], b[1]]);
-        let numbers = || bytes.chunks_exact(2).filter(counts).map(move |b| f64::from(of.number([b[0], b[1]])));
-        let count = numbers().count().max(1) as f64;
-        let mean = numbers().sum::<f64>() / count;
-        numbers().map(|v| (v - mean).powi(2)).sum::<f64>() / count
-    };
-    let [plain, offset, swapped, twelve] =
-        [Words::Int16, Words::OffsetBinary, Words::BigEndian, Words::TwelveBits].map(power);
-    if words().all(|w| w < 0x1000) && twelve < 0.5 * plain {
-        Words::TwelveBits
-    } else if offset < 0.5 * plain && offset <= swapped {
-        Words::OffsetBinary
-    } else if swapped < 0.5 * plain {
-        Words::BigEndian
-    } else {
-        Words::Int16
-    }
-}
-
 /// A sentence of doubt about the counts of a `.cfg`, `None` where they are right: the rows of `bytes` have another length by linear prediction, or
 /// another period. `bytes` are whole chirps of a file of `file_bytes` bytes.
 pub(super) fn doubted(layout: &Layout, counts: Counts, bytes: &[u8], file_bytes: u64) -> Option<String> {
     let stride = if layout.receivers == ReceiverOrder::Interleaved { counts.receivers } else { 1 };
     let cfg_length = counts.samples * stride;
     let most = (SEARCHED_NUMBERS / 2).max(4 * cfg_length);
-    let numbers = layout.numbers(bytes, (bytes.len() / layout.parts.bytes()).min(most));
+    let numbers = layout.numbers(bytes, (bytes.len() / layout.part_order.bytes()).min(most));
     let longest = numbers.len() / 3;
     let breaks = Breaks::of(&numbers, stride);
     let gain = |length: &usize| breaks.gain(*length);
@@ -338,7 +322,7 @@ pub(super) fn doubted(layout: &Layout, counts: Counts, bytes: &[u8], file_bytes:
     }
     let cut = Cut { layout: *layout, samples: counts.samples, interleaved: 1 };
     let cfg_rows = counts.receivers * counts.chirps;
-    let row_bytes = (counts.samples * layout.parts.bytes()) as u64;
+    let row_bytes = (counts.samples * layout.part_order.bytes()) as u64;
     let fills = |rows: usize| file_bytes.is_multiple_of(rows as u64 * row_bytes);
     let can_check_rows = stride == 1 && layout.header_bytes == 0 && !fills(cfg_rows);
     let found = can_check_rows.then(|| period_of(&cut, &numbers)).flatten()?.rows;
@@ -361,7 +345,7 @@ fn rows(numbers: &[Complex64], samples: usize, interleaved: usize) -> Array2<Com
 
 /// Period of the rows of a cut.
 fn period_of(cut: &Cut, numbers: &[Complex64]) -> Option<Period> {
-    let is_real = cut.layout.parts == Parts::Real || numbers.iter().all(|v| v.im == 0.0);
+    let is_real = cut.layout.part_order == PartOrder::Real || numbers.iter().all(|v| v.im == 0.0);
     period(&rows(numbers, cut.samples, cut.interleaved), cut.interleaved, is_real)
 }
 
@@ -374,7 +358,7 @@ fn likely_counts(
     marks: Option<Marks>,
     chirp_bytes: Option<usize>,
 ) -> Vec<LikelyCounts> {
-    let row_bytes = cut.samples * cut.layout.parts.bytes();
+    let row_bytes = cut.samples * cut.layout.part_order.bytes();
     let found = period_of(cut, numbers);
     let rows = found.as_ref().map_or(USUAL_RECEIVERS.min((numbers.len() / cut.samples).max(1)), |found| found.rows);
     let guessed = match found {
@@ -389,7 +373,7 @@ fn likely_counts(
     };
     let counts_for = |rows: usize, receivers: usize, odds: [f64; 2]| {
         // A chirp has a whole number of groups of parts.
-        let group = cut.layout.parts.group();
+        let group = cut.layout.part_order.group();
         let fits = |more: &usize| (cut.samples * receivers * more).is_multiple_of(group);
         let receivers = receivers * [1, 2, 4].into_iter().find(fits).unwrap_or(1);
         let chirps = (rows / receivers).max(1);
@@ -400,7 +384,7 @@ fn likely_counts(
         // A number with few divisors is no reason for few loops.
         let loops = if loops < file_loops.min(8) { file_loops.min(MAX_LOOPS as u64) } else { loops };
         let counts = Counts { samples: cut.samples, receivers, chirps, loops: loops as usize };
-        LikelyCounts { parts: Some(cut.layout.parts), counts, guessed, odds }
+        LikelyCounts { part_order: Some(cut.layout.part_order), counts, guessed, odds }
     };
     let mut all = vec![counts_for(rows, usual_receivers(rows), [0.0; 2])];
     let is_open = chirp_bytes.is_none() && cut.interleaved == 1 && guessed.is_none();

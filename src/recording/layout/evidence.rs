@@ -4,7 +4,7 @@
 //! spectrum is the mean of its logarithm (Whittle, 1953), and every layout holds the same bytes.
 
 use super::spectrum::Spectrum;
-use super::{Counts, Layout, Parts, ReceiverOrder, Words};
+use super::{Counts, Layout, NumberEncoding, PartOrder, ReceiverOrder};
 use crate::recording::RadarProfile;
 use serde::Serialize;
 
@@ -74,7 +74,7 @@ pub(super) fn evidence(layout: &Layout, counts: Counts, spectrum: &Spectrum, fac
     let mut all = vec![spectrum_evidence(spectrum)];
     all.extend((counts.receivers > 1).then(|| receivers(spectrum)));
     all.push(filling(layout, counts, facts));
-    if layout.parts != Parts::Real {
+    if layout.part_order != PartOrder::Real {
         all.push(half(spectrum, facts));
         all.extend((spectrum.images > 0).then(|| images(spectrum)));
     }
@@ -112,7 +112,7 @@ pub(super) fn frame_bytes(layout: &Layout, counts: Counts, profile: Option<&Rada
     let chirps = counts.chirps as u64 * counts.loops as u64;
     let all_numbers = profile.map_or(0, |p| p.frame_numbers as u64).max(numbers.saturating_mul(chirps));
     let headers = all_numbers.checked_div(numbers).unwrap_or(0).saturating_mul(layout.header_bytes as u64);
-    all_numbers.saturating_mul(layout.parts.bytes() as u64).saturating_add(headers).max(1)
+    all_numbers.saturating_mul(layout.part_order.bytes() as u64).saturating_add(headers).max(1)
 }
 
 fn filling(layout: &Layout, counts: Counts, facts: FileFacts<'_>) -> Evidence {
@@ -175,8 +175,12 @@ pub(in crate::recording) struct ConfigClaim {
 
 /// The properties of the samples that the `.cfg` has, beside those of `layout`.
 pub(in crate::recording) fn config_claims(layout: &Layout, profile: &RadarProfile) -> Vec<ConfigClaim> {
-    let real =
-        (Some(profile.real), layout.parts == Parts::Real, CONFIG_REAL_LOG_ODDS, ["complex samples", "real samples"]);
+    let real = (
+        Some(profile.real),
+        layout.part_order == PartOrder::Real,
+        CONFIG_REAL_LOG_ODDS,
+        ["complex samples", "real samples"],
+    );
     let order = (profile.q_first, layout.q_first, CONFIG_IQ_LOG_ODDS, ["I first", "Q first"]);
     let mixed = layout.receivers == ReceiverOrder::Interleaved;
     let words = ["receivers one after another", "receivers sample by sample"];
@@ -185,23 +189,23 @@ pub(in crate::recording) fn config_claims(layout: &Layout, profile: &RadarProfil
         Some(ConfigClaim { config: words[usize::from(config?)], layout: words[usize::from(layout)], log_odds })
     };
     // Real samples have no order of I and Q.
-    let applies = |n: &usize| *n != 1 || layout.parts != Parts::Real;
+    let applies = |n: &usize| *n != 1 || layout.part_order != PartOrder::Real;
     [real, order, receivers].into_iter().enumerate().filter(|(n, _)| applies(n)).filter_map(|(_, s)| claim(s)).collect()
 }
 
 /// Log-odds of a layout by its frequency among captures.
 pub(super) fn usual(layout: &Layout) -> f64 {
-    let words = match layout.words {
-        Words::Int16 => 0.0,
-        Words::OffsetBinary | Words::TwelveBits => -1.0,
-        Words::BigEndian => -2.0,
+    let encoding = match layout.encoding {
+        NumberEncoding::Int16 => 0.0,
+        NumberEncoding::OffsetBinary | NumberEncoding::TwelveBits => -1.0,
+        NumberEncoding::BigEndian => -2.0,
     };
-    let parts = match layout.parts {
-        Parts::Pairs | Parts::TwoLanes => 0.0,
-        Parts::FourLanes => -0.5,
-        Parts::Real => -2.0,
+    let part_order = match layout.part_order {
+        PartOrder::Pairs | PartOrder::TwoLanes => 0.0,
+        PartOrder::FourLanes => -0.5,
+        PartOrder::Real => -2.0,
     };
     let order = if layout.q_first { -0.5 } else { 0.0 };
-    let is_one_lane_each = layout.parts != Parts::FourLanes || layout.receivers == ReceiverOrder::Interleaved;
-    words + parts + order - if is_one_lane_each { 0.0 } else { FOUR_LANES_LOG_ODDS }
+    let is_one_lane_each = layout.part_order != PartOrder::FourLanes || layout.receivers == ReceiverOrder::Interleaved;
+    encoding + part_order + order - if is_one_lane_each { 0.0 } else { FOUR_LANES_LOG_ODDS }
 }

@@ -4,8 +4,8 @@ use super::counts::{self, LikelyCounts};
 use super::evidence::{Evidence, EvidenceKind, FileFacts, evidence};
 use super::marks::{HEADER_BYTES, Marks, marks};
 use super::spectrum::Spectrum;
-use super::stream::Stream;
-use super::{Counts, Layout, Parts, ReceiverOrder, Words};
+use super::stream::CaptureStream;
+use super::{Counts, Layout, NumberEncoding, PartOrder, ReceiverOrder};
 use crate::recording::{Fault, RadarProfile};
 use ndarray::Array2;
 use num_complex::Complex64;
@@ -62,14 +62,14 @@ pub struct Found {
 ///
 /// # Errors
 /// [`Fault`] where the file can't be read or is too short, or by no layout has echoes.
-pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfile>) -> Result<Found, Fault> {
+pub fn find<R: Read + Seek>(stream: &mut CaptureStream<R>, profile: Option<&RadarProfile>) -> Result<Found, Fault> {
     let marks = marks(stream)?;
     let mut notes = Vec::new();
     let (all_counts, mut hides_counts) = match profile {
         Some(p) => {
             let RadarProfile { samples, receivers, loops, .. } = *p;
             let counts = Counts { samples, receivers, chirps: p.chirp_transmitters.len(), loops };
-            (vec![LikelyCounts { parts: None, counts, guessed: None, odds: [0.0; 2] }], false)
+            (vec![LikelyCounts { part_order: None, counts, guessed: None, odds: [0.0; 2] }], false)
         }
         None => {
             notes.push(counts::NOTE.to_owned());
@@ -105,7 +105,7 @@ pub fn find<R: Read + Seek>(stream: &mut Stream<R>, profile: Option<&RadarProfil
     }
     if profile.is_some() {
         let Candidate { layout, counts, .. } = best;
-        let with_counts = Candidates { counts: *counts, only_parts: None, header_bytes, facts };
+        let with_counts = Candidates { counts: *counts, only_order: None, header_bytes, facts };
         let numbers = counts.samples * counts.receivers;
         let chirps = with_counts.chirps(stream, layout.chirp_bytes(counts.samples, counts.receivers), numbers)?;
         notes.extend(counts::doubted(layout, *counts, &chirps.concat(), facts.bytes));
@@ -125,7 +125,7 @@ fn all_zeros() -> Fault {
 
 /// Adds the candidates of all counts.
 fn add_candidates<R: Read + Seek>(
-    stream: &mut Stream<R>,
+    stream: &mut CaptureStream<R>,
     all_counts: &[LikelyCounts],
     header_bytes: usize,
     facts: FileFacts<'_>,
@@ -135,7 +135,9 @@ fn add_candidates<R: Read + Seek>(
     // Log-odds of the likeliest counts, which those of other counts are relative to.
     let mut likeliest = 0.0;
     for likely in all_counts {
-        match (Candidates { counts: likely.counts, only_parts: likely.parts, header_bytes, facts }).evaluate(stream) {
+        match (Candidates { counts: likely.counts, only_order: likely.part_order, header_bytes, facts })
+            .evaluate(stream)
+        {
             Ok(found) if likely.odds == [0.0; 2] => {
                 likeliest = found[0].log_odds();
                 candidates.extend(found);
@@ -177,7 +179,7 @@ fn header_bytes(
         }
         return 0;
     };
-    let fits = |c: &Counts| Parts::ALL.iter().any(|p| c.samples * c.receivers * p.bytes() + HEADER_BYTES == apart);
+    let fits = |c: &Counts| PartOrder::ALL.iter().any(|p| c.samples * c.receivers * p.bytes() + HEADER_BYTES == apart);
     if !counts.as_ref().is_some_and(fits) && found > 1 {
         let samples = (apart - HEADER_BYTES) / 4;
         notes.push(format!(
@@ -192,34 +194,38 @@ fn header_bytes(
 struct Candidates<'a> {
     counts: Counts,
     /// The only order of parts of the candidates; `None` for every order.
-    only_parts: Option<Parts>,
+    only_order: Option<PartOrder>,
     header_bytes: usize,
     facts: FileFacts<'a>,
 }
 
 impl Candidates<'_> {
     /// All of them, the likeliest first; at least one.
-    fn evaluate<R: Read + Seek>(&self, stream: &mut Stream<R>) -> Result<Vec<Candidate>, Fault> {
+    fn evaluate<R: Read + Seek>(&self, stream: &mut CaptureStream<R>) -> Result<Vec<Candidate>, Fault> {
         let Counts { samples, receivers, .. } = self.counts;
         let mut all = Vec::new();
-        for parts in
-            Parts::ALL.into_iter().filter(|parts| self.only_parts.is_none_or(|only_parts| only_parts == *parts))
+        for part_order in PartOrder::ALL
+            .into_iter()
+            .filter(|part_order| self.only_order.is_none_or(|only_order| only_order == *part_order))
         {
             let numbers = samples.saturating_mul(receivers);
-            if numbers == 0 || !numbers.is_multiple_of(parts.group()) {
+            if numbers == 0 || !numbers.is_multiple_of(part_order.group()) {
                 continue;
             }
-            let size = numbers.saturating_mul(parts.bytes()).saturating_add(self.header_bytes);
+            let size = numbers.saturating_mul(part_order.bytes()).saturating_add(self.header_bytes);
             let chirps = self.chirps(stream, size, numbers)?;
             if chirps.is_empty() {
                 continue;
             }
             let has_twelve_bits = are_twelve_bits(&chirps);
-            for words in Words::ALL.into_iter().filter(|w| *w != Words::TwelveBits || has_twelve_bits) {
+            for encoding in
+                NumberEncoding::ALL.into_iter().filter(|w| *w != NumberEncoding::TwelveBits || has_twelve_bits)
+            {
                 for order in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
                     if order == ReceiverOrder::OneAfterAnother || receivers > 1 {
                         let (header_bytes, packets) = (self.header_bytes, stream.has_packets());
-                        let layout = Layout { words, parts, q_first: false, receivers: order, header_bytes, packets };
+                        let layout =
+                            Layout { encoding, part_order, q_first: false, receivers: order, header_bytes, packets };
                         self.add_layout(layout, &chirps, &mut all);
                     }
                 }
@@ -235,11 +241,16 @@ impl Candidates<'_> {
     }
 
     /// The first chirps without their headers. Those with runs of zeros are left out, unless all have such.
-    fn chirps<R: Read + Seek>(&self, stream: &mut Stream<R>, size: usize, numbers: usize) -> io::Result<Vec<Vec<u8>>> {
+    fn chirps<R: Read + Seek>(
+        &self,
+        stream: &mut CaptureStream<R>,
+        size: usize,
+        numbers: usize,
+    ) -> io::Result<Vec<Vec<u8>>> {
         let before = self.facts.profile.map_or(0, |p| p.numbers_before) / numbers * size;
         // As many bytes for every layout: real samples have half the bytes of complex ones.
-        let bytes =
-            MAX_CHIRPS.saturating_mul(numbers.saturating_mul(Parts::Pairs.bytes()).saturating_add(self.header_bytes));
+        let bytes = MAX_CHIRPS
+            .saturating_mul(numbers.saturating_mul(PartOrder::Pairs.bytes()).saturating_add(self.header_bytes));
         let max_chirps = (MAX_BYTES.min(bytes) / size).max(1);
         let file_chirps = stream.bytes().saturating_sub(before as u64) / size as u64;
         let mut chirps = Vec::new();
@@ -265,7 +276,7 @@ impl Candidates<'_> {
             rows.slice_mut(ndarray::s![n * receivers..(n + 1) * receivers, ..]).assign(&chirp);
         }
         let spectrum = Spectrum::of(&rows, receivers);
-        if layout.parts == Parts::Real {
+        if layout.part_order == PartOrder::Real {
             all.push(self.candidate(layout, spectrum.of_real()));
         } else {
             all.push(self.candidate(Layout { q_first: true, ..layout }, spectrum.mirrored()));

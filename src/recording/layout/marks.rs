@@ -1,6 +1,6 @@
 //! Headers before chirps, found by their first bytes.
 
-use super::stream::Stream;
+use super::stream::CaptureStream;
 use std::io::{self, Read, Seek};
 
 /// First bytes of a chirp's header: 0x0CDA0ADC twice, high half word first.
@@ -21,7 +21,7 @@ pub(super) struct Marks {
 }
 
 /// Finds headers at equal distances from the first byte on; `None` where the file begins with no header.
-pub(super) fn marks<R: Read + Seek>(stream: &mut Stream<R>) -> io::Result<Option<Marks>> {
+pub(super) fn marks<R: Read + Seek>(stream: &mut CaptureStream<R>) -> io::Result<Option<Marks>> {
     let mut start = vec![0; stream.bytes().min(MAX_SEARCHED_BYTES) as usize];
     stream.read_at(0, &mut start)?;
     if !start.starts_with(&MAGIC) {

@@ -29,6 +29,6 @@ mod verdict;
 pub(super) use evidence::config_claims;
 pub use evidence::{Evidence, EvidenceKind};
 pub use find::{Candidate, Found, find};
-pub use shape::{Counts, Layout, Parts, ReceiverOrder, Words};
+pub use shape::{Counts, Layout, NumberEncoding, PartOrder, ReceiverOrder};
 pub(in crate::recording) use spectrum::Spectrum;
 pub use verdict::Certainty;

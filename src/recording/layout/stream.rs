@@ -14,14 +14,14 @@ const CHECKED_PACKETS: u64 = 16;
 
 /// The data bytes of a capture's file, which may hold network packets.
 #[derive(Debug)]
-pub struct Stream<R> {
+pub struct CaptureStream<R> {
     file: R,
     file_bytes: u64,
-    packets: Option<Packets>,
+    packets: Option<PacketSequence>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Packets {
+struct PacketSequence {
     /// Number of data bytes before the first packet, by its header.
     first_byte: u64,
     /// Number of packets in the file.
@@ -30,14 +30,14 @@ struct Packets {
     bytes: u64,
 }
 
-impl<R: Read + Seek> Stream<R> {
+impl<R: Read + Seek> CaptureStream<R> {
     /// The data of `file`, which holds packets where the headers at its beginning fit.
     ///
     /// # Errors
     /// The error of the read or the seek.
     pub fn new(mut file: R) -> io::Result<Self> {
         let file_bytes = file.seek(SeekFrom::End(0))?;
-        let mut stream = Stream { file, file_bytes, packets: None };
+        let mut stream = CaptureStream { file, file_bytes, packets: None };
         stream.packets = stream.find_packets()?;
         Ok(stream)
     }
@@ -48,7 +48,7 @@ impl<R: Read + Seek> Stream<R> {
     /// The error of the seek.
     pub fn plain(mut file: R) -> io::Result<Self> {
         let file_bytes = file.seek(SeekFrom::End(0))?;
-        Ok(Stream { file, file_bytes, packets: None })
+        Ok(CaptureStream { file, file_bytes, packets: None })
     }
 
     /// Whether the file holds packets.
@@ -98,7 +98,7 @@ impl<R: Read + Seek> Stream<R> {
         Ok(Some((number(&header[..4]), number(&header[4..]))))
     }
 
-    fn find_packets(&mut self) -> io::Result<Option<Packets>> {
+    fn find_packets(&mut self) -> io::Result<Option<PacketSequence>> {
         let count = self.file_bytes.div_ceil(PACKET_BYTES);
         let Some((first_number, first_byte)) = self.header(0)? else { return Ok(None) };
         if count < 2 || first_byte % DATA_BYTES != 0 {
@@ -122,10 +122,10 @@ impl<R: Read + Seek> Stream<R> {
         let in_last = (self.file_bytes - (count - 1) * PACKET_BYTES).saturating_sub(HEADER_BYTES);
         let bytes = last.1 - first_byte + in_last;
         // A capture with most packets lost is more likely no file of packets.
-        Ok((bytes <= self.file_bytes.saturating_mul(4)).then_some(Packets { first_byte, count, bytes }))
+        Ok((bytes <= self.file_bytes.saturating_mul(4)).then_some(PacketSequence { first_byte, count, bytes }))
     }
 
-    fn read_packets(&mut self, packets: Packets, offset: u64, buffer: &mut [u8]) -> io::Result<()> {
+    fn read_packets(&mut self, packets: PacketSequence, offset: u64, buffer: &mut [u8]) -> io::Result<()> {
         let end = offset + buffer.len() as u64;
         let mut index = self.packet_before(packets, offset)?;
         while let Some((_, at)) = self.header(index)?.filter(|_| index < packets.count) {
@@ -148,7 +148,7 @@ impl<R: Read + Seek> Stream<R> {
     }
 
     /// The last packet of the file that begins at `offset` or before it.
-    fn packet_before(&mut self, packets: Packets, offset: u64) -> io::Result<u64> {
+    fn packet_before(&mut self, packets: PacketSequence, offset: u64) -> io::Result<u64> {
         let (mut low, mut high) = (0, packets.count.min(offset / DATA_BYTES + 1));
         while low + 1 < high {
             let middle = low.midpoint(high);

@@ -1,4 +1,4 @@
-use super::stream::Stream;
+use super::stream::CaptureStream;
 use super::*;
 use crate::recording::RadarProfile;
 use crate::recording::card::tests::sent;
@@ -42,11 +42,11 @@ fn seen(second: f64) -> Vec<Vec<Complex64>> {
 
 fn written(layout: &Layout, chirps: &[Vec<Complex64>]) -> Vec<u8> {
     let mut out = Vec::new();
-    let word = |v: f64| match layout.words {
-        Words::Int16 => (v.round() as i16).to_le_bytes(),
-        Words::OffsetBinary => ((v.round() as i16) as u16 ^ 0x8000).to_le_bytes(),
-        Words::BigEndian => (v.round() as i16).to_be_bytes(),
-        Words::TwelveBits => ((v.round() as i16) as u16 & 0x0fff).to_le_bytes(),
+    let word = |v: f64| match layout.encoding {
+        NumberEncoding::Int16 => (v.round() as i16).to_le_bytes(),
+        NumberEncoding::OffsetBinary => ((v.round() as i16) as u16 ^ 0x8000).to_le_bytes(),
+        NumberEncoding::BigEndian => (v.round() as i16).to_be_bytes(),
+        NumberEncoding::TwelveBits => ((v.round() as i16) as u16 & 0x0fff).to_le_bytes(),
     };
     for chirp in chirps {
         out.extend(marks::MAGIC.iter().chain(&[0; 56]).take(layout.header_bytes));
@@ -54,11 +54,11 @@ fn written(layout: &Layout, chirps: &[Vec<Complex64>]) -> Vec<u8> {
             ReceiverOrder::OneAfterAnother => chirp.clone(),
             ReceiverOrder::Interleaved => (0..chirp.len()).map(|n| chirp[n % 3 * SAMPLES + n / 3]).collect(),
         };
-        for block in sorted.chunks(layout.parts.group()) {
+        for block in sorted.chunks(layout.part_order.group()) {
             let (first, second): (Vec<f64>, Vec<f64>) =
                 block.iter().map(|v| if layout.q_first { (v.im, v.re) } else { (v.re, v.im) }).unzip();
             out.extend(first.iter().flat_map(|v| word(*v)));
-            if layout.parts != Parts::Real {
+            if layout.part_order != PartOrder::Real {
                 out.extend(second.iter().flat_map(|v| word(*v)));
             }
         }
@@ -66,25 +66,25 @@ fn written(layout: &Layout, chirps: &[Vec<Complex64>]) -> Vec<u8> {
     out
 }
 
-fn layout(words: Words, parts: Parts, q_first: bool, receivers: ReceiverOrder) -> Layout {
-    Layout { words, parts, q_first, receivers, header_bytes: 0, packets: false }
+fn layout(encoding: NumberEncoding, part_order: PartOrder, q_first: bool, receivers: ReceiverOrder) -> Layout {
+    Layout { encoding, part_order, q_first, receivers, header_bytes: 0, packets: false }
 }
 
-fn in_order(parts: Parts) -> Layout {
-    layout(Words::Int16, parts, false, ReceiverOrder::OneAfterAnother)
+fn in_order(part_order: PartOrder) -> Layout {
+    layout(NumberEncoding::Int16, part_order, false, ReceiverOrder::OneAfterAnother)
 }
 
 fn found(bytes: Vec<u8>, profile: Option<&RadarProfile>) -> Found {
-    find(&mut Stream::new(Cursor::new(bytes)).unwrap(), profile).unwrap()
+    find(&mut CaptureStream::new(Cursor::new(bytes)).unwrap(), profile).unwrap()
 }
 
 #[test]
 fn every_layout_is_found_by_the_spectrum_alone() {
-    for words in Words::ALL {
-        for parts in [Parts::Pairs, Parts::TwoLanes, Parts::FourLanes] {
+    for encoding in NumberEncoding::ALL {
+        for part_order in [PartOrder::Pairs, PartOrder::TwoLanes, PartOrder::FourLanes] {
             for q_first in [false, true] {
                 for receivers in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
-                    let right = layout(words, parts, q_first, receivers);
+                    let right = layout(encoding, part_order, q_first, receivers);
                     let found = found(written(&right, &chirps()), Some(&profile("")));
                     assert_eq!(found.best().layout, right, "{:#?}", found.sentences());
                     assert_ne!(found.certainty(), Certainty::Open, "{:#?}", found.sentences());
@@ -96,7 +96,7 @@ fn every_layout_is_found_by_the_spectrum_alone() {
 
 #[test]
 fn complex_and_real_samples_are_judged_by_the_same_bytes() {
-    let right = in_order(Parts::TwoLanes);
+    let right = in_order(PartOrder::TwoLanes);
     let quiet = chirps();
     let mut all = [quiet.clone(), quiet.clone(), quiet.clone(), quiet].concat();
     // Where the second half is louder, real samples, which are half as long, must not be judged by the first half alone.
@@ -108,14 +108,14 @@ fn complex_and_real_samples_are_judged_by_the_same_bytes() {
 
 #[test]
 fn four_lanes_carry_a_receiver_each() {
-    let order = |receivers| evidence::usual(&layout(Words::Int16, Parts::FourLanes, false, receivers));
+    let order = |receivers| evidence::usual(&layout(NumberEncoding::Int16, PartOrder::FourLanes, false, receivers));
     let told = order(ReceiverOrder::Interleaved) - order(ReceiverOrder::OneAfterAnother);
     assert!(told > 16.0, "more than a .cfg's word for the other order: {told}");
 }
 
 #[test]
 fn the_deciding_evidence_is_named() {
-    let right = in_order(Parts::TwoLanes);
+    let right = in_order(PartOrder::TwoLanes);
     let plain = found(written(&right, &chirps()), Some(&profile("")));
     assert_eq!(plain.decided_by(), EvidenceKind::Half, "I and Q alone are near: {:#?}", plain.sentences());
     assert!(plain.sentences().iter().any(|s| s.starts_with("Every receiver sees the same echoes")));
@@ -131,7 +131,7 @@ fn the_deciding_evidence_is_named() {
 
 #[test]
 fn headers_before_chirps_are_found() {
-    let right = Layout { header_bytes: 64, ..in_order(Parts::Pairs) };
+    let right = Layout { header_bytes: 64, ..in_order(PartOrder::Pairs) };
     let found = found(written(&right, &chirps()), Some(&profile("lvdsStreamCfg -1 1 1 1\n")));
     assert_eq!(found.best().layout, right);
     assert!(found.notes.iter().any(|n| n.contains("header of 64 bytes: 8 were found")), "{:?}", found.notes);
@@ -145,11 +145,11 @@ fn packets(bytes: &[u8], lost: &[usize]) -> Vec<u8> {
 #[test]
 fn packets_are_read_with_zeros_for_those_lost() {
     let bytes: Vec<u8> = (0..20_000u32).map(|n| (n % 251) as u8).collect();
-    let mut stream = Stream::new(Cursor::new(packets(&bytes, &[]))).unwrap();
+    let mut stream = CaptureStream::new(Cursor::new(packets(&bytes, &[]))).unwrap();
     let mut read = vec![0; 5000];
     stream.read_at(1000, &mut read).unwrap();
     assert!(stream.has_packets() && read == bytes[1000..6000] && stream.lost_packets() == 0);
-    let mut stream = Stream::new(Cursor::new(packets(&bytes, &[2, 5, 6]))).unwrap();
+    let mut stream = CaptureStream::new(Cursor::new(packets(&bytes, &[2, 5, 6]))).unwrap();
     assert_eq!((stream.bytes(), stream.lost_packets()), (20_000, 3));
     let mut all = vec![1; bytes.len()];
     stream.read_at(0, &mut all).unwrap();
@@ -158,14 +158,14 @@ fn packets_are_read_with_zeros_for_those_lost() {
             if [2, 5, 6].contains(&n) { vec![0; part.len()] } else { bytes[n * 1456..n * 1456 + part.len()].to_vec() };
         assert_eq!(part, expected, "packet {n}");
     }
-    assert!(!Stream::new(Cursor::new(bytes)).unwrap().has_packets());
+    assert!(!CaptureStream::new(Cursor::new(bytes)).unwrap().has_packets());
 }
 
 #[test]
 fn samples_with_receivers_are_found_without_a_cfg() {
     let three: Vec<Vec<Complex64>> = (0..5).flat_map(|_| chirps()).collect();
     for receivers in [ReceiverOrder::OneAfterAnother, ReceiverOrder::Interleaved] {
-        let right = layout(Words::Int16, Parts::TwoLanes, false, receivers);
+        let right = layout(NumberEncoding::Int16, PartOrder::TwoLanes, false, receivers);
         let found = found(written(&right, &three), None);
         let Candidate { layout, counts, .. } = found.best();
         let read = (layout, counts.samples, counts.receivers, counts.chirps);
@@ -180,7 +180,7 @@ fn samples_with_receivers_are_found_without_a_cfg() {
 
 #[test]
 fn a_cfg_of_another_capture_is_doubted() {
-    let right = in_order(Parts::TwoLanes);
+    let right = in_order(PartOrder::TwoLanes);
     let bytes = written(&right, &(0..5).flat_map(|_| chirps()).collect::<Vec<_>>());
     for (samples, is_doubted) in [(96, false), (48, true), (128, true), (250, true)] {
         let more = format!("profileCfg 0 77 10 6 60 0 0 50 1 {samples} 4000 0 0 30\n");
@@ -200,7 +200,7 @@ fn two_echoes_at_mirrored_places_are_no_image() {
         far + Complex64::from_polar(500.0, TAU * (30.0 * n + 0.21 * receiver)) + Complex64::new(noise(), noise())
     };
     let all: Vec<Vec<Complex64>> = (0..8).map(|_| (0..3 * SAMPLES).map(&mut sample).collect()).collect();
-    let right = in_order(Parts::Pairs);
+    let right = in_order(PartOrder::Pairs);
     let found = found(written(&right, &all), Some(&profile("adcbufCfg -1 0 0 1 1\n")));
     let best = found.best();
     assert_eq!((best.layout, best.of_kind(EvidenceKind::Images)), (right, 0.0), "{:#?}", found.sentences());
@@ -208,7 +208,7 @@ fn two_echoes_at_mirrored_places_are_no_image() {
 
 #[test]
 fn a_constant_part_or_saturation_does_not_change_the_words() {
-    let right = in_order(Parts::TwoLanes);
+    let right = in_order(PartOrder::TwoLanes);
     let changed = |change: fn(Complex64) -> Complex64| -> Vec<Vec<Complex64>> {
         (0..5).flat_map(|_| chirps()).map(|chirp| chirp.into_iter().map(change).collect()).collect()
     };
@@ -228,7 +228,7 @@ fn rows_of_a_nearly_continuous_echo_are_separated() {
         Complex64::from_polar(900.0, TAU * turns) + Complex64::new(noise(), noise())
     };
     let loops: Vec<Vec<Complex64>> = (0..16).map(|_| (0..1000).map(&mut sample).collect()).collect();
-    let pairs = in_order(Parts::Pairs);
+    let pairs = in_order(PartOrder::Pairs);
     let found = found(written(&pairs, &loops), None);
     let counts = found.best().counts;
     assert_eq!((counts.samples, counts.receivers, counts.chirps), (125, 4, 2), "{:#?}", found.sentences());
@@ -236,7 +236,7 @@ fn rows_of_a_nearly_continuous_echo_are_separated() {
 
 #[test]
 fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
-    for (parts, chirps) in [(Parts::Pairs, 2), (Parts::Pairs, 3), (Parts::Real, 2)] {
+    for (part_order, chirps) in [(PartOrder::Pairs, 2), (PartOrder::Pairs, 3), (PartOrder::Real, 2)] {
         let mut noise = noise(7, 40.0);
         // Receivers half a wavelength apart, transmitters in turn, and a fifth of a turn from chirp to chirp.
         let mut sample = |n: usize| {
@@ -245,7 +245,7 @@ fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
             Complex64::from_polar(900.0, TAU * turns) + Complex64::new(noise(), noise())
         };
         let rows: Vec<Vec<Complex64>> = (0..40).map(|_| (0..480 * chirps).map(&mut sample).collect()).collect();
-        let found = found(written(&in_order(parts), &rows), None);
+        let found = found(written(&in_order(part_order), &rows), None);
         let counts = found.best().counts;
         assert_eq!((counts.samples, counts.receivers, counts.chirps), (120, 4, chirps), "{:#?}", found.sentences());
     }
@@ -261,7 +261,7 @@ fn equal_rows_leave_the_receivers_open() {
         of_echoes + Complex64::new(noise(), noise())
     };
     let one: Vec<Vec<Complex64>> = (0..320).map(|_| (0..SAMPLES).map(&mut sample).collect()).collect();
-    let right = in_order(Parts::Pairs);
+    let right = in_order(PartOrder::Pairs);
     let found = found(written(&right, &one), None);
     assert_ne!(found.certainty(), Certainty::Sure, "{:#?}", found.sentences());
 }
@@ -275,7 +275,7 @@ fn files_without_echoes_are_refused() {
     };
     let random: Vec<u8> = (0..300_000).map(|_| byte()).collect();
     let refused = |bytes: &[u8], profile: Option<&RadarProfile>| {
-        find(&mut Stream::new(Cursor::new(bytes)).unwrap(), profile).unwrap_err().to_string()
+        find(&mut CaptureStream::new(Cursor::new(bytes)).unwrap(), profile).unwrap_err().to_string()
     };
     assert!(refused(&random, None).contains("spectrum is flat"));
     assert!(refused(&random, Some(&profile(""))).contains("spectrum is flat"));
@@ -291,7 +291,7 @@ proptest! {
     #[test]
     fn any_bytes_have_a_layout_or_none(bytes in proptest::collection::vec(any::<u8>(), 0..5000), has_profile: bool) {
         let profile = profile("");
-        if let Ok(found) = find(&mut Stream::new(Cursor::new(&bytes)).unwrap(), has_profile.then_some(&profile)) {
+        if let Ok(found) = find(&mut CaptureStream::new(Cursor::new(&bytes)).unwrap(), has_profile.then_some(&profile)) {
             prop_assert!(found.best().log_odds().is_finite() && !found.sentences().is_empty());
         }
     }

@@ -1,7 +1,7 @@
 //! Certainty of the choice of a layout, and its reasons in sentences.
 
 use super::evidence::LEVEL_LOG_ODDS;
-use super::{Candidate, Counts, EvidenceKind, Found, Parts, ReceiverOrder};
+use super::{Candidate, Counts, EvidenceKind, Found, PartOrder, ReceiverOrder};
 use crate::radar::capitalised;
 use serde::Serialize;
 
@@ -115,14 +115,17 @@ impl Candidate {
     /// The layout and its counts, as a part of a sentence.
     pub fn description(&self) -> String {
         let Counts { samples, receivers, chirps, .. } = self.counts;
-        let parts = self.layout.parts.description(self.layout.q_first);
+        let part_order = self.layout.part_order.description(self.layout.q_first);
         let order = match (receivers, self.layout.receivers) {
             (1, _) => "1 receiver".to_owned(),
             (_, ReceiverOrder::OneAfterAnother) => format!("{receivers} receivers one after another"),
             (_, ReceiverOrder::Interleaved) => format!("{receivers} receivers sample by sample"),
         };
-        let real = if self.layout.parts == Parts::Real { "real " } else { "" };
+        let real = if self.layout.part_order == PartOrder::Real { "real " } else { "" };
         let chirps = if chirps == 1 { String::new() } else { format!(", {chirps} chirps a loop") };
-        format!("{}, {parts}, {order}, {samples} {real}samples a chirp{chirps}", self.layout.words.description())
+        format!(
+            "{}, {part_order}, {order}, {samples} {real}samples a chirp{chirps}",
+            self.layout.encoding.description()
+        )
     }
 }

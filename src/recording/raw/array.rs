@@ -9,7 +9,7 @@ use crate::recording::layout::{Certainty, Counts};
 use crate::recording::numbers::Numbers;
 use crate::recording::profile::RadarProfile;
 use crate::recording::recording_text::open_file;
-use crate::recording::{AxisKind, Fault, Offer, Origin, RecordingError, hdf5, numpy};
+use crate::recording::{AxisKind, Fault, Origin, ReadingOption, RecordingError, hdf5, numpy};
 use crate::scene::npz::X_KEY;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -59,9 +59,12 @@ pub(super) fn import(
         let subject = Subject { data, profile, line: &element_line, sentences: &sentences };
         let array = text::Array { reading, shape: &shape, key: key.as_deref(), turn_transmitters };
         let (description, power) = (reading.description(&shape), reading.power.clone());
-        (Offer { description, log_odds: reading.log_odds, power, toml: text::of_array(&array, &subject) }, element_line)
+        (
+            ReadingOption { description, log_odds: reading.log_odds, power, toml: text::of_array(&array, &subject) },
+            element_line,
+        )
     };
-    let (offers, lines): (Vec<Offer>, Vec<ElementLine>) = all.iter().map(offer).unzip();
+    let (offers, lines): (Vec<ReadingOption>, Vec<ElementLine>) = all.iter().map(offer).unzip();
     let board = lines.first().and_then(|element_line| element_line.board);
     doubts.extend(lines.into_iter().take(1).flat_map(|element_line| element_line.doubts));
     let frames = best.len(AxisKind::Frame, &shape) as u64;

@@ -7,9 +7,9 @@ use crate::recording::profile::RadarProfile;
 use ndarray::{Array2, ArrayD, Axis, s};
 use num_complex::Complex64;
 
-/// Most lines along an axis, and most numbers of each, that the evidence on it is computed from.
-const MAX_LINES: usize = 128;
-const MAX_LINE_NUMBERS: usize = 1 << 12;
+/// Most rows along an axis, and most numbers of each, that the evidence on it is computed from.
+const MAX_AXIS_ROWS: usize = 128;
+const MAX_ROW_NUMBERS: usize = 1 << 12;
 /// Least number of chirps of a transmitter whose sameness is measured.
 const MIN_CHIRPS: usize = 4;
 /// Log-odds of a length that agrees with the `.cfg`; minus this for one that contradicts it.
@@ -198,7 +198,7 @@ fn agrees_with_config(kind: AxisKind, len: usize, profile: &RadarProfile, has_tr
 }
 
 fn measure_axis(numbers: &Numbers, iq: Option<usize>, axis: usize) -> AxisFigures {
-    let rows = lines_along(numbers, iq, axis);
+    let rows = rows_along(numbers, iq, axis);
     let len = rows.ncols().max(1) as f64;
     let all: f64 = rows.iter().map(|v| v.norm_sqr()).sum();
     // With transmitters in turn every second or third chirp is the same.
@@ -215,23 +215,23 @@ fn measure_axis(numbers: &Numbers, iq: Option<usize>, axis: usize) -> AxisFigure
     AxisFigures { same: if all > 0.0 { (same / all).min(1.0) } else { 0.0 }, flatness_db, power: spectrum.power }
 }
 
-/// At most [`MAX_LINES`] lines along an axis, `[lines, numbers]`.
-fn lines_along(numbers: &Numbers, iq: Option<usize>, axis: usize) -> Array2<Complex64> {
+/// At most [`MAX_AXIS_ROWS`] rows along an axis, `[rows, numbers]`.
+fn rows_along(numbers: &Numbers, iq: Option<usize>, axis: usize) -> Array2<Complex64> {
     match (numbers, iq) {
-        (Numbers::Complex(values), _) => lines_of(values, axis, |v| *v),
-        (Numbers::Real(values), None) => lines_of(values, axis, |v| Complex64::from(*v)),
+        (Numbers::Complex(values), _) => rows_of(values, axis, |v| *v),
+        (Numbers::Real(values), None) => rows_of(values, axis, |v| Complex64::from(*v)),
         (Numbers::Real(values), Some(iq)) => {
             let axis = if axis > iq { axis - 1 } else { axis };
-            let part = |n: usize| lines_of(&values.index_axis(Axis(iq), n).to_owned(), axis, |v| Complex64::from(*v));
+            let part = |n: usize| rows_of(&values.index_axis(Axis(iq), n).to_owned(), axis, |v| Complex64::from(*v));
             part(0) + part(1) * Complex64::I
         }
     }
 }
 
-fn lines_of<T>(values: &ArrayD<T>, axis: usize, number: impl Fn(&T) -> Complex64) -> Array2<Complex64> {
+fn rows_of<T>(values: &ArrayD<T>, axis: usize, number: impl Fn(&T) -> Complex64) -> Array2<Complex64> {
     let lanes = values.lanes(Axis(axis)).into_iter();
-    let (count, len) = (values.len() / values.shape()[axis].max(1), values.shape()[axis].min(MAX_LINE_NUMBERS));
-    let step = count.div_ceil(MAX_LINES).max(1);
+    let (count, len) = (values.len() / values.shape()[axis].max(1), values.shape()[axis].min(MAX_ROW_NUMBERS));
+    let step = count.div_ceil(MAX_AXIS_ROWS).max(1);
     let taken: Vec<Complex64> = lanes.step_by(step).flat_map(|lane| lane.into_iter().take(len)).map(number).collect();
     let rows = taken.len() / len.max(1);
     Array2::from_shape_vec((rows, len), taken).unwrap_or_else(|_| Array2::zeros((0, len)))

@@ -1,8 +1,8 @@
 //! The first frame of a capture: the constant part, and the order of a cascade's chips.
 
 use super::boards::{self, Board};
-use crate::recording::capture::{Capture, Frame, Plan};
-use crate::recording::layout::stream::Stream;
+use crate::recording::capture::{Capture, CapturePlan, Frame};
+use crate::recording::layout::stream::CaptureStream;
 use crate::recording::profile::RadarProfile;
 use ndarray::{Array1, Array2, ArrayView1, Axis};
 use num_complex::Complex64;
@@ -30,11 +30,11 @@ pub(super) struct FirstFrame {
 impl FirstFrame {
     /// Reads the first frame by the layout in `capture`. All figures are empty where that fails.
     pub fn read<R: Read + Seek>(
-        stream: &mut Stream<R>,
+        stream: &mut CaptureStream<R>,
         capture: &Capture,
         profile: Option<&RadarProfile>,
     ) -> FirstFrame {
-        let Ok(plan) = Plan::new(capture, profile, stream.bytes()) else { return FirstFrame::default() };
+        let Ok(plan) = CapturePlan::new(capture, profile, stream.bytes()) else { return FirstFrame::default() };
         let Ok(Frame { samples, quality }) = Frame::read(stream, capture, &plan) else {
             return FirstFrame { frames: plan.frames, ..FirstFrame::default() };
         };

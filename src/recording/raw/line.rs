@@ -85,7 +85,8 @@ pub(super) fn element_line(
         && let Some((senders, taken, receivers)) = line_of_geometry(profile)
     {
         let doubt =
-            "Elements stand where the .cfg's antGeometry lines say; those of the longest row form the line.".to_owned();
+            "Elements stand where the .cfg's antGeometry lines say; the longest line of elements at one height counts."
+                .to_owned();
         return line_in_metres(&senders, &receivers, Some(taken), carrier_hz, vec![doubt]);
     }
     let transmitters: Vec<usize> = profile.chirp_transmitters.iter().flat_map(|mask| bits(*mask)).collect();
@@ -163,12 +164,12 @@ fn at_one_height(senders: &[Sender]) -> (Vec<Sender>, Option<String>) {
     (best, note)
 }
 
-/// The longest row of elements at one height by the `.cfg`'s antGeometry lines: senders, indices of receivers and their places.
+/// The longest line of elements at one height by the `.cfg`'s antGeometry lines: senders, indices of receivers and their places.
 fn line_of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, Vec<f64>)> {
     let [across, up] = &profile.element_places;
     let receivers = profile.receivers;
     let bits = profile.senders();
-    // The lines have every receiver of the chip, or only those that are on.
+    // The values have every receiver of the chip, or only those that are on.
     let last = bits.iter().max()?;
     let of_chip = |r: usize| profile.receiver_numbers.get(r).copied().unwrap_or(r);
     let names_chip =
@@ -176,7 +177,7 @@ fn line_of_geometry(profile: &RadarProfile) -> Option<(Vec<Sender>, Vec<usize>, 
     if !names_chip && across.len() != bits.len() * receivers {
         return None;
     }
-    // Without the second line all elements are at one height.
+    // Without the second list all elements are at one height.
     let level = vec![0.0; across.len()];
     let up = if up.is_empty() { &level } else { up };
     if up.len() < across.len() {

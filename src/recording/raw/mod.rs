@@ -29,11 +29,11 @@ pub use imported::Imported;
 use super::axes::{ChirpChoice, Join};
 use super::capture::{Capture, Treatment};
 use super::chain::{Source, open_joined};
-use super::layout::stream::Stream;
+use super::layout::stream::CaptureStream;
 use super::layout::{Candidate, Certainty, EvidenceKind, Found, config_claims, find};
 use super::profile::RadarProfile;
 use super::recording_text::{open_file, read_config_text};
-use super::{Fault, Offer, Origin, Recording, RecordingError};
+use super::{Fault, Origin, ReadingOption, Recording, RecordingError};
 use crate::files::ends_in;
 use boards::Board;
 use first_frame::FirstFrame;
@@ -78,7 +78,7 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
         Ok([data, chips @ ..]) => Files { data, more: Vec::new(), chips: chips.to_vec(), config },
         Err(_) => Files { more: beside::more_files(&data), data, chips: Vec::new(), config },
     };
-    let stream = files.open().and_then(Stream::new).map_err(|e| Fault::from(e).of(&files.data))?;
+    let stream = files.open().and_then(CaptureStream::new).map_err(|e| Fault::from(e).of(&files.data))?;
     let profile = profile.map(|profile| profile.on_chips(1 + files.chips.len()));
     import_stream(stream, files, profile.as_ref(), board)
 }
@@ -90,7 +90,7 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
 pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
     let profile = read_config(config)?;
     let data = frame_path(config);
-    let stream = Stream::plain(Cursor::new(bytes)).map_err(|e| Fault::from(e).of(&data))?;
+    let stream = CaptureStream::plain(Cursor::new(bytes)).map_err(|e| Fault::from(e).of(&data))?;
     import_stream(
         stream,
         Files { data, more: Vec::new(), chips: Vec::new(), config: Some(config.to_owned()) },
@@ -148,7 +148,7 @@ impl Files {
 
 /// The ways to read a capture, with their TOML.
 fn import_stream<R: Read + io::Seek>(
-    mut stream: Stream<R>,
+    mut stream: CaptureStream<R>,
     files: Files,
     profile: Option<&RadarProfile>,
     board: Option<&'static Board>,
@@ -184,7 +184,7 @@ fn import_stream<R: Read + io::Seek>(
         let about = text::Subject { data: &files.data, profile, line: &line, sentences: &sentences };
         let (description, power) = (candidate.description(), candidate.power.clone());
         let toml = text::of_capture(&capture, candidate.counts.samples, &about);
-        Offer { description, log_odds: candidate.log_odds(), power, toml }
+        ReadingOption { description, log_odds: candidate.log_odds(), power, toml }
     };
     let offers = found.candidates.iter().take(MAX_OFFERS).map(offer).collect();
     let (board, frames) = (line.board, frame.frames);
@@ -254,8 +254,8 @@ fn capture(best: &Candidate, files: &Files, profile: Option<&RadarProfile>) -> C
         config: files.config.as_ref().map(named),
         more_files: files.more.iter().map(named).collect(),
         chips: files.chips.iter().map(named).collect(),
-        words: layout.words,
-        parts: Some(layout.parts),
+        encoding: layout.encoding,
+        part_order: Some(layout.part_order),
         q_first: layout.q_first,
         receivers: layout.receivers,
         header_bytes: layout.header_bytes,

@@ -117,7 +117,7 @@ fn places_of_a_cfg_make_the_line() {
     let both = format!("bpmCfg -1 1 0 1\n{across}");
     for (what, masks, more, elements) in [
         ("places across alone stand at one height", [1, 2], across, 8),
-        ("the longest row of a planar board", [1, 2], planar, 4),
+        ("the longest line of a planar board", [1, 2], planar, 4),
         ("transmitters that send together", [3, 3], &both, 8),
     ] {
         let mask = |n: usize| format!(" 0 0 0 0 {}\n", masks[n]);

@@ -3,7 +3,7 @@
 use super::axes::Reading;
 use super::line::{ElementLine, USUAL_CARRIER_HZ};
 use crate::radar::{Antennas, Radar, SPEED_OF_LIGHT};
-use crate::recording::layout::Parts;
+use crate::recording::layout::PartOrder;
 use crate::recording::profile::RadarProfile;
 use crate::recording::{AxisKind, Capture};
 use std::fmt::Write;
@@ -20,7 +20,7 @@ pub(super) struct Subject<'a> {
 /// The TOML of a capture of `samples` samples in a chirp.
 pub(super) fn of_capture(capture: &Capture, samples: usize, subject: &Subject<'_>) -> String {
     let mut out = heading(subject);
-    let halves = if capture.parts == Some(Parts::Real) { 2 } else { 1 };
+    let halves = if capture.part_order == Some(PartOrder::Real) { 2 } else { 1 };
     radar(&mut out, None, samples.div_ceil(halves), subject);
     out.push_str("\n[recording]\n");
     put_key(&mut out, "file", &quoted(&beside(subject.data, subject.data)));

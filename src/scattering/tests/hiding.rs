@@ -34,7 +34,7 @@ fn what_a_body_hides_is_seen_again_without_shadows() {
     let objects = vec![Object::Point(Point::new(0.0, 20.0)), Object::Box(Block::new([0.0, 10.0], [6.0, 1.0], 0.0))];
     let scene = Scene { objects, ..Scene::default() };
     let amplitude = |scene: &Scene| {
-        let echoing = Echoing::of(&radar, scene);
+        let echoing = EchoSources::of(&radar, scene);
         let mut found = Vec::new();
         Sources::from(&echoing).scattered(radar.pair(500), &mut found);
         let hidden = found.iter().find(|e| e.kind == EchoKind::Point).map(|e| e.amplitude.norm());
@@ -54,7 +54,7 @@ fn only_what_a_body_may_hide_depends_on_it() {
             Object::Wall(Wall::new(0.0, 20.0, 3.0, 0.0)),
             Object::Point(Point::new(15.0, 10.0)),
         ];
-        SeenObject::all(&radar, &Scene { objects, ..Scene::default() })
+        ObjectWithOccluders::all(&radar, &Scene { objects, ..Scene::default() })
     };
     let (before, after) = (seen(0.0), seen(0.3));
     assert!(before[1] != after[1] && before[2] == after[2] && before[2].hidden_by.is_empty());
@@ -77,7 +77,7 @@ proptest! {
             _ => Object::Point(Point::new(*x, *y)),
         }).collect();
         let scene = Scene { objects: objects.clone(), ..Scene::default() };
-        let seen = SeenObject::all(&radar, &scene);
+        let seen = ObjectWithOccluders::all(&radar, &scene);
         for n in [0, 300, 511, 1023] {
             let antennas = AntennaPlaces::from(radar.pair(n));
             for (at, one) in seen.iter().enumerate() {

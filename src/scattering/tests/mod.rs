@@ -27,7 +27,7 @@ fn worst(found: &[Complex64], expected: &[Complex64]) -> f64 {
 fn heard(radar: &Radar, objects: &[Object], antennas: &AntennaPlaces) -> Vec<PathEcho> {
     let scene = Scene { objects: objects.to_vec(), ..Scene::default() };
     let mut out = Vec::new();
-    for one in SeenObject::all(radar, &scene) {
+    for one in ObjectWithOccluders::all(radar, &scene) {
         one.scatterer(radar).echoes(antennas, &mut out);
     }
     out

@@ -71,7 +71,7 @@ fn echoes(radar: &Radar, of: &VectorScene, antennas: &AntennaPlaces) -> Vec<Path
         out.extend(corner::echoes(&wave, antennas, &first, &second));
     } else {
         let scene = Scene { objects: of.objects.iter().map(object).collect(), ..Scene::default() };
-        let seen = SeenObject::all(radar, &scene);
+        let seen = ObjectWithOccluders::all(radar, &scene);
         for one in seen.iter().take(if of.only_first { 1 } else { seen.len() }) {
             let scatterer = one.scatterer(radar);
             let scatterer = if of.refined { scatterer } else { scatterer.unrefined() };

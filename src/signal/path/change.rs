@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 /// The coordinate of a derivative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum By {
+pub enum PolarCoordinate {
     /// The point's range from the array's centre, in metres, in the same direction.
     Range,
     /// cos(theta) of the point as the array's centre sees it, at the same range.
@@ -23,17 +23,17 @@ pub struct PathChange {
 
 impl PathChange {
     /// The derivative for a point at (`x_metres`, `y_metres`), for any reflectivity.
-    pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
+    pub fn of_point(pair: Pair, [x_metres, y_metres]: [f64; 2], by: PolarCoordinate) -> Self {
         let range_metres = x_metres.hypot(y_metres);
         let [there, back] = pair.places_metres().map(|[antenna_x, antenna_y]| {
             let leg = (x_metres - antenna_x).hypot(y_metres - antenna_y);
             // Half the square of the leg is (range^2 - 2 range (cos(theta) antenna_x + sin(theta) antenna_y) + antenna_x^2 + antenna_y^2) / 2.
             let half_square = match by {
-                By::Range if range_metres == 0.0 => 0.0,
-                By::Range if antenna_y == 0.0 => range_metres - antenna_x * (x_metres / range_metres),
-                By::Range => range_metres - (antenna_x * x_metres + antenna_y * y_metres) / range_metres,
-                By::CosTheta if antenna_y == 0.0 => -range_metres * antenna_x,
-                By::CosTheta => range_metres * (antenna_y * x_metres / y_metres - antenna_x),
+                PolarCoordinate::Range if range_metres == 0.0 => 0.0,
+                PolarCoordinate::Range if antenna_y == 0.0 => range_metres - antenna_x * (x_metres / range_metres),
+                PolarCoordinate::Range => range_metres - (antenna_x * x_metres + antenna_y * y_metres) / range_metres,
+                PolarCoordinate::CosTheta if antenna_y == 0.0 => -range_metres * antenna_x,
+                PolarCoordinate::CosTheta => range_metres * (antenna_y * x_metres / y_metres - antenna_x),
             };
             let change = half_square / leg;
             [change, -change / leg]
@@ -42,14 +42,20 @@ impl PathChange {
     }
 
     /// The derivative between elements with a pattern.
-    pub fn through(self, pattern: Option<Pattern>, pair: Pair, [x_metres, y_metres]: [f64; 2], by: By) -> Self {
+    pub fn through(
+        self,
+        pattern: Option<Pattern>,
+        pair: Pair,
+        [x_metres, y_metres]: [f64; 2],
+        by: PolarCoordinate,
+    ) -> Self {
         let Some(pattern) = pattern else { return self };
         let square = x_metres * x_metres + y_metres * y_metres;
         // Change of the logarithm of the point's distance ahead of each antenna; the cosine off broadside is its quotient by the leg.
         let of_log_y = |antenna_y: f64| {
             let of_y = match by {
-                By::Range => y_metres / square.sqrt(),
-                By::CosTheta => -x_metres * square.sqrt() / y_metres,
+                PolarCoordinate::Range => y_metres / square.sqrt(),
+                PolarCoordinate::CosTheta => -x_metres * square.sqrt() / y_metres,
             };
             of_y / (y_metres - antenna_y)
         };

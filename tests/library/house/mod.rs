@@ -201,3 +201,58 @@ fn imports_are_resolved() {
     let rooms = House::read(folder.path(), true).rooms();
     assert_eq!(rooms["b"], BTreeSet::from(["a".to_owned()]));
 }
+
+/// The tests of the crate, each as its file and name, and whether it is ignored.
+fn tests() -> Vec<(String, bool)> {
+    let mut found = Vec::new();
+    for path in ["src", "tests"].iter().flat_map(|folder| rust_files(&root().join(folder))) {
+        let file = path.strip_prefix(root()).unwrap().display();
+        let (mut is_test, mut is_ignored) = (false, false);
+        for line in std::fs::read_to_string(&path).unwrap().lines().map(str::trim) {
+            is_test |= line == "#[test]";
+            is_ignored |= line.starts_with("#[ignore");
+            if let Some((name, _)) = line.strip_prefix("fn ").and_then(|rest| rest.split_once('(')) {
+                if std::mem::take(&mut is_test) {
+                    found.push((format!("{file}::{name}"), is_ignored));
+                }
+                is_ignored = false;
+            }
+        }
+    }
+    found
+}
+
+/// The filter in the rest of a line behind `cargo test`, if there is one, and whether ignored tests are meant.
+fn filter_in(rest: &str) -> Option<(&str, bool)> {
+    let command = rest.split(['`', '#']).next()?;
+    let mut words = command.split_whitespace().take_while(|word| *word != "--");
+    while let Some(word) = words.next() {
+        match word {
+            "--test" | "--features" => _ = words.next(),
+            option if option.starts_with('-') => {}
+            filter => return Some((filter, command.contains("--ignored"))),
+        }
+    }
+    None
+}
+
+/// A filter that no test has runs nothing and succeeds.
+#[test]
+fn every_filter_of_tests_in_the_documents_runs_one() {
+    let tests = tests();
+    let docs = std::fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let pages = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|page| root().join(page));
+    let (mut count, mut wrong) = (0, Vec::new());
+    for page in docs.filter(|path| path.extension().is_some_and(|ending| ending == "md")).chain(pages) {
+        let text = std::fs::read_to_string(&page).unwrap();
+        for (filter, are_ignored) in
+            text.lines().flat_map(|line| line.split("cargo test").skip(1)).filter_map(filter_in)
+        {
+            count += 1;
+            if !tests.iter().any(|(name, is_ignored)| name.contains(filter) && *is_ignored == are_ignored) {
+                wrong.push(format!("{}: {filter}", page.display()));
+            }
+        }
+    }
+    assert!(count > 8 && wrong.is_empty(), "{count} filters, without a test: {wrong:#?}");
+}

@@ -39,7 +39,7 @@ fn plain(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::sets::Folder;
+    use crate::evaluate::sets::SceneFolder;
     use crate::scene::Scene;
 
     #[test]
@@ -53,7 +53,7 @@ mod tests {
         for name in ["Walls 3, seed 0", "a", ""] {
             keep(&own, of(name), " Misses the corner. ").unwrap();
         }
-        let set = Folder::open(&own).unwrap();
+        let set = SceneFolder::open(&own).unwrap();
         let names = [0, 1, 2].map(|i| set.file(i).unwrap().file_name().unwrap().to_owned());
         assert_eq!(names, ["0001-walls-3-seed-0.toml", "0002-a.toml", "0003-scene.toml"]);
         let first = file::load(set.file(0).unwrap()).unwrap().scene;

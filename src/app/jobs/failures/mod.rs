@@ -18,7 +18,7 @@ use super::background::Background;
 use super::derived::Failure;
 use super::rows::{Plan, RowJob, Teller};
 use crate::app::state::{Conditions, State};
-use crate::evaluate::campaign::{Campaign, Unfit};
+use crate::evaluate::campaign::{Campaign, MethodFailure};
 use crate::evaluate::rows::{FORMAT, Row, WHY_NO_OTHER_FORMAT};
 use crate::evaluate::sets::SceneSet;
 use crate::platform::{self, Instant, fs};
@@ -62,11 +62,11 @@ pub struct Run {
 
 impl Plan for Run {
     type Row = (u64, Row);
-    type End = Vec<Unfit>;
+    type End = Vec<MethodFailure>;
     const WHAT: &'static str = "Trying methods";
     const ADVICE: &'static str = "Leave the method out, or try another seed.";
 
-    fn run(&self, teller: &Teller<'_, (u64, Row)>) -> Result<Vec<Unfit>, Failure> {
+    fn run(&self, teller: &Teller<'_, (u64, Row)>) -> Result<Vec<MethodFailure>, Failure> {
         let Run { plan, generation, album } = self;
         let methods: Vec<&dyn Reconstructor> = plan.methods.iter().map(AsRef::as_ref).collect();
         let (mut done, total) = (0, plan.maps().max(1));

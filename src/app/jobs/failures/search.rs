@@ -3,7 +3,7 @@
 use crate::app::jobs::derived::Failure;
 use crate::app::jobs::rows::{Plan, RowJob, Teller};
 use crate::app::state::State;
-use crate::evaluate::worsen::{Aim, Finding, WorseningMeasure, WorseningSearch};
+use crate::evaluate::worsen::{Finding, WorseningGoal, WorseningMeasure, WorseningSearch};
 use crate::radar::counted;
 use crate::reconstruct::Reconstructor;
 use crate::scene::Scene;
@@ -40,7 +40,7 @@ impl Plan for SearchPlan {
 
 /// The worker of searches, and the path of the last one.
 pub struct Search {
-    /// Its rows are the path: the first scene, and every later one that was better for the aim than all before it.
+    /// Its rows are the path: the first scene, and every later one that was better by the goal than all before it.
     pub job: RowJob<SearchPlan>,
     /// Whether `poll` has reported the end of the search.
     told: bool,
@@ -60,7 +60,7 @@ impl Search {
             radar: state.radar().clone(),
             floor: state.settings.floor,
             normalisation: state.settings.normalisation,
-            layout: state.settings.heard(state.radar()),
+            layout: state.settings.layout_numbers(state.radar()),
             ..search
         };
         let document = state.editor.document().id();
@@ -100,14 +100,14 @@ impl Search {
         let SearchPlan { search, method, .. } = self.job.plan()?;
         let method = method.name();
         let [start, .., end] = self.job.rows() else {
-            let nothing = if search.aim == Aim::Repair { "right" } else { "worse" };
+            let nothing = if search.goal == WorseningGoal::Repair { "right" } else { "worse" };
             return (self.job.progress().is_none() && self.job.note().is_none())
                 .then(|| format!("No scene {nothing} for {method} within {} m.", search.within_metres));
         };
         let told = |finding: &Finding| match search.measure {
             WorseningMeasure::SquaredError => format!("SE {:.1}", finding.metrics.squared_error),
-            WorseningMeasure::Missed => format!("{} missed", finding.failures.missed()),
-            WorseningMeasure::Ghosts => counted(finding.failures.ghosts.len(), "false alarm", "false alarms"),
+            WorseningMeasure::Missed => format!("{} missed", finding.verdicts.missed()),
+            WorseningMeasure::Ghosts => counted(finding.verdicts.ghosts.len(), "false alarm", "false alarms"),
         };
         Some(format!("{method}: {} here, {} after {:.2} m", told(start), told(end), end.moved_metres))
     }

@@ -5,7 +5,7 @@ use crate::app::state::{Command, FailureChoice, Purpose, RowsCommand};
 use crate::app::widgets::{
     NumberField, bar, kind_boxes, kind_names, labelled, method_menu, press, start_or_cancel, ticking_menu, warning,
 };
-use crate::evaluate::campaign::Unfit;
+use crate::evaluate::campaign::MethodFailure;
 use crate::radar::counted;
 use crate::scene::generate::Kind;
 use eframe::egui::{self, Ui};
@@ -36,8 +36,8 @@ pub fn show(ui: &mut Ui, input: &Input<'_>, ChoicesMemory(choice): &mut ChoicesM
     unfit(ui, input.job.run.end().map_or(&[], Vec::as_slice));
 }
 
-fn unfit(ui: &mut Ui, unfit: &[Unfit]) {
-    for Unfit { method, set, scenes, reason } in unfit {
+fn unfit(ui: &mut Ui, unfit: &[MethodFailure]) {
+    for MethodFailure { method, set, scenes, reason } in unfit {
         let reason = reason.strip_prefix(&format!("{method}: ")).unwrap_or(reason);
         let text = format!("{method}: no rows of {} of {set}: {reason}", counted(*scenes as usize, "scene", "scenes"));
         ui.add(egui::Label::new(egui::RichText::new(text).color(ui.visuals().warn_fg_color)).wrap());

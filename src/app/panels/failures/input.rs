@@ -35,5 +35,5 @@ pub struct Now {
     pub method: &'static str,
     pub metrics: Metrics,
     /// Text with the numbers of objects found, missed and so on, once they are known.
-    pub fates: Option<String>,
+    pub verdicts: Option<String>,
 }

@@ -11,7 +11,7 @@ mod points;
 mod table;
 
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::{Jobs, fates_of};
+use crate::app::jobs::{Jobs, judged_output};
 use crate::app::state::{Command, MethodSlot, RowsCommand, State};
 use crate::evaluate::worsen::summary;
 use crate::radar::counted;
@@ -51,10 +51,10 @@ fn now(state: &State, jobs: &Jobs) -> Option<Now> {
     if state.row_on_screen().is_none() || pipeline.output_is_outdated() || state.is_predicting() {
         return None;
     }
-    let fates = fates_of(&jobs.kinds, MethodSlot::First, pipeline).filter(|(_, current)| *current);
+    let judged = judged_output(&jobs.kinds, MethodSlot::First, pipeline).filter(|(_, current)| *current);
     let (output, scores) = (pipeline.output()?, pipeline.scores_in(MethodSlot::First)?);
-    let fates = fates.map(|(fates, _)| summary(&fates.failures));
-    Some(Now { method: output.method(), metrics: scores.metrics, fates })
+    let verdicts = judged.map(|(judged, _)| summary(&judged.verdicts));
+    Some(Now { method: output.method(), metrics: scores.metrics, verdicts })
 }
 
 const NO_ROWS: &str = "Try methods on scenes, or open rows that apertura evaluate --rows wrote: every scene is a row to sort, filter and open.";

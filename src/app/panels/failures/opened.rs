@@ -5,7 +5,7 @@ use crate::app::state::{Command, Purpose, RowsCommand};
 use crate::app::widgets::{NumberField, choice, labelled, percent, press, progress, warning};
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
-use crate::evaluate::worsen::{Aim, WorseningMeasure, WorseningSearch};
+use crate::evaluate::worsen::{WorseningGoal, WorseningMeasure, WorseningSearch};
 use eframe::egui::{Button, Grid, TextEdit, Ui};
 
 /// Settings of the search, and the note for a kept scene.
@@ -41,13 +41,13 @@ fn figures(ui: &mut Ui, row: &Row, now: Option<&Now>) {
         ui.label(format!("row: {}", super::cells::name(row)));
         let Row { squared_error, detection, false_alarm, .. } = *row;
         rates(ui, &Metrics { squared_error, detection, false_alarm });
-        ui.label(fates(row));
+        ui.label(verdicts(row));
         ui.end_row();
         match now {
-            Some(Now { method, metrics, fates }) => {
+            Some(Now { method, metrics, verdicts }) => {
                 ui.label(format!("now: {method}"));
                 rates(ui, metrics);
-                ui.label(fates.as_deref().unwrap_or_default());
+                ui.label(verdicts.as_deref().unwrap_or_default());
             }
             None => _ = ui.weak("now: …").on_hover_text("As soon as a panel shows the output"),
         }
@@ -64,7 +64,7 @@ fn rates(ui: &mut Ui, metrics: &Metrics) {
 }
 
 /// Text with the numbers of a row's found, missed, merged and shifted objects, and of its false alarms.
-fn fates(row: &Row) -> String {
+fn verdicts(row: &Row) -> String {
     let maybe = |count: Option<usize>, name: &str| count.filter(|n| *n > 0).map(|n| format!("{n} {name}"));
     let told = [row.found, Some(row.missed), row.merged, row.wrong_tooth].into_iter().sum::<Option<usize>>();
     let parts = [
@@ -92,8 +92,8 @@ fn search(ui: &mut Ui, input: &Input<'_>, memory: &mut OpenedMemory, asked: &mut
         labelled(ui, "in", "", NumberField::new(&mut memory.search.tries).range(1..=100_000).suffix(" tries"));
         let worse = "Look near the scene on screen for one that the method in use does worse on; the way there is drawn on the scene";
         let repair = "Look for the smallest move of its objects after which the method in use is right";
-        for (title, tip, aim) in [("Worse", worse, Aim::Worsen), ("Repair", repair, Aim::Repair)] {
-            let search = Box::new(WorseningSearch { aim, ..memory.search.clone() });
+        for (title, tip, goal) in [("Worse", worse, WorseningGoal::Worsen), ("Repair", repair, WorseningGoal::Repair)] {
+            let search = Box::new(WorseningSearch { goal, ..memory.search.clone() });
             press(ui, title, tip, RowsCommand::Search(search), asked);
         }
     }

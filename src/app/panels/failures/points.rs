@@ -82,7 +82,7 @@ impl Points {
                 };
                 let dots = listed().filter(|(_, row)| *row.method == **a).filter_map(dot).collect();
                 let paired = Paired::of(listed().map(|(_, row)| row), a, b).filter(|_| a != b);
-                Points { told: paired.map(|paired| paired.told(a, b)), groups, ..Points::scattered(dots) }
+                Points { told: paired.map(|paired| paired.sentence(a, b)), groups, ..Points::scattered(dots) }
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Hatches over hits, misses and false alarms, where a cell is large enough on screen: the kinds differ without any colour.
 
 use super::frame::Frame;
-use crate::evaluate::failure::Ghost;
+use crate::evaluate::verdict::Ghost;
 use crate::maps::RangeAngleMap;
 use crate::picture::CellVerdict;
 use crate::theory::MapPlace;

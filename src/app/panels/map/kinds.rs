@@ -1,10 +1,10 @@
 //! Kinds of failure on a map: a mark for the verdict on every object and for every ghost, distinct by shape as well as by hue.
 
 use super::frame::Frame;
-use crate::app::jobs::{Fates, Verdict};
+use crate::app::jobs::{JudgedOutput, VerdictMark};
 use crate::app::widgets::{axes, edged};
 use crate::evaluate::eta_text;
-use crate::evaluate::failure::Fate;
+use crate::evaluate::verdict::ObjectVerdict;
 use crate::maps::Aperture;
 use crate::radar::{Radar, counted};
 use crate::scene::Reflector;
@@ -20,7 +20,7 @@ const MARKS: usize = 400;
 /// Verdicts on all objects that the map should show.
 #[derive(Clone, Copy)]
 pub struct Kinds<'a> {
-    pub fates: &'a Fates,
+    pub judged: &'a JudgedOutput,
     /// Whether the verdicts are of the output on screen, and not of an earlier one.
     pub current: bool,
 }
@@ -45,15 +45,15 @@ impl Sign {
     /// All of them, in the order of a legend.
     pub const ALL: [Sign; 6] = [Sign::Found, Sign::Missed, Sign::Merged, Sign::WrongTooth, Sign::Ghost, Sign::Hidden];
 
-    fn of(verdict: &Verdict, fates: &Fates) -> Sign {
-        let fate = verdict.object.and_then(|object| fates.failures.objects.get(object));
-        match fate {
+    fn of(mark: &VerdictMark, judged: &JudgedOutput) -> Sign {
+        let verdict = mark.object.and_then(|object| judged.verdicts.objects.get(object));
+        match verdict {
             None => Sign::Ghost,
-            Some(Fate::Found) => Sign::Found,
-            Some(Fate::Missed) => Sign::Missed,
-            Some(Fate::Merged { .. }) => Sign::Merged,
-            Some(Fate::WrongTooth { .. }) => Sign::WrongTooth,
-            Some(Fate::Hidden) => Sign::Hidden,
+            Some(ObjectVerdict::Found) => Sign::Found,
+            Some(ObjectVerdict::Missed) => Sign::Missed,
+            Some(ObjectVerdict::Merged { .. }) => Sign::Merged,
+            Some(ObjectVerdict::WrongTooth { .. }) => Sign::WrongTooth,
+            Some(ObjectVerdict::Hidden) => Sign::Hidden,
         }
     }
 
@@ -112,34 +112,34 @@ impl Sign {
 impl Kinds<'_> {
     /// Number of marks of each kind that occurs.
     pub fn counts(&self) -> Vec<(Sign, usize)> {
-        let signs: Vec<Sign> = self.fates.verdicts.iter().map(|v| Sign::of(v, self.fates)).collect();
+        let signs: Vec<Sign> = self.judged.marks.iter().map(|v| Sign::of(v, self.judged)).collect();
         let count = |sign: Sign| (sign, signs.iter().filter(|s| **s == sign).count());
         Sign::ALL.into_iter().map(count).filter(|(_, count)| *count > 0).collect()
     }
 
     /// Draws the marks. The one under the pointer shows its object, the verdict and the reason.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, above: f32) {
-        let mut nearest: Option<(&Verdict, f32)> = None;
-        for verdict in self.fates.verdicts.iter().take(MARKS) {
-            let Some(at) = self.place(frame, verdict) else { continue };
-            self.draw_one(painter, frame, verdict, at);
+        let mut nearest: Option<(&VerdictMark, f32)> = None;
+        for mark in self.judged.marks.iter().take(MARKS) {
+            let Some(at) = self.place(frame, mark) else { continue };
+            self.draw_one(painter, frame, mark, at);
             let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));
             if distance < nearest.map_or(MARK_REACH_POINTS, |(_, d)| d) {
-                nearest = Some((verdict, distance));
+                nearest = Some((mark, distance));
             }
         }
-        if let Some((verdict, _)) = nearest {
+        if let Some((mark, _)) = nearest {
             let corner = frame.rect.left_bottom() + vec2(8.0, -8.0 - above);
-            axes::text_on_patch(painter, corner, Align2::LEFT_BOTTOM, &self.why(frame.radar, verdict));
+            axes::text_on_patch(painter, corner, Align2::LEFT_BOTTOM, &self.why(frame.radar, mark));
         }
     }
 
-    fn draw_one(&self, painter: &Painter, frame: Frame<'_>, verdict: &Verdict, at: Pos2) {
-        let sign = Sign::of(verdict, self.fates);
-        let fate = verdict.object.and_then(|object| self.fates.failures.objects.get(object));
-        let to = match fate {
-            Some(Fate::Merged { with }) => self.centre(*with).map(|other| frame.blob(&other)),
-            Some(Fate::WrongTooth { columns }) => self.shifted(frame, verdict, *columns),
+    fn draw_one(&self, painter: &Painter, frame: Frame<'_>, mark: &VerdictMark, at: Pos2) {
+        let sign = Sign::of(mark, self.judged);
+        let verdict = mark.object.and_then(|object| self.judged.verdicts.objects.get(object));
+        let to = match verdict {
+            Some(ObjectVerdict::Merged { with }) => self.centre(*with).map(|other| frame.blob(&other)),
+            Some(ObjectVerdict::WrongTooth { columns }) => self.shifted(frame, mark, *columns),
             _ => None,
         };
         if let Some(to) = to {
@@ -150,15 +150,15 @@ impl Kinds<'_> {
     }
 
     fn centre(&self, object: usize) -> Option<Reflector> {
-        let [x_metres, y_metres] = self.fates.scene.objects.get(object)?.centre_metres();
+        let [x_metres, y_metres] = self.judged.scene.objects.get(object)?.centre_metres();
         Some(Reflector { x_metres, y_metres, reflectivity: 1.0 })
     }
 
     /// Place of a mark: the object's place in the map, or the brightest cell of a body or a ghost.
-    fn place(&self, frame: Frame<'_>, verdict: &Verdict) -> Option<Pos2> {
-        let is_body = |object: usize| self.fates.scene.objects.get(object).is_some_and(|o| o.body().is_some());
-        let brightest = verdict.brightest.map(|[bin, column]| MapPlace { bin: bin as f64, column: column as f64 });
-        match (verdict.object, brightest) {
+    fn place(&self, frame: Frame<'_>, mark: &VerdictMark) -> Option<Pos2> {
+        let is_body = |object: usize| self.judged.scene.objects.get(object).is_some_and(|o| o.body().is_some());
+        let brightest = mark.brightest.map(|[bin, column]| MapPlace { bin: bin as f64, column: column as f64 });
+        match (mark.object, brightest) {
             // A body has its echoes at its ends, its corners and its glint, and seldom at its middle.
             (Some(object), Some(cell)) if is_body(object) => Some(frame.cell(cell)),
             (Some(object), _) => self.centre(object).map(|centre| frame.blob(&centre)),
@@ -167,18 +167,18 @@ impl Kinds<'_> {
     }
 
     /// Place of an object in the output, where that is on the wrong tooth.
-    fn shifted(&self, frame: Frame<'_>, verdict: &Verdict, columns: i32) -> Option<Pos2> {
-        let centre = self.centre(verdict.object?)?;
+    fn shifted(&self, frame: Frame<'_>, mark: &VerdictMark, columns: i32) -> Option<Pos2> {
+        let centre = self.centre(mark.object?)?;
         let cell = blob_cell(frame.radar, centre.x_metres, centre.y_metres, Aperture::Full);
         Some(frame.cell(MapPlace { column: cell.column + f64::from(columns), ..cell }))
     }
 
     /// Text of a mark: its object, the verdict and the reason.
-    fn why(&self, radar: &Radar, verdict: &Verdict) -> String {
-        let Fates { scene, failures, eta, .. } = self.fates;
+    fn why(&self, radar: &Radar, mark: &VerdictMark) -> String {
+        let JudgedOutput { scene, verdicts, eta, .. } = self.judged;
         let eta = eta_text(*eta);
-        let cells = verdict.cells;
-        let Some(index) = verdict.object else {
+        let cells = mark.cells;
+        let Some(index) = mark.object else {
             return format!(
                 "false alarm: {} above η = {eta}\nwhere the scene has nothing",
                 counted(cells, "cell", "cells")
@@ -186,26 +186,26 @@ impl Kinds<'_> {
         };
         let unknown = |index: usize| format!("object {}", index + 1);
         let named = |index: usize| scene.objects.get(index).map_or_else(|| unknown(index), |o| o.called(index));
-        let part = failures.covered.get(index).copied().unwrap_or(0.0);
+        let part = verdicts.covered.get(index).copied().unwrap_or(0.0);
         let of_what = match scene.objects.get(index).is_some_and(|object| object.body().is_some()) {
             true => "ends, corners and glints".to_owned(),
             false => format!("{cells} cells"),
         };
         let detected = format!("{:.0} % of its {of_what} exceed η = {eta}", 100.0 * part);
-        let reason = match failures.objects.get(index).copied().unwrap_or(Fate::Hidden) {
-            Fate::Found if cells == 0 => "the target itself does not show it, but the output does".to_owned(),
-            Fate::Found => detected,
-            Fate::Missed => format!("{detected}: less than half"),
-            Fate::Merged { with } => format!("one blob covers it and {};\nthe target shows two", named(with)),
-            Fate::WrongTooth { columns } => {
+        let reason = match verdicts.objects.get(index).copied().unwrap_or(ObjectVerdict::Hidden) {
+            ObjectVerdict::Found if cells == 0 => "the target itself does not show it, but the output does".to_owned(),
+            ObjectVerdict::Found => detected,
+            ObjectVerdict::Missed => format!("{detected}: less than half"),
+            ObjectVerdict::Merged { with } => format!("one blob covers it and {};\nthe target shows two", named(with)),
+            ObjectVerdict::WrongTooth { columns } => {
                 let (by, way) = (columns.abs(), if (columns < 0) != radar.columns_fall() { "left" } else { "right" });
                 let plural = if by == 1 { "" } else { "s" };
                 format!("the output has it {by} column{plural} to the {way};\n{detected}")
             }
-            Fate::Hidden => "the target itself does not show it".to_owned(),
+            ObjectVerdict::Hidden => "the target itself does not show it".to_owned(),
         };
-        let fate = failures.objects.get(index).map_or("hidden", |fate| fate.name());
-        format!("{}: {fate}\n{reason}", named(index))
+        let verdict = verdicts.objects.get(index).map_or("hidden", |verdict| verdict.name());
+        format!("{}: {verdict}\n{reason}", named(index))
     }
 }
 
@@ -218,11 +218,16 @@ pub mod tests {
     use eframe::egui::{Rect, pos2};
 
     /// Objects with one of each verdict, and a ghost.
-    pub fn fates() -> Fates {
+    pub fn judged() -> JudgedOutput {
         let scene = Scene::of_points([(-8.0, 12.0), (-4.0, 16.0), (0.0, 20.0), (3.0, 24.0), (6.0, 28.0)]);
-        let objects =
-            [Fate::Found, Fate::Missed, Fate::Merged { with: 3 }, Fate::WrongTooth { columns: -3 }, Fate::Hidden];
-        Fates::made_up(scene, &objects, &[[100, 300]])
+        let objects = [
+            ObjectVerdict::Found,
+            ObjectVerdict::Missed,
+            ObjectVerdict::Merged { with: 3 },
+            ObjectVerdict::WrongTooth { columns: -3 },
+            ObjectVerdict::Hidden,
+        ];
+        JudgedOutput::made_up(scene, &objects, &[[100, 300]])
     }
 
     #[test]
@@ -237,16 +242,16 @@ pub mod tests {
     }
 
     #[test]
-    fn a_mark_says_why_an_object_has_its_fate() {
-        let fates = fates();
-        let kinds = Kinds { fates: &fates, current: true };
+    fn a_mark_says_the_reason_of_its_verdict() {
+        let judged = judged();
+        let kinds = Kinds { judged: &judged, current: true };
         let radar = Radar::default();
-        let said: Vec<String> = fates.verdicts.iter().map(|v| kinds.why(&radar, v)).collect();
+        let said: Vec<String> = judged.marks.iter().map(|v| kinds.why(&radar, v)).collect();
         assert_eq!(said[0], "point 1: found\n100 % of its 40 cells exceed η = 0.80");
         assert_eq!(said[1], "point 2: missed\n0 % of its 40 cells exceed η = 0.80: less than half");
         assert_eq!(said[2], "point 3: merged\none blob covers it and point 4;\nthe target shows two");
         assert!(said[3].starts_with("point 4: wrong tooth\nthe output has it 3 columns to the left;\n"), "{}", said[3]);
-        let told = kinds.why(&radar.in_convention(Convention::Physical), &fates.verdicts[3]);
+        let told = kinds.why(&radar.in_convention(Convention::Physical), &judged.marks[3]);
         assert!(told.contains("3 columns to the right"), "lower columns are drawn farther right: {told}");
         assert_eq!(said[4], "point 5: hidden\nthe target itself does not show it");
         assert_eq!(said[5], "false alarm: 12 cells above η = 0.80\nwhere the scene has nothing");
@@ -255,11 +260,11 @@ pub mod tests {
 
     #[test]
     fn a_ghost_is_marked_at_its_brightest_cell() {
-        let (fates, radar) = (fates(), Radar::default());
+        let (judged, radar) = (judged(), Radar::default());
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(1024.0, 512.0));
         let (view, projection) = (MapView::default(), Projection::RangeAngle);
         let frame = Frame::of(rect, view, &radar, projection, 0.0);
-        let ghost = Kinds { fates: &fates, current: true }.place(frame, &fates.verdicts[5]).unwrap();
+        let ghost = Kinds { judged: &judged, current: true }.place(frame, &judged.marks[5]).unwrap();
         assert!((ghost - pos2(300.5, 512.0 - 100.5)).length() < 0.1, "{ghost:?}");
     }
 }

@@ -38,7 +38,7 @@ use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, entry, entry_called,
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
 use crate::radar::{End, FEW_COLUMNS, Radar};
 use crate::reconstruct::untrained_noise;
-use crate::scattering::Echoing;
+use crate::scattering::EchoSources;
 use crate::scene::Object;
 use answer::Places;
 use eframe::egui::{self, Align2, Color32, Painter, Pos2, Rect, Sense, Ui, pos2, vec2};
@@ -191,7 +191,7 @@ fn draw_over(inner: &Painter, frame: Frame<'_>, input: &Input<'_>, pointer: Opti
 fn note(state: &State, kind: MapKind) -> Option<String> {
     let method = state.method_in(kind.slot()?).filter(|_| !state.is_recorded())?;
     method.trained_noise()?;
-    let echoing = Echoing::of(state.radar(), state.scene());
+    let echoing = EchoSources::of(state.radar(), state.scene());
     untrained_noise(method.as_ref(), state.radar(), &echoing, state.settings.floor)
 }
 

@@ -24,7 +24,7 @@ impl<'a> Input<'a> {
 }
 
 use super::*;
-use crate::app::jobs::Fates;
+use crate::app::jobs::JudgedOutput;
 use crate::app::state::{Cursor, Projection, State, Units};
 use crate::app::widgets::seen::{self, User};
 use crate::maps::{LambdaScale, RangeAngleMap};
@@ -132,20 +132,20 @@ fn every_map_has_the_same_margins() {
     }
 }
 
-/// The state in which objects are marked by their fates.
+/// The state in which objects are marked by the verdicts on them.
 fn marking() -> State {
     let mut state = state();
     state.settings.show_kinds = true;
     state
 }
 
-static FATES: LazyLock<Fates> = LazyLock::new(kinds::tests::fates);
+static JUDGED: LazyLock<JudgedOutput> = LazyLock::new(kinds::tests::judged);
 
 #[test]
 fn maps_beside_each_other_stay_aligned_while_objects_are_marked() {
     let rect = |kind: MapKind| {
         let map = drawn([500.0, 300.0], marking(), move |input| {
-            let kinds = Some(Kinds { fates: &FATES, current: true }).filter(|_| kind == MapKind::Output);
+            let kinds = Some(Kinds { judged: &JUDGED, current: true }).filter(|_| kind == MapKind::Output);
             Input { kind, kinds, texture: Some(TextureId::default()), ..input }
         });
         map.get_by_label(&format!("{} map", kind.title())).rect()
@@ -177,7 +177,7 @@ fn a_map_of_an_earlier_scene_says_so_where_it_is_there() {
 /// A map with marks for the verdicts on objects.
 fn judged(size: [f32; 2]) -> Harness<'static> {
     let mut map = drawn(size, marking(), |input| {
-        let kinds = Some(Kinds { fates: &FATES, current: true });
+        let kinds = Some(Kinds { judged: &JUDGED, current: true });
         let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9], ghosts: &[] });
         let texture = Some(TextureId::default());
         Input { kind: MapKind::OutputAbove, kinds, texture, told_apart, ..input }
@@ -188,7 +188,7 @@ fn judged(size: [f32; 2]) -> Harness<'static> {
 }
 
 #[test]
-fn fates_are_counted_above_the_map_and_told_under_the_pointer() {
+fn verdicts_are_counted_above_the_map_and_named_under_it() {
     let legend =
         "Legend: hit, rim, false alarm, miss, 1 found, 1 missed, 1 merged, 1 wrong tooth, 1 false alarm, 1 hidden";
     assert!(judged([260.0, 140.0]).query_by_label_contains("Legend").is_none(), "not in a small panel");

@@ -4,7 +4,7 @@ use super::caption::{Caption, caption};
 use super::frame::{Cells, Marked};
 use super::{EARLIER_SCENE, HandMemory, Input, Kinds, Problem, Theory, ToldApart, show};
 use crate::app::content::{Content, Cx};
-use crate::app::jobs::{Jobs, Scores, TheoryResult, fates_of};
+use crate::app::jobs::{Jobs, Scores, TheoryResult, judged_output};
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
 use crate::app::widgets::Texture;
 use crate::engine::ReadyMap;
@@ -120,8 +120,8 @@ fn told_apart<'a>(state: &State, jobs: &'a Jobs, slot: MethodSlot) -> Option<Tol
         Some(_) => jobs.pipeline.maps.result().and_then(|result| result.detected.target.as_ref()),
     };
     // Ghosts of another output would be drawn where this one has nothing.
-    let ghosts = fates_of(&jobs.kinds, slot, &jobs.pipeline).filter(|(_, current)| *current);
-    let ghosts = ghosts.map_or(&[][..], |(fates, _)| &fates.failures.ghosts);
+    let ghosts = judged_output(&jobs.kinds, slot, &jobs.pipeline).filter(|(_, current)| *current);
+    let ghosts = ghosts.map_or(&[][..], |(judged, _)| &judged.verdicts.ghosts);
     Some(ToldApart { output, target: target?, etas: [eta, TARGET_ETA], ghosts })
 }
 
@@ -131,8 +131,8 @@ fn kinds<'a>(state: &State, jobs: &'a Jobs, kind: MapKind) -> Option<Kinds<'a>> 
         MapKind::Target | MapKind::TargetAbove => MethodSlot::First,
         other => other.slot()?,
     };
-    let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline).filter(|_| state.settings.show_kinds)?;
-    Some(Kinds { fates, current })
+    let (judged, current) = judged_output(&jobs.kinds, slot, &jobs.pipeline).filter(|_| state.settings.show_kinds)?;
+    Some(Kinds { judged, current })
 }
 
 /// Text in the title bar of a map, from its longest form to its shortest.
@@ -189,18 +189,18 @@ pub fn verdict(state: &State, jobs: &Jobs, slot: MethodSlot, tells_distance: boo
     if let Some(found) = echoes_found(state, jobs, slot) {
         return Some(found);
     }
-    let (fates, current) = fates_of(&jobs.kinds, slot, &jobs.pipeline)?;
-    if !current || state.is_predicting() || fates.scene.objects.is_empty() {
+    let (judged, current) = judged_output(&jobs.kinds, slot, &jobs.pipeline)?;
+    if !current || state.is_predicting() || judged.scene.objects.is_empty() {
         return None;
     }
     if !tells_distance {
-        return Some(fates.failures.verdict());
+        return Some(judged.verdicts.headline());
     }
     let output = jobs.pipeline.method(slot).output()?;
-    let offset = median_offset_metres(&fates.scene, &fates.failures, &output.reflectors);
-    let bound = fates.bound_metres.map_or_else(String::new, |metres| format!(" (bound {})", length(metres)));
+    let offset = median_offset_metres(&judged.scene, &judged.verdicts, &output.reflectors);
+    let bound = judged.bound_metres.map_or_else(String::new, |metres| format!(" (bound {})", length(metres)));
     let off = offset.map_or_else(String::new, |metres| format!(", {} off{bound}", length(metres)));
-    Some(format!("{}{off}", fates.failures.verdict()))
+    Some(format!("{}{off}", judged.verdicts.headline()))
 }
 
 /// A distance in the unit in which it has one to three digits before the point.

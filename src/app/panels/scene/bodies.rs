@@ -2,7 +2,7 @@
 
 use crate::interact::Place;
 use crate::radar::{End, Radar};
-use crate::scattering::{AntennaPlaces, EchoKind, PathEcho, Scatterer, SeenObject};
+use crate::scattering::{AntennaPlaces, EchoKind, ObjectWithOccluders, PathEcho, Scatterer};
 use crate::scene::{Scene, Shape};
 use eframe::egui::{Color32, Painter, Pos2, Shape as Drawn, Stroke, epaint::PathShape, vec2};
 use std::f64::consts::TAU;
@@ -104,7 +104,7 @@ pub fn glints(painter: &Painter, at: &dyn Fn(Place) -> Pos2, radar: &Radar, scen
     if bodies == 0 || bodies > MAX_BODIES {
         return;
     }
-    let seen = SeenObject::all(radar, scene);
+    let seen = ObjectWithOccluders::all(radar, scene);
     for (end, colour) in End::BOTH.into_iter().zip(colours) {
         for (place, part) in shining(radar, &seen, end) {
             let at = at(place);
@@ -117,7 +117,7 @@ pub fn glints(painter: &Painter, at: &dyn Fn(Place) -> Pos2, radar: &Radar, scen
 }
 
 /// Places of the glints, posts and double bounces for the middle of `end`, each with the part of the amplitude that nothing hides.
-pub fn shining(radar: &Radar, seen: &[SeenObject], end: End) -> Vec<(Place, f64)> {
+pub fn shining(radar: &Radar, seen: &[ObjectWithOccluders], end: End) -> Vec<(Place, f64)> {
     let antennas = AntennaPlaces::at([radar.end_centre_metres(end), 0.0]);
     let shines = |echo: &PathEcho| matches!(echo.kind, EchoKind::Glint | EchoKind::Post | EchoKind::DoubleBounce);
     let mut places = Vec::new();
@@ -145,7 +145,7 @@ mod tests {
     fn each_end_sees_a_walls_glint_at_another_place() {
         let radar = Radar::default();
         let wall = scene(vec![Object::Wall(Wall::new(0.0, 10.0, 6.0, 0.0))]);
-        let [first, last] = End::BOTH.map(|end| shining(&radar, &SeenObject::all(&radar, &wall), end));
+        let [first, last] = End::BOTH.map(|end| shining(&radar, &ObjectWithOccluders::all(&radar, &wall), end));
         let ([(left, _)], [(right, _)]) = (first.as_slice(), last.as_slice()) else { panic!("{first:?}, {last:?}") };
         assert!(left.x_metres < -0.9 && right.x_metres > 0.9 && (left.y_metres - 10.0).abs() < 1e-9);
     }
@@ -155,7 +155,7 @@ mod tests {
         let radar = Radar::default();
         let objects =
             vec![Object::Post(Post::new(-3.0, 20.0, 0.3)), Object::Box(Block::new([-2.0, 8.0], [1.8, 1.8], 0.0))];
-        let seen = SeenObject::all(&radar, &scene(objects));
+        let seen = ObjectWithOccluders::all(&radar, &scene(objects));
         let part = |end| shining(&radar, &seen, end)[0].1;
         let [first, last] = End::BOTH.map(part);
         assert!(first < 0.1 && (last - 1.0).abs() < 0.1, "{first} {last}");

@@ -70,7 +70,7 @@ pub enum DocumentCommand {
     Discard(u64),
     Preset(usize),
     Recording(usize),
-    ReadAnotherWay(Way),
+    Reread(Way),
     /// Show the newest frame of the capture card in use.
     ShowFrame(LiveFrame),
     RandomScene(Kind),
@@ -214,9 +214,9 @@ pub enum ViewCommand {
     ToggleFieldsOfView,
     /// Switch the theory of the selected reflector on the maps.
     ToggleTheory,
-    /// Show the fate of every object in the output.
+    /// Show the verdict on every object in the output.
     MarkKinds,
-    /// Switch the fate of every object in the output.
+    /// Switch the verdict on every object in the output.
     ToggleKinds,
     SetSeveral(Box<Several>),
     SetCompare(Box<Compare>),

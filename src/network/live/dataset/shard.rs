@@ -62,7 +62,7 @@ fn put_samples(bytes: &mut Vec<u8>, example: &Example) {
         bytes.extend((sample.re * scale).to_le_bytes());
         bytes.extend((sample.im * scale).to_le_bytes());
     };
-    match &example.heard {
+    match &example.end_samples {
         EndSamples::Ends(ends) => ends.first.iter().chain(&ends.last).for_each(&mut put),
         EndSamples::Elements(samples) => samples.iter().for_each(&mut put),
     }

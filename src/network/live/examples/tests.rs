@@ -115,7 +115,7 @@ fn a_radar_of_another_shape_has_examples_without_features() {
     assert_eq!(example.ends().unwrap().first.dim(), (8, 128));
     let nested = vec![0, 1, 2, 3, 20, 40, 60, 85];
     let example = of(Features::WherePossible, Some(nested)).unwrap().example(0, &Task::default()).unwrap();
-    assert!(matches!(&example.heard, EndSamples::Elements(samples) if samples.dim() == (8, 128)));
+    assert!(matches!(&example.end_samples, EndSamples::Elements(samples) if samples.dim() == (8, 128)));
     let told = of(Features::No, Some(vec![3, 86])).unwrap_err().to_string();
     assert_eq!(told, "the layout has element 86; the radar has elements 0 to 85");
 }

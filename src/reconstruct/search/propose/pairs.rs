@@ -250,7 +250,7 @@ fn candidates(radar: &Radar, first: &MiddleElement, last: &MiddleElement, i: usi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::hearing::ends_noise_variance;
+    use crate::reconstruct::noise_model::ends_noise_variance;
     use crate::scene::Scene;
     use crate::scene::generate::{Generator, Kind, Purpose, Reading};
     use crate::signal::{Floor, simulate};

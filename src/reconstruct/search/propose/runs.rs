@@ -40,7 +40,7 @@ pub fn longest_run_bins(radar: &Radar, residual: &[Complex64], noise_variance: f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reconstruct::hearing::Hearing;
+    use crate::reconstruct::noise_model::NoiseModel;
     use crate::scene::{Line, Object, Scene};
     use crate::signal::{Floor, simulate};
 
@@ -50,7 +50,7 @@ mod tests {
         let step = radar.range_resolution_metres();
         let line = |y| Scene { objects: vec![Object::Line(Line::vertical(0.5, y, step, 80))], ..Scene::default() };
         let flat = simulate(&radar, &line(10.0), Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
-        let run = longest_run_bins(&radar, &flat, Hearing::any().noise_variance(&radar, &flat));
+        let run = longest_run_bins(&radar, &flat, NoiseModel::any().noise_variance(&radar, &flat));
         assert!((78..95).contains(&run), "{run} bins");
     }
 }

@@ -4,7 +4,7 @@ use super::super::*;
 use super::Held;
 use crate::lesson::question::Answer;
 use crate::lesson::{Stage, Step, Truth, shipped};
-use crate::scattering::{EchoKind, heard_in_the_middle};
+use crate::scattering::{EchoKind, array_centre_echoes};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -21,7 +21,7 @@ fn step_drawn(step: &Step, tells_maps: bool) -> (Harness<'static, Held>, Vec<egu
 
 /// Places in the scene that answer a step's question: the place that is asked for, and the glints of bodies.
 fn answers(step: &Step) -> Vec<Place> {
-    let heard = heard_in_the_middle(&step.radar, &step.scene());
+    let heard = array_centre_echoes(&step.radar, &step.scene());
     let mut places: Vec<Place> = heard
         .iter()
         .filter(|(_, e)| e.kind == EchoKind::Glint && e.is_heard())

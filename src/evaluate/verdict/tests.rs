@@ -44,7 +44,7 @@ fn an_object_that_the_output_lacks_is_missed() {
     let (target, footprints) = scene(&TWO);
     let output = without(&target, &footprints.cells()[1]);
     let found = footprints.judge(&target, &output, TARGET_ETA);
-    assert_eq!((&found.objects[..], found.missed()), (&[Fate::Found, Fate::Missed][..], 1));
+    assert_eq!((&found.objects[..], found.missed()), (&[ObjectVerdict::Found, ObjectVerdict::Missed][..], 1));
     assert!(found.ghosts.is_empty());
     assert!(found.covered[0] == 1.0 && found.covered[1] == 0.0, "{:?}", found.covered);
 }
@@ -54,7 +54,7 @@ fn a_shift_by_a_few_columns_is_the_wrong_tooth() {
     let (target, footprints) = scene(&[(5.0, 20.0)]);
     for by in [-3, 1, 6] {
         let found = footprints.judge(&target, &shifted(&target, by), TARGET_ETA);
-        assert_eq!(found.objects, [Fate::WrongTooth { columns: by }]);
+        assert_eq!(found.objects, [ObjectVerdict::WrongTooth { columns: by }]);
         assert!(found.ghosts.is_empty());
     }
 }
@@ -66,19 +66,19 @@ fn a_blob_elsewhere_is_a_ghost() {
     output.lambda.slice_mut(ndarray::s![100..104, 200..206]).fill(1.0);
     output.lambda[[50, 50]] = 1.0;
     let found = footprints.judge(&target, &output, TARGET_ETA);
-    assert_eq!((found.objects[0], found.ghosts.len()), (Fate::Found, 1), "one cell is no ghost");
+    assert_eq!((found.objects[0], found.ghosts.len()), (ObjectVerdict::Found, 1), "one cell is no ghost");
     assert_eq!(found.ghosts[0].cells.len(), 24);
 }
 
 #[test]
 fn one_blob_over_two_objects_is_a_merger() {
     let (target, footprints) = scene(&[(-2.0, 20.0), (2.0, 20.0)]);
-    assert_eq!(footprints.judge(&target, &target, TARGET_ETA).objects, [Fate::Found; 2]);
+    assert_eq!(footprints.judge(&target, &target, TARGET_ETA).objects, [ObjectVerdict::Found; 2]);
     let row = footprints.cells()[0][0][0];
     let mut output = target.clone();
     output.lambda.slice_mut(ndarray::s![row..row + 2, 400..620]).fill(1.0);
     let found = footprints.judge(&target, &output, TARGET_ETA);
-    assert_eq!(found.objects, [Fate::Merged { with: 1 }, Fate::Merged { with: 0 }]);
+    assert_eq!(found.objects, [ObjectVerdict::Merged { with: 1 }, ObjectVerdict::Merged { with: 0 }]);
 }
 
 #[test]
@@ -96,16 +96,16 @@ fn the_ends_of_a_wall_are_the_wall_and_no_ghosts() {
     }
     draw(&mut output, middle(&footprints.cells()[1]));
     let judged = footprints.judge(&target, &output, 0.5);
-    assert_eq!((judged.objects[0], judged.ghosts.len()), (Fate::Found, 0), "two of its three echoes");
+    assert_eq!((judged.objects[0], judged.ghosts.len()), (ObjectVerdict::Found, 0), "two of its three echoes");
     output.lambda.fill(0.0);
     draw(&mut output, [300, 100]);
     let judged = footprints.judge(&target, &output, 0.5);
-    assert_eq!((judged.objects[0], judged.ghosts.len()), (Fate::Missed, 1));
-    assert_eq!(judged.verdict(), "0 of 2 found, 1 false");
+    assert_eq!((judged.objects[0], judged.ghosts.len()), (ObjectVerdict::Missed, 1));
+    assert_eq!(judged.headline(), "0 of 2 found, 1 false");
 }
 
 /// The target of a shipped scene, and the verdicts on an output equal to it above the threshold 0.7.
-fn same_output(id: &str, elements: usize, normalisation: Normalisation) -> (Footprints, Failures) {
+fn same_output(id: &str, elements: usize, normalisation: Normalisation) -> (Footprints, OutputVerdicts) {
     let document = Preset::by_id(id).unwrap().load().unwrap();
     let radar = Radar { elements, end_elements: document.radar.end_elements.min(elements / 2), ..document.radar };
     let full = LogMaps::of_signal(&radar, &simulate(&radar, &document.scene, Floor::Thesis, 1).unwrap()).full;
@@ -121,12 +121,12 @@ fn objects_below_the_targets_threshold_are_no_ghosts() {
         let (footprints, judged) = same_output(id, elements, Normalisation::DynamicRange(Decibels(100.0)));
         for &object in hidden {
             let is_hidden = footprints.objects[object].is_empty();
-            assert_eq!((is_hidden, judged.objects[object]), (true, Fate::Found), "{id}, object {object}");
+            assert_eq!((is_hidden, judged.objects[object]), (true, ObjectVerdict::Found), "{id}, object {object}");
         }
-        assert!(judged.ghosts.is_empty(), "{id}: {}", judged.verdict());
+        assert!(judged.ghosts.is_empty(), "{id}: {}", judged.headline());
     }
     assert_eq!(
-        same_output("street", 1024, Normalisation::DynamicRange(Decibels(100.0))).1.verdict(),
+        same_output("street", 1024, Normalisation::DynamicRange(Decibels(100.0))).1.headline(),
         "5 of 5 found, 0 false"
     );
 }
@@ -136,11 +136,11 @@ fn an_object_in_neither_map_is_hidden_and_not_counted() {
     let point = |x_metres, reflectivity| Object::Point(Point { reflectivity, ..Point::new(x_metres, 15.0) });
     let (target, footprints) = seen(vec![point(-5.0, 1.0), point(5.0, 1e-6)]);
     let found = footprints.judge(&target, &target, TARGET_ETA);
-    assert_eq!(found.objects, [Fate::Found, Fate::Hidden]);
-    assert_eq!(found.verdict(), "1 of 1 found, 0 false");
+    assert_eq!(found.objects, [ObjectVerdict::Found, ObjectVerdict::Hidden]);
+    assert_eq!(found.headline(), "1 of 1 found, 0 false");
     let mut output = target.clone();
     let [row, column] = footprints.places[1][0];
     output.lambda.slice_mut(ndarray::s![row - 2..row + 2, column - 2..column + 2]).fill(1.0);
     let found = footprints.judge(&target, &output, TARGET_ETA);
-    assert_eq!(found.verdict(), "2 of 2 found, 0 false", "the output shows it");
+    assert_eq!(found.headline(), "2 of 2 found, 0 false", "the output shows it");
 }

@@ -11,7 +11,7 @@ use burn::tensor::{Device, Tensor, TensorData};
 use ndarray::Array2;
 
 /// A network that can be trained.
-pub trait Student: Module + Clone {
+pub trait TrainableNetwork: Module + Clone {
     /// Width and depth.
     type Config: Clone + Send + Sync;
 

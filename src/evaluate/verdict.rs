@@ -13,10 +13,10 @@ use super::echoes::of_bodies;
 use crate::maps::focus::map_of;
 use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
 use crate::radar::{BuiltArray, Radar};
-use crate::scattering::{Echoing, SeenObject};
+use crate::scattering::{EchoSources, ObjectWithOccluders};
 use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan::amplitude_bound;
-use crate::signal::{Plan, beat_signal};
+use crate::signal::{SynthesisPlan, beat_signal};
 use ndarray::Axis;
 
 /// Least part of a footprint, 0 to 1, that must be detected for the object to count as found.
@@ -37,7 +37,7 @@ pub type CellIndex = [usize; 2];
 
 /// Verdict on an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Fate {
+pub enum ObjectVerdict {
     /// Half of its footprint or more is detected. Of a body, its strongest echo or half of its echoes that stand out. Of an object that the target
     /// does not show, one of its places, in a blob of nothing else. No other verdict applies.
     Found,
@@ -57,21 +57,21 @@ pub enum Fate {
     Hidden,
 }
 
-impl Fate {
+impl ObjectVerdict {
     /// Name of the verdict in tables.
     pub fn name(self) -> &'static str {
         match self {
-            Fate::Found => "found",
-            Fate::Missed => "missed",
-            Fate::Merged { .. } => "merged",
-            Fate::WrongTooth { .. } => "wrong tooth",
-            Fate::Hidden => "hidden",
+            ObjectVerdict::Found => "found",
+            ObjectVerdict::Missed => "missed",
+            ObjectVerdict::Merged { .. } => "merged",
+            ObjectVerdict::WrongTooth { .. } => "wrong tooth",
+            ObjectVerdict::Hidden => "hidden",
         }
     }
 
     /// Whether the object is found, or too weak to be missed.
     pub fn is_right(self) -> bool {
-        matches!(self, Fate::Found | Fate::Hidden)
+        matches!(self, ObjectVerdict::Found | ObjectVerdict::Hidden)
     }
 }
 
@@ -84,9 +84,9 @@ pub struct Ghost {
 
 /// Verdicts on all objects of a scene, and the ghosts of an output.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Failures {
+pub struct OutputVerdicts {
     /// The verdict on every object, in the scene's order.
-    pub objects: Vec<Fate>,
+    pub objects: Vec<ObjectVerdict>,
     /// Detected part of each object's footprint, 0 to 1, without a shift. For a body, the detected part of its echoes that stand out. For an object
     /// without a footprint that is found, the detected part of its places; else 0.
     pub covered: Vec<f64>,
@@ -94,21 +94,25 @@ pub struct Failures {
     pub ghosts: Vec<Ghost>,
 }
 
-impl Failures {
-    /// Number of objects that are [`Fate::Missed`].
+impl OutputVerdicts {
+    /// Number of objects that are [`ObjectVerdict::Missed`].
     pub fn missed(&self) -> usize {
-        self.count(|fate| fate == Fate::Missed)
+        self.count(|verdict| verdict == ObjectVerdict::Missed)
     }
 
     /// Number of objects whose verdict satisfies `is`.
-    pub fn count(&self, is: impl Fn(Fate) -> bool) -> usize {
-        self.objects.iter().filter(|fate| is(**fate)).count()
+    pub fn count(&self, is: impl Fn(ObjectVerdict) -> bool) -> usize {
+        self.objects.iter().filter(|verdict| is(**verdict)).count()
     }
 
     /// One line for the user: the numbers of objects found, of objects that the target or the output shows, and of ghosts.
-    pub fn verdict(&self) -> String {
-        let shown = self.objects.len() - self.count(|fate| fate == Fate::Hidden);
-        format!("{} of {shown} found, {} false", self.count(|fate| fate == Fate::Found), self.ghosts.len())
+    pub fn headline(&self) -> String {
+        let shown = self.objects.len() - self.count(|verdict| verdict == ObjectVerdict::Hidden);
+        format!(
+            "{} of {shown} found, {} false",
+            self.count(|verdict| verdict == ObjectVerdict::Found),
+            self.ghosts.len()
+        )
     }
 }
 
@@ -133,7 +137,7 @@ impl Footprints {
         let level = 10f64.powf(scale.floor + f64::from(TARGET_ETA) * (scale.peak - scale.floor));
         let echoes = of_bodies(radar, scene, target, &scale);
         let mut objects: Vec<Vec<CellIndex>> =
-            SeenObject::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
+            ObjectWithOccluders::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
         for (cells, echoes) in objects.iter_mut().zip(&echoes).filter(|(_, echoes)| !echoes.is_empty()) {
             cells.extend(echoes.iter().flatten());
             cells.sort_unstable();
@@ -150,67 +154,67 @@ impl Footprints {
     }
 
     /// Verdicts on `output`, with the threshold `eta` on Lambda, against `target`; both are `[range bins, columns]`.
-    pub fn judge(&self, target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> Failures {
+    pub fn judge(&self, target: &RangeAngleMap, output: &RangeAngleMap, eta: f32) -> OutputVerdicts {
         self.judge_cells(target, output, &output.above(eta))
     }
 
     /// Verdicts on `output` with the detections `detected`, against `target`; all are `[range bins, columns]`.
-    pub fn judge_cells(&self, target: &RangeAngleMap, output: &RangeAngleMap, detected: &Mask) -> Failures {
+    pub fn judge_cells(&self, target: &RangeAngleMap, output: &RangeAngleMap, detected: &Mask) -> OutputVerdicts {
         let found = Blobs::of(detected);
         let verdicts = self.objects.iter().zip(&self.echoes).map(|(cells, echoes)| {
-            let (fate, part) = verdict_on_footprint(cells, target, output, &found);
-            if echoes.is_empty() || matches!(fate, Fate::WrongTooth { .. }) {
-                (fate, part)
+            let (verdict, part) = verdict_on_footprint(cells, target, output, &found);
+            if echoes.is_empty() || matches!(verdict, ObjectVerdict::WrongTooth { .. }) {
+                (verdict, part)
             } else {
                 verdict_on_body(echoes, &found)
             }
         });
-        let (mut objects, mut covered): (Vec<Fate>, Vec<f64>) = verdicts.unzip();
+        let (mut objects, mut covered): (Vec<ObjectVerdict>, Vec<f64>) = verdicts.unzip();
         for i in 0..objects.len() {
-            if objects[i] == Fate::Found
+            if objects[i] == ObjectVerdict::Found
                 && let Some(with) = self.merged_with(i, &objects, &found)
             {
-                objects[i] = Fate::Merged { with };
+                objects[i] = ObjectVerdict::Merged { with };
             }
         }
         let mut explained = self.explained(&found, &objects);
-        let hidden: Vec<usize> = (0..objects.len()).filter(|&i| objects[i] == Fate::Hidden).collect();
+        let hidden: Vec<usize> = (0..objects.len()).filter(|&i| objects[i] == ObjectVerdict::Hidden).collect();
         for &i in &hidden {
             let is_at = |is: &dyn Fn(usize) -> bool| {
                 let seen = self.places[i].iter().filter(|place| near(&found, **place, 0).any(is)).count();
                 seen as f64 / self.places[i].len().max(1) as f64
             };
             if is_at(&|label| !explained[label]) > 0.0 {
-                (objects[i], covered[i]) = (Fate::Found, is_at(&|label| label != 0));
+                (objects[i], covered[i]) = (ObjectVerdict::Found, is_at(&|label| label != 0));
             }
         }
         let of_hidden = hidden.iter().flat_map(|&i| &self.places[i]);
         of_hidden.flat_map(|&place| near(&found, place, 0)).for_each(|label| explained[label] = true);
         let blobs = found.cells.iter().zip(&explained[1..]);
         let ghosts = blobs.filter(|(cells, explained)| !**explained && cells.len() >= MIN_GHOST_CELLS);
-        Failures { objects, covered, ghosts: ghosts.map(|(cells, _)| Ghost { cells: cells.clone() }).collect() }
+        OutputVerdicts { objects, covered, ghosts: ghosts.map(|(cells, _)| Ghost { cells: cells.clone() }).collect() }
     }
 
     /// Index of an object that the output shows in one blob with object `i`, but the target doesn't.
-    fn merged_with(&self, i: usize, fates: &[Fate], found: &Blobs) -> Option<usize> {
+    fn merged_with(&self, i: usize, verdicts: &[ObjectVerdict], found: &Blobs) -> Option<usize> {
         let blob = |blobs: &Blobs, of: usize| blobs.most_of(&self.objects[of]);
         let (shown, seen) = (blob(&self.target, i)?, blob(found, i)?);
-        (0..fates.len())
-            .filter(|&o| o != i && matches!(fates[o], Fate::Found | Fate::Merged { .. }))
+        (0..verdicts.len())
+            .filter(|&o| o != i && matches!(verdicts[o], ObjectVerdict::Found | ObjectVerdict::Merged { .. }))
             .find(|&o| blob(found, o) == Some(seen) && blob(&self.target, o).is_some_and(|other| other != shown))
     }
 
     /// For each label of `found`, whether its blob is near an object that the target shows, or near a blob of the target; true for the ground.
-    fn explained(&self, found: &Blobs, fates: &[Fate]) -> Vec<bool> {
+    fn explained(&self, found: &Blobs, verdicts: &[ObjectVerdict]) -> Vec<bool> {
         let mut explained = vec![false; found.cells.len() + 1];
         explained[0] = true;
         let mut explain =
             |cell: CellIndex, shift: i32| near(found, cell, shift).for_each(|label| explained[label] = true);
         // Blobs of the target away from the objects, of side lobes and noise, explain blobs of the output too.
         self.target.cells.iter().flatten().for_each(|&cell| explain(cell, 0));
-        for ((cells, places), fate) in self.objects.iter().zip(&self.places).zip(fates) {
-            let shift = if let Fate::WrongTooth { columns } = fate { *columns } else { 0 };
-            if *fate != Fate::Hidden {
+        for ((cells, places), verdict) in self.objects.iter().zip(&self.places).zip(verdicts) {
+            let shift = if let ObjectVerdict::WrongTooth { columns } = verdict { *columns } else { 0 };
+            if *verdict != ObjectVerdict::Hidden {
                 cells.iter().chain(places).for_each(|&cell| explain(cell, shift));
             }
         }
@@ -242,9 +246,9 @@ fn verdict_on_footprint(
     target: &RangeAngleMap,
     output: &RangeAngleMap,
     found: &Blobs,
-) -> (Fate, f64) {
+) -> (ObjectVerdict, f64) {
     if cells.is_empty() {
-        return (Fate::Hidden, 0.0);
+        return (ObjectVerdict::Hidden, 0.0);
     }
     let columns = target.lambda.ncols();
     let at = |[row, column]: CellIndex, shift: i32| [row, shifted_column(column, shift, columns)];
@@ -264,19 +268,19 @@ fn verdict_on_footprint(
         .filter(|(shift, error)| {
             *shift != 0 && *error <= MAX_TOOTH_ERROR_RATIO * here && covered(*shift) >= MIN_FOUND_PART
         });
-    let fate = match best {
-        Some((columns, _)) => Fate::WrongTooth { columns },
-        None if part >= MIN_FOUND_PART => Fate::Found,
-        None => Fate::Missed,
+    let verdict = match best {
+        Some((columns, _)) => ObjectVerdict::WrongTooth { columns },
+        None if part >= MIN_FOUND_PART => ObjectVerdict::Found,
+        None => ObjectVerdict::Missed,
     };
-    (fate, part)
+    (verdict, part)
 }
 
 /// Verdict on a body by the cells of its echoes, and the detected part of the echoes.
-fn verdict_on_body(echoes: &[Vec<CellIndex>], found: &Blobs) -> (Fate, f64) {
+fn verdict_on_body(echoes: &[Vec<CellIndex>], found: &Blobs) -> (ObjectVerdict, f64) {
     let is_seen = |cells: &Vec<CellIndex>| cells.iter().any(|cell| found.labels[*cell] != 0);
     let part = echoes.iter().filter(|cells| is_seen(cells)).count() as f64 / echoes.len() as f64;
-    (if part >= MIN_FOUND_PART || is_seen(&echoes[0]) { Fate::Found } else { Fate::Missed }, part)
+    (if part >= MIN_FOUND_PART || is_seen(&echoes[0]) { ObjectVerdict::Found } else { ObjectVerdict::Missed }, part)
 }
 
 /// The column `by` columns to the right; columns wrap.
@@ -286,10 +290,10 @@ fn shifted_column(column: usize, by: i32, columns: usize) -> usize {
 
 /// The cells where the whole array's map of an object alone exceeds the magnitude `level`, without noise. The parts of the object that other bodies
 /// hide don't count.
-fn footprint(radar: &Radar, seen: &SeenObject, level: f64) -> Vec<CellIndex> {
-    let echoing = Echoing::seen(radar, std::slice::from_ref(seen));
+fn footprint(radar: &Radar, seen: &ObjectWithOccluders, level: f64) -> Vec<CellIndex> {
+    let echoing = EchoSources::of_objects(radar, std::slice::from_ref(seen));
     let amplitude = amplitude_bound(radar, &echoing);
-    let plan = Plan::cheapest(echoing.len(), amplitude, SIMULATION_TOLERANCE);
+    let plan = SynthesisPlan::cheapest(echoing.len(), amplitude, SIMULATION_TOLERANCE);
     let signal = beat_signal(radar, &echoing, &plan);
     if radar.focus_off_line && !radar.is_on_line() {
         let map = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).cells;

@@ -5,10 +5,10 @@
 use crate::radar::{Pair, Polar, Radar};
 
 /// Distance in far fields at which a wave counts as plane: its front is curved by less than 1e-5 wavelengths over the array.
-pub(super) const FAR_AWAY: f64 = 1e4;
+pub(super) const FAR_FIELDS_AWAY: f64 = 1e4;
 
 /// The reflector at (`range_metres`, `cos_theta`) of the centre, in polar coordinates around `from_x_metres` on the array's axis.
-pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -> Polar {
+pub(super) fn polar_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -> Polar {
     let x = range_metres * cos_theta.clamp(-1.0, 1.0);
     let square = range_metres * range_metres - 2.0 * x * from_x_metres + from_x_metres * from_x_metres;
     let range = square.max(1e-12).sqrt();
@@ -16,10 +16,10 @@ pub(super) fn seen_from(from_x_metres: f64, range_metres: f64, cos_theta: f64) -
 }
 
 /// The reflector at (`range_metres`, `cos_theta`) of the centre, in polar coordinates around an antenna at `place_metres`, (x, y).
-fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> Polar {
+fn polar_from_antenna(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> Polar {
     let [from_x_metres, from_y_metres] = place_metres;
     if from_y_metres == 0.0 {
-        return seen_from(from_x_metres, range_metres, cos_theta);
+        return polar_from(from_x_metres, range_metres, cos_theta);
     }
     let cos = cos_theta.clamp(-1.0, 1.0);
     let (x, y) = (range_metres * cos - from_x_metres, range_metres * (1.0 - cos * cos).sqrt() - from_y_metres);
@@ -29,13 +29,13 @@ fn seen_at(place_metres: [f64; 2], range_metres: f64, cos_theta: f64) -> Polar {
 
 /// The reflector at (`range_metres`, `cos_theta`) of the centre, for a pair of antennas: half the way there and back, and the mean of both
 /// cosines, which is the range's derivative where both antennas move.
-pub(super) fn seen_by(pair: Pair, range_metres: f64, cos_theta: f64) -> Polar {
+pub(super) fn polar_from_pair(pair: Pair, range_metres: f64, cos_theta: f64) -> Polar {
     let [transmitter, receiver] = pair.places_metres();
-    let there = seen_at(transmitter, range_metres, cos_theta);
+    let there = polar_from_antenna(transmitter, range_metres, cos_theta);
     if pair.is_one() {
         return there;
     }
-    let back = seen_at(receiver, range_metres, cos_theta);
+    let back = polar_from_antenna(receiver, range_metres, cos_theta);
     Polar {
         range_metres: (there.range_metres + back.range_metres) / 2.0,
         cos_theta: (there.cos_theta + back.cos_theta) / 2.0,
@@ -45,7 +45,7 @@ pub(super) fn seen_by(pair: Pair, range_metres: f64, cos_theta: f64) -> Polar {
 /// Range of every row of `radar`'s map, metres. A single sample has no ranges: its echoes count as plane waves from far away.
 pub(super) fn row_ranges_metres(radar: &Radar) -> Vec<f64> {
     if radar.samples == 1 {
-        return vec![FAR_AWAY * radar.far_field_metres()];
+        return vec![FAR_FIELDS_AWAY * radar.far_field_metres()];
     }
     (0..radar.samples).map(|bin| radar.range_of_bin_metres(bin as f64)).collect()
 }
@@ -58,7 +58,7 @@ pub(super) struct Direction {
 }
 
 /// Most directions of one column; wider spacings are refused.
-pub(super) const MOST_FOLDS: usize = 8;
+pub(super) const MAX_FOLDS: usize = 8;
 
 /// Every direction of the columns of `radar`'s map, column after column.
 ///
@@ -70,7 +70,7 @@ pub(super) fn directions(radar: &Radar) -> Vec<Direction> {
         let cos = radar.cos_of_column(column as f64);
         // Rounding must not push the column of the axis itself off it.
         let lowest = cos - ((cos + 1.0 + ROUNDING_COS) / period).floor() * period;
-        (0..=MOST_FOLDS)
+        (0..=MAX_FOLDS)
             .map(move |fold| lowest + fold as f64 * period)
             .take_while(|cos| *cos < 1.0 - ROUNDING_COS)
             .map(move |cos| Direction { cos_theta: cos.max(-1.0), column })
@@ -100,14 +100,14 @@ pub(super) fn no_plane_waves(radar: &Radar) -> Option<String> {
     })
 }
 
-/// The refusal of a radar of which more than [`MOST_FOLDS`] directions share a column; `None` for any other radar.
+/// The refusal of a radar of which more than [`MAX_FOLDS`] directions share a column; `None` for any other radar.
 pub(super) fn too_many_folds(radar: &Radar) -> Option<String> {
     let folds = (2.0 / cos_period(radar)).ceil();
-    (folds > MOST_FOLDS as f64).then(|| {
+    (folds > MAX_FOLDS as f64).then(|| {
         let wavelengths = radar.element_spacing_metres / radar.wavelength_metres();
         format!(
             "elements stand {wavelengths:.3} wavelengths apart, so that each column stands for {folds} directions; at most \
-             {MOST_FOLDS} are told apart"
+             {MAX_FOLDS} are told apart"
         )
     })
 }
@@ -119,14 +119,14 @@ mod tests {
 
     #[test]
     fn the_centre_sees_itself() {
-        let s = seen_from(0.0, 20.0, 0.3);
+        let s = polar_from(0.0, 20.0, 0.3);
         assert!((s.range_metres - 20.0).abs() < 1e-12 && (s.cos_theta - 0.3).abs() < 1e-12);
     }
 
     #[test]
     fn an_end_sees_a_place_from_where_it_is() {
         // From 3 m to the left, a reflector 4 m ahead of the centre is 5 m away.
-        let s = seen_from(-3.0, 4.0, 0.0);
+        let s = polar_from(-3.0, 4.0, 0.0);
         assert!((s.range_metres - 5.0).abs() < 1e-12 && (s.cos_theta - 0.6).abs() < 1e-12);
     }
 

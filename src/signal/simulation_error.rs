@@ -5,7 +5,7 @@ use crate::task::Cancelled;
 
 /// A reason for which a simulation has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Unfinished {
+pub enum SimulationError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     #[error(transparent)]
@@ -13,14 +13,14 @@ pub enum Unfinished {
 }
 
 /// The result of a simulation that may be cancelled.
-pub type Made<T> = Result<T, Unfinished>;
+pub type SimulationResult<T> = Result<T, SimulationError>;
 
-impl Unfinished {
+impl SimulationError {
     /// The fault of the scene, for a task that can't be cancelled.
     pub(crate) fn of_scene(self) -> SceneError {
         match self {
-            Unfinished::Scene(error) => error,
-            Unfinished::Cancelled(_) => unreachable!("the task has no other owner"),
+            SimulationError::Scene(error) => error,
+            SimulationError::Cancelled(_) => unreachable!("the task has no other owner"),
         }
     }
 }

@@ -10,16 +10,16 @@ use std::sync::Arc;
 
 /// An object, and the bodies that may shadow it. Equal values have equal echoes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SeenObject {
+pub struct ObjectWithOccluders {
     pub object: Object,
     /// Bodies between it and the array, or nearly so; none for most objects.
     pub hidden_by: Arc<[Arc<Object>]>,
 }
 
-impl From<Object> for SeenObject {
+impl From<Object> for ObjectWithOccluders {
     /// An object that nothing hides.
     fn from(object: Object) -> Self {
-        SeenObject { object, hidden_by: Arc::default() }
+        ObjectWithOccluders { object, hidden_by: Arc::default() }
     }
 }
 
@@ -65,17 +65,17 @@ impl Bodies {
 /// Number of objects from which on shadowing bodies are searched on several threads.
 const MIN_PARALLEL_OBJECTS: usize = 32;
 
-impl SeenObject {
+impl ObjectWithOccluders {
     /// Every object of a scene, with the bodies that may hide it from `radar`.
-    pub fn all(radar: &Radar, scene: &Scene) -> Vec<SeenObject> {
+    pub fn all(radar: &Radar, scene: &Scene) -> Vec<ObjectWithOccluders> {
         let bodies = Bodies::of(radar, scene);
         let is_mirrored = scene.disturbances.mirror.is_some();
         let seen = |(index, object): (usize, &Object)| {
             if bodies.screens.is_empty() {
-                return SeenObject::from(object.clone());
+                return ObjectWithOccluders::from(object.clone());
             }
             let all = is_mirrored && object.body().is_some();
-            SeenObject { object: object.clone(), hidden_by: bodies.hiding(index, object, all) }
+            ObjectWithOccluders { object: object.clone(), hidden_by: bodies.hiding(index, object, all) }
         };
         scene.objects.par_iter().enumerate().with_min_len(MIN_PARALLEL_OBJECTS).map(seen).collect()
     }
@@ -97,20 +97,20 @@ impl SeenObject {
 
 /// All echoing objects of a scene: reflectors that nothing hides, and the other objects.
 #[derive(Debug, Clone, Default)]
-pub struct Echoing {
+pub struct EchoSources {
     /// Reflectors that nothing hides.
     pub points: Vec<Reflector>,
     /// Bodies, and points that are partly hidden.
     pub scatterers: Vec<Scatterer>,
 }
 
-impl Echoing {
+impl EchoSources {
     /// All echoing objects of `scene`, with their images in a mirror.
     pub fn of(radar: &Radar, scene: &Scene) -> Self {
         if !scene.has_bodies() {
-            return Echoing { points: scene.echoing(radar), scatterers: Vec::new() };
+            return EchoSources { points: scene.echoing(radar), scatterers: Vec::new() };
         }
-        let mut all = Echoing::seen(radar, &SeenObject::all(radar, scene));
+        let mut all = EchoSources::of_objects(radar, &ObjectWithOccluders::all(radar, scene));
         if let Some(mirror) = scene.disturbances.mirror {
             all.scatterers = all.scatterers.into_iter().map(|s| s.in_mirror(mirror)).collect();
             // Ghosts of points come after all reflectors.
@@ -120,9 +120,9 @@ impl Echoing {
     }
 
     /// The echoes of these objects, without a mirror.
-    pub fn seen(radar: &Radar, seen: &[SeenObject]) -> Self {
-        let mut all = Echoing::default();
-        for one in seen {
+    pub fn of_objects(radar: &Radar, objects: &[ObjectWithOccluders]) -> Self {
+        let mut all = EchoSources::default();
+        for one in objects {
             if one.is_points() {
                 all.points.extend(one.object.reflectors());
             } else {
@@ -143,11 +143,13 @@ impl Echoing {
     }
 }
 
-/// The echoes of every body as the middle of the array hears them, each with the index of its object.
-pub fn heard_in_the_middle(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho)> {
+/// The echoes of every body at the centre of the array, each with the index of its object.
+pub fn array_centre_echoes(radar: &Radar, scene: &Scene) -> Vec<(usize, PathEcho)> {
     let antennas = AntennaPlaces::at([0.0, 0.0]);
     let mut all = Vec::new();
-    for (index, seen) in SeenObject::all(radar, scene).iter().enumerate().filter(|(_, s)| s.object.body().is_some()) {
+    for (index, seen) in
+        ObjectWithOccluders::all(radar, scene).iter().enumerate().filter(|(_, s)| s.object.body().is_some())
+    {
         let mut echoes = Vec::new();
         seen.scatterer(radar).echoes(&antennas, &mut echoes);
         all.extend(echoes.into_iter().filter(PathEcho::is_heard).map(|echo| (index, echo)));
@@ -164,8 +166,8 @@ pub struct Sources<'a> {
     pub scatterers: &'a [Scatterer],
 }
 
-impl<'a> From<&'a Echoing> for Sources<'a> {
-    fn from(all: &'a Echoing) -> Self {
+impl<'a> From<&'a EchoSources> for Sources<'a> {
+    fn from(all: &'a EchoSources) -> Self {
         Sources { points: &all.points, scatterers: &all.scatterers }
     }
 }

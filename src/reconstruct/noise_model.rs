@@ -1,6 +1,6 @@
 //! Measurement of the noise in samples: the power of their quietest range bins, limited by the expected floor beneath the echoes.
 
-use super::noise::noise_heard;
+use super::noise::measured_noise;
 use super::prior::NoisePrior;
 use crate::maps::channels_range_transform;
 use crate::radar::{End, Radar};
@@ -10,29 +10,29 @@ use ndarray::{ArrayView1, ArrayView2};
 use num_complex::Complex64;
 
 pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, noise: NoisePrior) -> f64 {
-    Hearing::beneath(radar, ends, noise).ends_noise_variance(radar, ends)
+    NoiseModel::beneath(radar, ends, noise).ends_noise_variance(radar, ends)
 }
 
 /// The noise model of a reconstruction's samples.
 #[derive(Debug, Clone, Copy)]
-pub struct Hearing {
+pub struct NoiseModel {
     /// Expected variance a sample, which replaces a measured one that is more than [`MARGIN`] times as large and uneven.
     expected: f64,
     /// Variance a sample, where the request gives it.
     known: Option<f64>,
 }
 
-impl Hearing {
+impl NoiseModel {
     /// A model without any expectation.
     pub fn any() -> Self {
-        Hearing { expected: f64::INFINITY, known: None }
+        NoiseModel { expected: f64::INFINITY, known: None }
     }
 
     /// The model for the samples of `ends`: where the noise is rounding, its expected variance follows from the echoes themselves, even where
     /// they fill every range bin.
     pub fn beneath(radar: &Radar, ends: &TwoEnds, noise: NoisePrior) -> Self {
         if noise.is_white() {
-            return Hearing { known: noise.variance(), ..Hearing::any() };
+            return NoiseModel { known: noise.variance(), ..NoiseModel::any() };
         }
         let window: f64 = radar.window.weights(radar.samples).iter().map(|w| w * w).sum();
         let channels = (ends.first.nrows() + ends.last.nrows()).max(1) as f64;
@@ -42,7 +42,7 @@ impl Hearing {
         };
         let of_end =
             |end: End| range_energy(radar, ends.end(end).view()).into_iter().enumerate().map(of_bin).sum::<f64>();
-        Hearing { expected: End::BOTH.into_iter().map(of_end).sum(), known: None }
+        NoiseModel { expected: End::BOTH.into_iter().map(of_end).sum(), known: None }
     }
 
     /// Variance of the white noise in a sample of either end.
@@ -59,9 +59,9 @@ impl Hearing {
         if let Some(variance) = self.known {
             return variance;
         }
-        let heard = noise_heard(radar, channels);
-        let is_echo = !heard.is_even && heard.variance > MARGIN * self.expected;
-        if is_echo { self.expected } else { heard.variance }
+        let measured = measured_noise(radar, channels);
+        let is_echo = !measured.is_even && measured.variance > MARGIN * self.expected;
+        if is_echo { self.expected } else { measured.variance }
     }
 }
 
@@ -93,19 +93,19 @@ mod tests {
         let radar = Radar::default();
         let ends = simulate(&radar, &lines(), Floor::Thesis, 0).unwrap().two_ends(&radar);
         let true_variance = thesis_noise_variance(&radar, &lines().reflectors())[0];
-        let heard = |hearing: Hearing| hearing.ends_noise_variance(&radar, &ends) / true_variance;
-        assert!(heard(Hearing::any()) > 1e3, "{}", heard(Hearing::any()));
-        let bounded = heard(Hearing::beneath(&radar, &ends, NoisePrior::Rounding));
+        let measured = |noise_model: NoiseModel| noise_model.ends_noise_variance(&radar, &ends) / true_variance;
+        assert!(measured(NoiseModel::any()) > 1e3, "{}", measured(NoiseModel::any()));
+        let bounded = measured(NoiseModel::beneath(&radar, &ends, NoisePrior::Rounding));
         assert!((0.5..2.0).contains(&bounded), "{bounded}");
     }
 
     #[test]
-    fn noise_that_was_not_foretold_is_heard_all_the_same() {
+    fn unexpected_noise_is_measured() {
         let radar = Radar::default();
         let scene = Scene::of_points([(2.0, 10.0), (-6.0, 17.0)]);
         let ends = simulate(&radar, &scene, Floor::Snr(Decibels(20.0)), 1).unwrap().two_ends(&radar);
         let true_variance = snr_noise_variance(&radar, &scene.reflectors(), Decibels(20.0))[0];
-        let heard = ends_noise_variance(&radar, &ends, NoisePrior::Rounding) / true_variance;
-        assert!((heard - 1.0).abs() < 0.2, "{heard}");
+        let measured = ends_noise_variance(&radar, &ends, NoisePrior::Rounding) / true_variance;
+        assert!((measured - 1.0).abs() < 0.2, "{measured}");
     }
 }

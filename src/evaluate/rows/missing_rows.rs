@@ -1,6 +1,6 @@
 //! Rows that are missing from a whole run.
 
-use super::{Row, Text, Whole};
+use super::{Row, Text, WholeRun};
 use crate::evaluate::shard::Shard;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -10,7 +10,7 @@ const MAX_SHARDS: u32 = 1000;
 
 /// Scenes of a set without a row by a method.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Lack {
+pub struct MissingRows {
     /// Name of the set.
     pub set: String,
     /// Name of the method.
@@ -23,9 +23,9 @@ pub struct Lack {
     shard: Option<String>,
 }
 
-impl fmt::Display for Lack {
+impl fmt::Display for MissingRows {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Lack { set, method, missing, of, first, shard } = self;
+        let MissingRows { set, method, missing, of, first, shard } = self;
         write!(f, "set {set}, {method}: {missing} of {of} scenes")?;
         match shard {
             Some(shard) => write!(f, " (shard {shard})"),
@@ -40,10 +40,10 @@ impl fmt::Display for Lack {
 }
 
 /// Scenes that `rows` lack, by the whole run that rows record, or else by the gaps below their highest scene number.
-pub fn lacks(rows: &[Row]) -> Vec<Lack> {
+pub fn missing_rows(rows: &[Row]) -> Vec<MissingRows> {
     let mut present: BTreeMap<(&str, &str), BTreeSet<u32>> = BTreeMap::new();
     let mut runs: Vec<(&Text, &Text)> = Vec::new();
-    let mut wholes: Vec<Whole> = Vec::new();
+    let mut wholes: Vec<WholeRun> = Vec::new();
     let mut shards: Vec<Shard> = Vec::new();
     let mut guessed: BTreeMap<&Text, (u32, BTreeSet<&Text>)> = BTreeMap::new();
     for row in rows {
@@ -72,17 +72,17 @@ pub fn lacks(rows: &[Row]) -> Vec<Lack> {
         wanted.extend(methods.into_iter().map(|method| (&**set, &**method, count)));
     }
     let empty = BTreeSet::new();
-    let mut found: Vec<Lack> = Vec::new();
+    let mut found: Vec<MissingRows> = Vec::new();
     for (set, method, of) in wanted {
         let there = present.get(&(set, method)).unwrap_or(&empty);
-        let lack = Lack::of(set, method, of, there, &shards);
+        let lack = MissingRows::of(set, method, of, there, &shards);
         found.extend(lack.filter(|lack| !found.contains(lack)));
     }
     found
 }
 
-impl Lack {
-    fn of(set: &str, method: &str, of: u32, there: &BTreeSet<u32>, shards: &[Shard]) -> Option<Lack> {
+impl MissingRows {
+    fn of(set: &str, method: &str, of: u32, there: &BTreeSet<u32>, shards: &[Shard]) -> Option<MissingRows> {
         let missing = of - there.range(..of).count() as u32;
         if missing == 0 {
             return None;
@@ -93,7 +93,7 @@ impl Lack {
         let shard = shards.iter().filter(|s| s.of() <= MAX_SHARDS).flat_map(|shard| shard.all()).find(is_whole);
         let first = (0..of).filter(|index| !there.contains(index)).take(MAX_NAMED_SCENES).collect();
         let shard = shard.map(|shard| shard.to_string());
-        Some(Lack { set: set.to_owned(), method: method.to_owned(), missing, of, first, shard })
+        Some(MissingRows { set: set.to_owned(), method: method.to_owned(), missing, of, first, shard })
     }
 }
 
@@ -118,7 +118,7 @@ mod tests {
     }
 
     fn told(rows: &[Row]) -> Vec<String> {
-        lacks(rows).iter().map(Lack::to_string).collect()
+        missing_rows(rows).iter().map(MissingRows::to_string).collect()
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The reason why a file of rows can't be read or isn't written.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)] // The messages name every field.
-pub enum KeptError {
+pub enum RowFileError {
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: io::Error },
     /// The file has content that would be lost. The caller adds how to overwrite it.
@@ -22,15 +22,15 @@ pub enum KeptError {
     Merge(String),
 }
 
-fn on_file(path: &Path) -> impl FnOnce(io::Error) -> KeptError {
-    move |source| KeptError::File { path: path.to_owned(), source }
+fn on_file(path: &Path) -> impl FnOnce(io::Error) -> RowFileError {
+    move |source| RowFileError::File { path: path.to_owned(), source }
 }
 
-/// Scene and method of a row.
-pub type Key = (Text, u32, Text);
+/// Set, number of the scene, and method of a row.
+pub type RowIdentity = (Text, u32, Text);
 
 /// Set, scene and method of a row, which no other row of its run has together.
-pub fn key(row: &Row) -> Key {
+pub fn row_identity(row: &Row) -> RowIdentity {
     (row.set.clone(), row.index, row.method.clone())
 }
 
@@ -83,8 +83,8 @@ pub struct RowFile {
 impl RowFile {
     /// Opens the file, or creates it. Rows of the same run stay and half a last line is cut; `overwrite` replaces any content.
     /// # Errors
-    /// [`KeptError`] for a file that holds anything else, and for one that another process writes.
-    pub fn open(path: &Path, wanted: &RunRows, overwrite: bool) -> Result<RowFile, KeptError> {
+    /// [`RowFileError`] for a file that holds anything else, and for one that another process writes.
+    pub fn open(path: &Path, wanted: &RunRows, overwrite: bool) -> Result<RowFile, RowFileError> {
         if path.exists() && !path.is_file() {
             let source = io::Error::new(io::ErrorKind::InvalidInput, "is no file; expected the name of a file");
             return Err(on_file(path)(source));
@@ -97,7 +97,7 @@ impl RowFile {
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(on_file(path))?;
         // On a system without locks the file is written without one.
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-            return Err(KeptError::Busy(path.to_owned()));
+            return Err(RowFileError::Busy(path.to_owned()));
         }
         let table = if overwrite { RowTable::default() } else { present(path, &file, wanted)? };
         file.set_len(table.whole_bytes).map_err(on_file(path))?;
@@ -115,19 +115,19 @@ impl RowFile {
     }
 
     /// The first error of appending; `None` where there was none.
-    pub fn failure(&mut self) -> Option<KeptError> {
+    pub fn failure(&mut self) -> Option<RowFileError> {
         self.failed.take().map(on_file(&self.path))
     }
 
     /// All rows, in the order of a run that was never stopped, in which they are also written to the file.
     ///
     /// # Errors
-    /// [`KeptError`] for a file that can't be written.
-    pub fn finish(self) -> Result<Vec<Row>, KeptError> {
+    /// [`RowFileError`] for a file that can't be written.
+    pub fn finish(self) -> Result<Vec<Row>, RowFileError> {
         let RowFile { path, out, present, appended, .. } = self;
         drop(out);
         let all: Vec<Row> = present.into_iter().chain(appended).collect();
-        let sorted = merge(vec![(path.display().to_string(), all.clone())]).map_err(KeptError::Merge)?;
+        let sorted = merge(vec![(path.display().to_string(), all.clone())]).map_err(RowFileError::Merge)?;
         if sorted != all {
             write_atomically(&path, |out| write_rows(out, &sorted)).map_err(on_file(&path))?;
         }
@@ -135,11 +135,11 @@ impl RowFile {
     }
 }
 
-fn refused(path: &Path, why: &str) -> KeptError {
-    KeptError::Other { path: path.to_owned(), why: why.to_owned() }
+fn refused(path: &Path, why: &str) -> RowFileError {
+    RowFileError::Other { path: path.to_owned(), why: why.to_owned() }
 }
 
-fn present(path: &Path, mut file: &File, wanted: &RunRows) -> Result<RowTable, KeptError> {
+fn present(path: &Path, mut file: &File, wanted: &RunRows) -> Result<RowTable, RowFileError> {
     let header = header();
     let mut start = Vec::new();
     file.take(header.len() as u64).read_to_end(&mut start).map_err(on_file(path))?;
@@ -151,7 +151,7 @@ fn present(path: &Path, mut file: &File, wanted: &RunRows) -> Result<RowTable, K
     let mut seen = HashSet::new();
     for row in &table.rows {
         let twice = || format!("it holds scene {} of set {} by {} twice", row.index, row.set, row.method);
-        let wrong = wanted.foreign(row).or_else(|| (!seen.insert(key(row))).then(twice));
+        let wrong = wanted.foreign(row).or_else(|| (!seen.insert(row_identity(row))).then(twice));
         if let Some(why) = wrong {
             return Err(refused(path, &why));
         }
@@ -164,12 +164,12 @@ fn present(path: &Path, mut file: &File, wanted: &RunRows) -> Result<RowTable, K
 
 /// Writes merged rows, unless a file is there whose rows are not among them.
 /// # Errors
-/// [`KeptError`] for a file that holds anything else, and for one that can't be written.
-pub fn write_merged(path: &Path, rows: &[Row], overwrite: bool) -> Result<(), KeptError> {
+/// [`RowFileError`] for a file that holds anything else, and for one that can't be written.
+pub fn write_merged(path: &Path, rows: &[Row], overwrite: bool) -> Result<(), RowFileError> {
     if path.is_file() && !overwrite {
         let file = File::open(path).map_err(on_file(path))?;
         let table = read_table(file).map_err(|e| refused(path, &e.to_string()))?;
-        let figures = |row: &Row| (key(row), row.seed, row.squared_error.to_bits());
+        let figures = |row: &Row| (row_identity(row), row.seed, row.squared_error.to_bits());
         let merged: HashSet<_> = rows.iter().map(figures).collect();
         if let Some(row) = table.rows.iter().find(|row| !merged.contains(&figures(row))) {
             let why = format!("it holds other rows, scene {} of set {} by {} first", row.index, row.set, row.method);
