@@ -32,9 +32,6 @@ const LEVEL_TURNS: usize = 6;
 /// Largest residual of a level, as a part of the samples' energy.
 const MAX_LEVEL_ENERGY_RATIO: f64 = 0.3;
 
-/// Largest number of alternating fits of places, objects' gains and elements' gains after the last level.
-const MAX_LAST_TURNS: usize = 30;
-
 /// Largest residual of inexact places over the rounding floor, as a part of the samples' energy. A larger one contains an echo.
 pub const MAX_ROUNDING_RESIDUAL_PART: f64 = 1e-6;
 
@@ -148,15 +145,14 @@ impl Calibration<'_> {
             }
         }
         let Some(mut last) = last else { return Ok(None) };
-        for _ in 0..MAX_LAST_TURNS {
+        loop {
             request.task.check()?;
             let before = last.residual_part;
             last = turned(radar, &fitter, ends, &last.fit.atoms, &last.gains.normalised(false), true);
-            if last.residual_part > MAX_ROUND_RESIDUAL_PART * before {
-                break;
+            if last.residual_part >= MAX_ROUND_RESIDUAL_PART * before {
+                return Ok(Some(Fitted { gains: last.gains.normalised(false), ..last }));
             }
         }
-        Ok(Some(Fitted { gains: last.gains.normalised(false), ..last }))
     }
 }
 

@@ -18,11 +18,8 @@ const MAX_TOOTH_ATOMS: usize = 12;
 /// Largest number of reflectors of atoms whose gains are tied: the time grows with its square.
 const MAX_TIED_REFLECTORS: usize = 64;
 
-/// Largest number of reflectors that are fitted without a window.
+/// Largest number of reflectors that are fitted without a window. They are so few that their steps need no budget.
 const MAX_UNWINDOWED_REFLECTORS: usize = 40;
-
-/// Budget of the refinement without a window.
-const UNWINDOWED_WORK: usize = 50_000;
 
 const TIED_LIMITS: Limits = Limits { max_steps: 20, min_decrease: 1e-6, ridge: 0.0 };
 
@@ -91,7 +88,7 @@ impl Search<'_> {
         // A window keeps the residual of missing objects from others. Without missing ones it only loses energy.
         if is_complete && reflectors <= MAX_UNWINDOWED_REFLECTORS {
             let window = vec![1.0; self.radar.samples];
-            let fitter = Fitter::new(self.radar, &window, self.fitter.task, UNWINDOWED_WORK)
+            let fitter = Fitter::new(self.radar, &window, self.fitter.task, usize::MAX)
                 .with_channels_of(&self.samples.flat(&self.fitter.sensor))
                 .with_noise(self.fitter.noise_model);
             let fit = fitter.solve(self.samples, fit.atoms, Tie::PerEnd, 0.0);

@@ -239,17 +239,21 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    /// All atoms refined with their neighbours, at most `rounds` times, while the residual decreases.
-    pub fn converged(&self, mut fit: Fit, rounds: usize) -> Result<Fit, ReconstructError> {
-        for _ in 0..rounds {
+    /// All atoms refined with their neighbours, and again while the residual decreases.
+    pub fn converged(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        loop {
             let before = fit.cost();
-            let all = vec![true; fit.atoms.len()];
-            fit = self.refined(fit, &all, 2.0 * LINK_BINS, Limits::FINAL_FIT)?;
-            if fit.cost() > 0.9 * before {
-                break;
+            fit = self.all_refined(fit)?;
+            if fit.cost() >= 0.9 * before {
+                return Ok(fit);
             }
         }
-        Ok(fit)
+    }
+
+    /// All atoms refined with their neighbours.
+    pub fn all_refined(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+        let all = vec![true; fit.atoms.len()];
+        self.refined(fit, &all, 2.0 * LINK_BINS, Limits::FINAL_FIT)
     }
 }
 

@@ -10,19 +10,16 @@ use crate::reconstruct::fit::{BinSpans, Fit, Limits, bin_spans, distance_bins};
 /// Least energy that an atom explains, over the mean energy that one gain explains of noise.
 pub const MIN_ENERGY_RATIO: f64 = 16.0;
 
-/// Largest number of rounds of removing atoms.
-const MAX_PRUNING_ROUNDS: usize = 12;
-
 /// Range bins below which one atom may explain the echo of another, so that both are not added or removed in one round.
 pub const MIN_DISTANCE_BINS: f64 = 4.0;
 
 impl Search<'_> {
     /// `fit` without the atoms that explain no more than noise or the rounding of places, and those far beyond the maximum range.
     pub fn pruned(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
-        for _ in 0..MAX_PRUNING_ROUNDS {
+        loop {
             self.fitter.task.check()?;
             if self.fitter.work.is_spent() {
-                break;
+                return Ok(fit);
             }
             let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude());
             let least = rounding.max(MIN_ENERGY_RATIO * self.fitter.noise_energy(self.radar, &fit));
@@ -40,7 +37,7 @@ impl Search<'_> {
                 }
             }
             if removed.is_empty() {
-                break;
+                return Ok(fit);
             }
             for &i in &removed {
                 let gain_decades = decades(fit.cost() + energies[i], fit.cost());
@@ -52,6 +49,5 @@ impl Search<'_> {
             let marked: Vec<bool> = kept.map(beside).collect();
             fit = self.refined(fit, &marked, MIN_DISTANCE_BINS, Limits::ROUGH)?;
         }
-        Ok(fit)
     }
 }

@@ -8,9 +8,6 @@ use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, RangeGate, Spect
 /// Reflectors beyond the best end after which the search for a better one stops.
 const MAX_FAILED_REFLECTORS: usize = 8;
 
-/// Largest number of times that reflectors are removed from both ends.
-const MAX_TRIMS: usize = 2;
-
 /// Largest number of times that a row is made longer and refined.
 const MAX_EXTENSIONS: usize = 8;
 
@@ -76,16 +73,15 @@ impl RangeGate<'_> {
 
 /// `seed` without the reflectors at its ends whose removal lowers the residual.
 fn trimmed(gate: &RangeGate, mut seed: Atom) -> Atom {
-    for _ in 0..MAX_TRIMS {
+    loop {
         let row = gate.fitter.solve_alone(&gate.samples, seed);
         let excess = |at_last| excess_reflectors(&gate.fitter, &row, at_last);
         let (first, last) = rayon::join(|| excess(false), || excess(true));
         match resized(seed, first as i64, last as i64) {
             Some(shorter) if first + last > 0 => seed = shorter,
-            _ => break,
+            _ => return seed,
         }
     }
-    seed
 }
 
 /// Number of reflectors at the last end, or at the first, whose removal has the least residual.

@@ -12,9 +12,6 @@ use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Samples, Tie};
 /// Largest residual of a list in which no object is missing but places are inexact, as a part of the samples' energy.
 pub const NEARLY_COMPLETE_RESIDUAL_PART: f64 = 1e-5;
 
-/// Largest number of rounds of rows, of pairs, and of removing pairs whose gains differ between the ends.
-pub const MAX_ROUNDS: usize = 3;
-
 /// Largest ratio of the gains of a pair's point at the two ends.
 const MAX_PAIR_GAIN_RATIO: f64 = 1.5;
 
@@ -109,7 +106,7 @@ impl Search<'_> {
         }
         atoms.truncate(self.settings.max_atoms);
         let mut fit = self.fitter.solve(self.samples, atoms, Tie::PerEnd, 0.0);
-        for _ in 0..MAX_ROUNDS {
+        loop {
             let (agreed, unequal): (Vec<_>, Vec<_>) =
                 fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MAX_PAIR_GAIN_RATIO));
             if unequal.is_empty() {
@@ -126,7 +123,7 @@ impl Search<'_> {
             self.record_refusal(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
             return Ok(known);
         }
-        if !refines || self.is_explained(&fit) { self.pruned(fit) } else { self.pruned(self.converged(fit, 1)?) }
+        if !refines || self.is_explained(&fit) { self.pruned(fit) } else { self.pruned(self.all_refined(fit)?) }
     }
 }
 
