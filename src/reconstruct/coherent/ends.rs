@@ -7,7 +7,7 @@ use crate::signal::path::PairBlocks;
 use crate::signal::simd::{LANES_F64 as W, Lanes};
 use num_complex::Complex64;
 
-/// BinSpans of a range profile for each range bin: linear interpolation is then wrong by a few parts in a thousand.
+/// Rows of a range profile for each range bin: linear interpolation is then wrong by a few parts in a thousand.
 const PROFILE_ROWS_PER_BIN: usize = 16;
 
 /// Least distance of a place from an element, metres: amplitudes are divided by it.

@@ -25,7 +25,7 @@ const MAX_ELEMENTS: usize = 96;
 const MAX_SEARCHES: usize = 4;
 
 /// Distance of peaks, in range bins and in periods of the ends' fringes, within which they are one reflector.
-const SAME_PEAK: (f64, f64) = (1.0, 0.75);
+const SAME_PEAK: [f64; 2] = [1.0, 0.75];
 
 /// Largest length of the array, range bins: it has as many sectors.
 const MAX_SECTORS: f64 = 1000.0;
@@ -122,14 +122,12 @@ impl CoherentMethod {
                 Ok(peaks(&sectors, place, &powers, self.min_peak_part))
             })
             .collect::<Result<_, ReconstructError>>()?;
-        Ok(distinct(radar, found.concat(), [SAME_PEAK.0, SAME_PEAK.1 * sectors.fringe_cos]))
+        let [bins, fringes] = SAME_PEAK;
+        Ok(distinct(radar, found.concat(), [bins, fringes * sectors.fringe_cos]))
     }
 }
 
 /// Reflectors behind the peaks that `search` finds in `ends`, and in the residuals of those found so far.
-///
-/// # Errors
-/// [`ReconstructError::Cancelled`], and those of `search`.
 pub(in crate::reconstruct) fn found_in_residuals(
     radar: &Radar,
     ends: &TwoEnds,

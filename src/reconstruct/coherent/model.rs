@@ -64,9 +64,6 @@ impl Model {
     }
 
     /// Powers of the sector's directions, iterated by `update` from those of the matched filter.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn powers(&self, update: &Update, task: &Task) -> Result<Vec<f64>, ReconstructError> {
         let mean = self.snapshot.iter().map(Complex64::norm_sqr).sum::<f64>() / self.snapshot.len() as f64;
         let noise = (self.noise / mean).max(update.min_noise);

@@ -74,9 +74,6 @@ pub(super) fn distinct(radar: &Radar, mut peaks: Vec<Peak>, [bins, cos]: [f64; 2
 }
 
 /// Gains of the peaks' exact echoes by least squares on all samples of both ends.
-///
-/// # Errors
-/// [`ReconstructError::Cancelled`].
 pub(in crate::reconstruct) fn gains(
     radar: &Radar,
     peaks: &[Peak],

@@ -98,9 +98,6 @@ fn ranges(radar: &Radar) -> usize {
 }
 
 /// Places above the noise that are no side lobes of others, the strongest first. `noise_power` is that of one element's profile.
-///
-/// # Errors
-/// [`ReconstructError::Cancelled`].
 pub(super) fn places(
     radar: &Radar,
     ends: &Ends,

@@ -10,7 +10,7 @@ use crate::reconstruct::echoes::Gained;
 use crate::reconstruct::error::ReconstructError;
 use crate::reconstruct::fit::{Atom, BinSpans, Fit, Fitter, Samples, Tie, bin_spans, distance_bins};
 use crate::reconstruct::search::{
-    Detector, MIN_DISTANCE_BINS, MIN_ENERGY_RATIO, Search, Settings, Trace, with_tied_gains,
+    Detector, MAX_ROUNDING_RESIDUAL_PART, MIN_DISTANCE_BINS, MIN_ENERGY_RATIO, Search, Settings, Trace,
 };
 use crate::scene::Reflector;
 use crate::signal::{ArrayEcho, TwoEnds};
@@ -37,11 +37,8 @@ const MAX_SEARCH_RESIDUAL_PART: f64 = 0.9;
 /// Residual energy at which the search ends, as a part of the samples': 130 dB down, above rounding, which is not white.
 const COMPLETE_PART: f64 = 1e-13;
 
-/// Largest residual energy over [`COMPLETE_PART`] at which reflectors are accepted at any place: a millionth of the samples' energy.
-const CERTAIN_RESIDUAL_RATIO: f64 = 1e7;
-
-/// Distance within which echoes are one: parts of an end's beam width, and range bins.
-const SAME_PLACE: (f64, f64) = (1e-3, 1e-2);
+/// Distance within which echoes are one: range bins, and parts of an end's beam width.
+const SAME_PLACE: [f64; 2] = [1e-2, 1e-3];
 
 /// Budget of work, in units of about ten microseconds.
 const MAX_WORK: usize = 30_000;
@@ -57,15 +54,14 @@ struct PendingPeak {
 /// Reflectors found so far, with their residual.
 pub(super) struct Refinement<'a> {
     radar: &'a Radar,
-    task: &'a Task,
     fitter: Fitter<'a>,
     detector: Arc<Detector>,
     settings: Settings,
     samples: Samples,
     trace: Trace,
     fit: Fit,
-    /// Residual energy at which the search ends.
-    complete_energy: f64,
+    /// Energy of the windowed samples.
+    samples_energy: f64,
 }
 
 impl<'a> Refinement<'a> {
@@ -76,13 +72,13 @@ impl<'a> Refinement<'a> {
         let samples = Samples::new(&fitter.sensor, &flat);
         let fit = fitter.solve(&samples, Vec::new(), Tie::PerEnd, 0.0);
         let (detector, settings) = (Detector::of(radar), Settings::default());
-        let complete_energy = fit.cost() * COMPLETE_PART;
-        Refinement { radar, task, fitter, detector, settings, samples, trace: Trace::default(), fit, complete_energy }
+        let samples_energy = fit.cost();
+        Refinement { radar, fitter, detector, settings, samples, trace: Trace::default(), fit, samples_energy }
     }
 
     fn search(&self) -> Search<'_> {
-        let Refinement { radar, task, fitter, detector, settings, samples, trace, .. } = self;
-        Search { radar, fitter, detector, samples, has_white_noise: false, settings, task, trace }
+        let Refinement { radar, fitter, detector, settings, samples, trace, .. } = self;
+        Search { radar, fitter, detector, samples, has_white_noise: false, settings, trace }
     }
 
     /// The residual.
@@ -91,16 +87,13 @@ impl<'a> Refinement<'a> {
     }
 
     /// Adds reflectors at `peaks`, in rounds from the strongest on. Returns whether another search is useful.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn add(&mut self, peaks: &[Peak]) -> Result<bool, ReconstructError> {
         let before = self.fit.clone();
         let mut pending: Vec<PendingPeak> = peaks.iter().filter_map(|p| PendingPeak::new(self.radar, p)).collect();
         let first = self.explained_energies(&pending);
         pending.iter_mut().zip(first).for_each(|(peak, energy)| peak.energy = energy);
         for _ in 0..MAX_ROUNDS {
-            self.task.check()?;
+            self.fitter.task.check()?;
             let noise = MIN_ENERGY_RATIO * self.fitter.noise_energy(self.radar, &self.fit);
             let now = self.explained_energies(&pending);
             let mut remaining: Vec<(f64, PendingPeak)> = now.into_iter().zip(pending).collect();
@@ -126,9 +119,6 @@ impl<'a> Refinement<'a> {
     }
 
     /// The reflectors after a new search for those that hide each other ([`Search::relaxed`]), where there is a residual.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn with_model_order(mut self) -> Result<Self, ReconstructError> {
         if !self.is_done() {
             let search = self.search();
@@ -137,9 +127,9 @@ impl<'a> Refinement<'a> {
         Ok(self)
     }
 
-    /// Whether the residual is small complete_energy, or the work is spent.
+    /// Whether the residual is small enough, or the work is spent.
     fn is_done(&self) -> bool {
-        self.fit.cost() <= self.complete_energy || self.fitter.work.is_spent()
+        self.fit.cost() <= COMPLETE_PART * self.samples_energy || self.fitter.work.is_spent()
     }
 
     /// Energy of the residual that each of `pending` explains alone.
@@ -152,13 +142,11 @@ impl<'a> Refinement<'a> {
     }
 
     /// The reflectors, with gains common to both ends; `ends` are the samples in which they were found.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn found(self, ends: &TwoEnds) -> Result<Vec<Gained>, ReconstructError> {
-        let Refinement { radar, task, fitter, samples, mut fit, complete_energy, .. } = self;
-        fit = with_tied_gains(&fitter, &samples, fit, false);
-        let is_certain = fit.cost() <= complete_energy * CERTAIN_RESIDUAL_RATIO;
+        let (radar, task) = (self.radar, self.fitter.task);
+        let fit = self.search().with_tied_gains(self.fit.clone());
+        // A residual without an echo proves reflectors at any place.
+        let is_certain = fit.cost() <= MAX_ROUNDING_RESIDUAL_PART * self.samples_energy;
         let peak = |(atom, gains): (&Atom, &[Complex64; 2])| {
             let [x, y] = atom.position_metres(0.0);
             let place = radar.polar_of(x, y);
@@ -167,7 +155,8 @@ impl<'a> Refinement<'a> {
             (is_certain || is_heard_at_the_ends(radar, x, y)).then_some(peak)
         };
         let peaks = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
-        gains(radar, &distinct(radar, peaks, [SAME_PLACE.1, SAME_PLACE.0 * end_beam_cos(radar)]), ends, task)
+        let [bins, beam_widths] = SAME_PLACE;
+        gains(radar, &distinct(radar, peaks, [bins, beam_widths * end_beam_cos(radar)]), ends, task)
     }
 }
 

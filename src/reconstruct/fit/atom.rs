@@ -70,6 +70,12 @@ impl Atom {
         }
     }
 
+    /// Distance of the first reflector from the array's centre.
+    pub fn range_metres(&self) -> f64 {
+        let [x, y] = self.position_metres(0.0);
+        x.hypot(y)
+    }
+
     /// Derivatives of reflector `i`'s x and of half the square of its y by a parameter, numbered as in [`Atom::parameter_count`].
     pub fn derivatives(&self, i: usize, parameter: usize) -> [f64; 2] {
         let i = i as f64;

@@ -62,11 +62,8 @@ impl Samples {
     }
 }
 
-/// Least number of reflectors that are split into parts for processors. There are few blocks of channels, which are for processors too.
+/// Least number of reflectors that are split into two parts for processors. There are few blocks of channels, which are for processors too.
 const MIN_SPLIT_REFLECTORS: usize = 12;
-
-/// Number of these parts.
-const SPLIT_PARTS: usize = 2;
 
 /// The products of echoes with a residual that are requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,7 +85,7 @@ pub fn remainder(
     kind: ProductKind,
 ) -> Remainder {
     let simd = Simd::chosen();
-    let parts = if reflectors.len() < MIN_SPLIT_REFLECTORS { 1 } else { SPLIT_PARTS };
+    let parts = if reflectors.len() < MIN_SPLIT_REFLECTORS { 1 } else { 2 };
     let part_size = reflectors.len().div_ceil(parts).max(1);
     let sum = |block: usize, part_at: usize| {
         let start = (part_at == 0).then(|| &samples.blocks[block][..]);
@@ -100,23 +97,15 @@ pub fn remainder(
         ProductKind::None => Vec::new(),
         _ => simd.run(Multiply { samples: sensor.samples, echoes: &summed.echoes, weighted: &residual.weighted, kind }),
     };
-    let blocks = 0..samples.blocks.len();
-    let (residuals, products): (Vec<BlockResidual>, Vec<Vec<BlockProducts>>) = if parts == 1 {
-        let of_block = |block: usize| {
-            let mut summed = sum(block, 0);
-            let residual = subtract(std::slice::from_mut(&mut summed));
-            let products = multiply(&summed, &residual);
-            (residual, products)
-        };
-        blocks.into_par_iter().map(of_block).unzip()
-    } else {
-        let tasks = blocks.len() * parts;
-        let mut sums: Vec<BlockSum> = (0..tasks).into_par_iter().map(|task| sum(task / parts, task % parts)).collect();
-        let residuals: Vec<BlockResidual> = sums.chunks_mut(parts).map(subtract).collect();
-        let product = |task: usize| multiply(&sums[task], &residuals[task / parts]);
-        let products: Vec<Vec<BlockProducts>> = (0..tasks).into_par_iter().map(product).collect();
-        (residuals, products.chunks(parts).map(<[_]>::concat).collect())
+    let of_block = |block: usize| {
+        let mut sums: Vec<BlockSum> = (0..parts).into_par_iter().map(|part_at| sum(block, part_at)).collect();
+        let residual = subtract(&mut sums);
+        let products: Vec<BlockProducts> =
+            sums.par_iter().flat_map_iter(|summed| multiply(summed, &residual)).collect();
+        (residual, products)
     };
+    let (residuals, products): (Vec<BlockResidual>, Vec<Vec<BlockProducts>>) =
+        (0..samples.blocks.len()).into_par_iter().map(of_block).unzip();
     let mut energy = [0.0; 2];
     for channel in 0..sensor.element_x.len() {
         energy[channel / sensor.end_elements] += residuals[channel / W].energy.0[channel % W];
@@ -255,11 +244,8 @@ impl Kernel for Subtract<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> BlockResidual {
-        let Some((first, others)) = self.sums.split_first_mut() else {
-            return BlockResidual { residual: Vec::new(), weighted: Vec::new(), energy: Lanes::splat(0.0) };
-        };
-        let mut residual = std::mem::take(&mut first.sum);
-        for part in others {
+        let mut residual = std::mem::take(&mut self.sums[0].sum);
+        for part in &self.sums[1..] {
             for (v, echoes) in residual.iter_mut().zip(&part.sum) {
                 *v = *v + *echoes;
             }

@@ -20,10 +20,8 @@ pub struct Dictionary<'a> {
     moments: &'a Moments,
     pub atoms: &'a [Atom],
     echoes: Vec<Vec<Echo>>,
-    /// Column of each atom's echo. Its derivatives follow if they are requested.
+    /// Column of each atom's echo. Its derivatives follow if they are requested. The last entry is the number of columns.
     pub first_column: Vec<usize>,
-    /// Number of columns.
-    pub columns: usize,
     derivatives: bool,
 }
 
@@ -45,13 +43,12 @@ impl<'a> Dictionary<'a> {
             simd.run(Echoes { sensor, reflectors: &reflectors })
         };
         let echoes = atoms.par_iter().map(echoes_of).collect();
-        let mut first_column = Vec::with_capacity(atoms.len());
-        let mut columns = 0;
+        let mut first_column = vec![0];
         for atom in atoms {
-            first_column.push(columns);
-            columns += 1 + if derivatives { atom.parameter_count() } else { 0 };
+            let width = 1 + if derivatives { atom.parameter_count() } else { 0 };
+            first_column.push(first_column[first_column.len() - 1] + width);
         }
-        Dictionary { sensor, moments, atoms, echoes, first_column, columns, derivatives }
+        Dictionary { sensor, moments, atoms, echoes, first_column, derivatives }
     }
 
     /// Gram matrices of the first and of the last end, `[columns, columns]`.
@@ -61,7 +58,8 @@ impl<'a> Dictionary<'a> {
             .into_par_iter()
             .map(|at| Simd::chosen().run(GramRow { dictionary: self, i: at / 2, end: at % 2 }))
             .collect();
-        let mut grams = [Mat::zeros(self.columns, self.columns), Mat::zeros(self.columns, self.columns)];
+        let columns = self.first_column[n];
+        let mut grams = [Mat::zeros(columns, columns), Mat::zeros(columns, columns)];
         for (at, row) in rows.into_iter().enumerate() {
             let (i, gram) = (at / 2, &mut grams[at % 2]);
             for (j, block) in row {
@@ -79,7 +77,8 @@ impl<'a> Dictionary<'a> {
 
     /// Inner products of the columns with a residual at the first and at the last end, `[columns]`, from `products`, those of each reflector's echo.
     pub fn slopes(&self, products: &[Products]) -> [Vec<Complex64>; 2] {
-        let mut slopes = [vec![Complex64::default(); self.columns], vec![Complex64::default(); self.columns]];
+        let columns = self.first_column[self.atoms.len()];
+        let mut slopes = [vec![Complex64::default(); columns], vec![Complex64::default(); columns]];
         let [rate, drift] = self.sensor.radians_per_metre_over_chirp();
         let mut products = products.iter();
         for (i, (atom, echoes)) in self.atoms.iter().zip(&self.echoes).enumerate() {
@@ -106,7 +105,7 @@ impl<'a> Dictionary<'a> {
     }
 
     fn width(&self, atom: usize) -> usize {
-        1 + if self.derivatives { self.atoms[atom].parameter_count() } else { 0 }
+        self.first_column[atom + 1] - self.first_column[atom]
     }
 
     /// Whether two echoes are so far apart in range at one end that they count as orthogonal.

@@ -26,10 +26,8 @@ const HANN_REACH_BINS: f64 = 12.0;
 pub struct Moments {
     /// Taylor coefficients of the moment of order 0 around each node, `[node][term]`.
     table: Arc<Vec<[f64; TAYLOR_TERMS]>>,
-    /// Number of range bins, after which the range repeats.
-    bins: f64,
-    /// Factor of a moment after a wrap of the range, 1 or -1: the phase is that at the chirp's middle.
-    wrap_sign: f64,
+    /// Samples of a chirp: as many range bins, after which the range repeats.
+    samples: usize,
     /// Largest difference, range bins, at which echoes don't count as orthogonal.
     pub reach_bins: f64,
 }
@@ -53,7 +51,8 @@ impl Moments {
         let fft = FftPlanner::new().plan_fft_inverse(nodes);
         let mut table = vec![[0.0; TAYLOR_TERMS]; nodes];
         // The phase is referred to the middle of the chirp. Nodes of the upper half are negative differences.
-        let d = |node: usize| signed_node(node, nodes) / NODES_PER_BIN as f64;
+        let signed_node = |node: usize| if node > nodes / 2 { node as f64 - nodes as f64 } else { node as f64 };
+        let d = |node: usize| signed_node(node) / NODES_PER_BIN as f64;
         let turns: Vec<Complex64> =
             (0..nodes).map(|node| Complex64::cis(-TAU * (d(node) * middle / samples as f64).fract())).collect();
         let mut factorial = 1.0;
@@ -79,14 +78,12 @@ impl Moments {
         let ends = window.first().copied().unwrap_or(0.0).abs();
         let largest = window.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
         let reach = if ends < 1e-9 * largest { HANN_REACH_BINS } else { f64::INFINITY };
-        let wrap_sign = if samples.is_multiple_of(2) { -1.0 } else { 1.0 };
-        Moments { table: Arc::new(table), bins: samples as f64, wrap_sign, reach_bins: reach }
+        Moments { table: Arc::new(table), samples, reach_bins: reach }
     }
 
     /// The moments for chirps of `samples`, an integer fraction of the number of before.
     pub fn sampled_as(&self, samples: usize) -> Self {
-        let wrap_sign = if samples.is_multiple_of(2) { -1.0 } else { 1.0 };
-        Moments { bins: samples as f64, wrap_sign, ..self.clone() }
+        Moments { samples, ..self.clone() }
     }
 
     /// The moments at differences of `bins`, which wrap at the number of range bins. Orders 1 and 2 are 0 unless `ALL`.
@@ -108,11 +105,14 @@ impl Moments {
     /// The node nearest to a difference, its coefficients, and the factor of the wraps.
     #[inline(always)]
     fn node(&self, bins: f64) -> (f64, &[f64; TAYLOR_TERMS], f64) {
-        let wraps = (bins / self.bins).round();
+        let all = self.samples as f64;
+        let wraps = (bins / all).round();
         let node = (bins * NODES_PER_BIN as f64).round();
-        let index = (node - wraps * self.bins * NODES_PER_BIN as f64) as i64;
+        let index = (node - wraps * all * NODES_PER_BIN as f64) as i64;
         let line = &self.table[index.rem_euclid(self.table.len() as i64) as usize];
-        (node, line, if wraps as i64 % 2 == 0 { 1.0 } else { self.wrap_sign })
+        // The phase is that at the chirp's middle.
+        let is_turned = wraps as i64 % 2 != 0 && self.samples.is_multiple_of(2);
+        (node, line, if is_turned { -1.0 } else { 1.0 })
     }
 }
 
@@ -135,11 +135,6 @@ fn taylor<const ALL: bool, const FMA: bool>(
     let scaled = |v: f64| sign * Lanes::splat(v);
     let second = half_curvature * scaled(-2.0 / (TAU * TAU));
     MomentsAt { zeroth: value * sign, first: slope * scaled(-1.0 / TAU), second }
-}
-
-/// The number of a node, negative in the upper half.
-fn signed_node(node: usize, nodes: usize) -> f64 {
-    if node > nodes / 2 { node as f64 - nodes as f64 } else { node as f64 }
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ const DECIMATIONS: [usize; 2] = [4, 2];
 pub struct Spectra<'a> {
     radar: &'a Radar,
     fitter: &'a Fitter<'a>,
-    samples: &'a Samples,
+    pub samples: &'a Samples,
     /// Spectrum of each windowed channel, `[channel][range bin]`.
     channels: Vec<Vec<Complex64>>,
 }

@@ -58,7 +58,7 @@ pub struct Fitter<'a> {
     moments: Moments,
     max_range_metres: f64,
     pub noise_model: NoiseModel,
-    task: &'a Task,
+    pub task: &'a Task,
     /// The budget, shared with the fitters of range gates.
     pub work: Arc<WorkBudget>,
 }
@@ -242,8 +242,8 @@ impl<'a> Fitter<'a> {
     }
 
     /// Energy of the windowed echo, at both ends, of a point with this amplitude at all elements.
-    pub fn energy_of_amplitude(&self, amplitude: f64, radar: &Radar) -> f64 {
-        2.0 * radar.end_elements as f64 * amplitude * amplitude * self.squared.iter().sum::<f64>()
+    pub fn energy_of_amplitude(&self, amplitude: f64) -> f64 {
+        2.0 * self.sensor.end_elements as f64 * amplitude * amplitude * self.squared.iter().sum::<f64>()
     }
 
     /// Mean energy that one gain explains of the noise in the residual of `fit`.
@@ -254,11 +254,16 @@ impl<'a> Fitter<'a> {
         variance * fourth / square
     }
 
-    /// `fit` without the atoms of the numbers `removed`, whose echoes are added to the residual. The other gains stay as they are.
-    pub fn remove(&self, fit: Fit, removed: &[usize]) -> Fit {
+    /// The residual of `fit` without the atoms of the numbers `removed`, whose echoes are added to it. The other gains stay as they are.
+    pub fn residual_without(&self, fit: &Fit, removed: &[usize]) -> Remainder {
         let atoms: Vec<Atom> = removed.iter().map(|&i| fit.atoms[i]).collect();
         let negative: Vec<Gains> = removed.iter().map(|&i| fit.gains[i].map(|g| -g)).collect();
-        let left = self.subtract(&fit.residual, &atoms, &negative);
+        self.subtract(&fit.residual, &atoms, &negative)
+    }
+
+    /// `fit` without the atoms of the numbers `removed`, as [`Self::residual_without`].
+    pub fn remove(&self, fit: &Fit, removed: &[usize]) -> Fit {
+        let left = self.residual_without(fit, removed);
         let kept: Vec<usize> = (0..fit.atoms.len()).filter(|i| !removed.contains(i)).collect();
         Fit {
             atoms: kept.iter().map(|&i| fit.atoms[i]).collect(),

@@ -79,10 +79,10 @@ impl Search<'_> {
         self.fitter.work.spend(DETECTION_WORK / 10 * points.len());
         let beams = PhasedBeams::new(self.radar, &flat);
         // The search for edges takes longest.
-        self.accepted(&residual, &rows_over_pairs(&beams, points, self.task)).or_else(|| {
+        self.accepted(&residual, &rows_over_pairs(&beams, points, self.fitter.task)).or_else(|| {
             let is_unwrapped = |p: &&[f64; 2]| p[0].hypot(p[1]) < self.radar.max_range_metres();
             let first: Vec<[f64; 2]> = points.iter().filter(is_unwrapped).take(MAX_CANDIDATES).copied().collect();
-            let from_edges = self.has_long_run(&flat).then(|| rows_from_edges(&beams, &first, self.task));
+            let from_edges = self.has_long_run(&flat).then(|| rows_from_edges(&beams, &first, self.fitter.task));
             self.accepted(&residual, &from_edges.unwrap_or_default())
         })
     }
@@ -102,7 +102,7 @@ impl Search<'_> {
         tracing::debug!(rows = rows.len(), "rows");
         let best = candidates.into_iter().max_by(|a, b| a.explained.total_cmp(&b.explained));
         let best = best.filter(|row| row.explained > MIN_CANDIDATE_PART)?;
-        let row = self.extended_to_its_ends(&fit.residual, best.atom);
+        let row = self.extended_to_its_ends(&residual.spectra, best.atom);
         let explained = (fit.cost() - row.cost()) / residual.energy(&bin_spans(self.radar, &row.atoms[0]));
         tracing::debug!(?best, explained, before = fit.cost(), cost = row.cost(), atom = ?row.atoms[0], "row");
         let explained = best.explained.max(explained);

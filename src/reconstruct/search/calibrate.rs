@@ -5,6 +5,7 @@
 //! gains are accepted where they remove nearly all of the residual.
 
 use super::element_gains::ElementGains;
+use super::explained::NOISE_MARGIN;
 use super::finish::Found;
 use super::rungs::MAX_ROUND_RESIDUAL_PART;
 use super::settings::Settings;
@@ -31,15 +32,8 @@ const LEVEL_TURNS: usize = 6;
 /// Largest residual of a level, as a part of the samples' energy.
 const MAX_LEVEL_ENERGY_RATIO: f64 = 0.3;
 
-/// Largest number of alternating fits of places, objects' gains and elements' gains after the last level.
-const MAX_LAST_TURNS: usize = 30;
-
-/// Largest residual of calibrated objects over the rounding floor, as a part of the samples' energy. A larger one contains an echo.
-const MAX_ROUNDING_ENERGY_RATIO: f64 = 1e-6;
-
-/// Ratio of powers: the largest residual of a level over the noise level that its search was given, and the noise level that the last search is given
-/// over the residual of the gains.
-const NOISE_MARGIN_RATIO: f64 = 3.0;
+/// Largest residual of inexact places over the rounding floor, as a part of the samples' energy. A larger one contains an echo.
+pub const MAX_ROUNDING_RESIDUAL_PART: f64 = 1e-6;
 
 /// Minimum gain of the objects that the elements' gains are fitted to, over the largest, as a ratio.
 const MIN_GAIN_RATIO: f64 = 0.03;
@@ -65,9 +59,6 @@ pub(super) fn asks_for_gains(plain: &Found) -> bool {
 }
 
 /// The objects in samples of equal elements, from those of a previous answer if there is one.
-///
-/// # Errors
-/// [`ReconstructError::Cancelled`].
 pub type SearchFn<'a> = &'a dyn Fn(Option<&Found>, &TwoEnds, &Request, &Settings) -> Result<Found, ReconstructError>;
 
 /// The input of an estimate of the elements' gains.
@@ -92,9 +83,6 @@ struct Fitted {
 
 impl Calibration<'_> {
     /// The objects with gains of the elements; `None` unless these explain most of the residual.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn found(&self) -> Result<Option<Found>, ReconstructError> {
         let Some(Fitted { gains, fit, residual_part }) = self.fitted()? else { return Ok(None) };
         tracing::debug!(residual_part, deviation = gains.deviation(), "gains");
@@ -103,8 +91,8 @@ impl Calibration<'_> {
         }
         let request = match self.request.noise.is_white() {
             true => self.request.clone(),
-            false if residual_part > MAX_ROUNDING_ENERGY_RATIO => return Ok(None),
-            false => self.over_noise(NOISE_MARGIN_RATIO * residual_part),
+            false if residual_part > MAX_ROUNDING_RESIDUAL_PART => return Ok(None),
+            false => self.over_noise(NOISE_MARGIN * residual_part),
         };
         let start = Found { is_complete: true, atoms: fit.atoms, gains: fit.gains, ..self.plain.clone() };
         let found = (self.search)(Some(&start), &gains.taken_from(self.ends), &request, self.settings)?;
@@ -151,21 +139,20 @@ impl Calibration<'_> {
                 gains = turned.gains.clone().normalised(*level >= NOISE_LEVELS[1]);
                 last = Some(turned);
             }
-            let max_part = MAX_LEVEL_ENERGY_RATIO.min(NOISE_MARGIN_RATIO * level) + noise;
+            let max_part = MAX_LEVEL_ENERGY_RATIO.min(NOISE_MARGIN * level) + noise;
             if last.as_ref().is_some_and(|last| last.residual_part > max_part) {
                 return Ok(None);
             }
         }
         let Some(mut last) = last else { return Ok(None) };
-        for _ in 0..MAX_LAST_TURNS {
+        loop {
             request.task.check()?;
             let before = last.residual_part;
             last = turned(radar, &fitter, ends, &last.fit.atoms, &last.gains.normalised(false), true);
-            if last.residual_part > MAX_ROUND_RESIDUAL_PART * before {
-                break;
+            if last.residual_part >= MAX_ROUND_RESIDUAL_PART * before {
+                return Ok(Some(Fitted { gains: last.gains.normalised(false), ..last }));
             }
         }
-        Ok(Some(Fitted { gains: last.gains.normalised(false), ..last }))
     }
 }
 

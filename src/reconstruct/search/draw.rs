@@ -2,7 +2,7 @@
 //!
 //! The expectation of Lambda has the least squared error. A map with simulated noise has twice the error, since both draws of the noise count.
 
-use super::over_noise::{EULER, OverNoise};
+use super::over_noise::OverNoise;
 use crate::maps::fast::{FastLogMap, MapMaker, MapSources};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::radar::{End, Radar};
@@ -16,6 +16,7 @@ use crate::signal::synthesis::{BlockProfiles, Synthesis};
 use crate::signal::{Precision, Rows, SynthesisPlan};
 use crate::task::Task;
 use rayon::prelude::*;
+use std::f64::consts::EULER_GAMMA;
 
 /// Cells that are summed in f32.
 const F32_SUM_CELLS: usize = 1024;
@@ -103,7 +104,7 @@ fn over_noise(mut map: FastLogMap, cell_noise: f64, normalisation: Normalisation
         rows.map(f64::from).sum::<f64>()
     }) / cell_noise;
     let [weakest, strongest] = [map.min, map.max].map(|decades| f64::from(over.cell(decades).decades));
-    let noise_peak = (cell_noise * ((map.cells.len() as f64).ln() + EULER)).log10() / 2.0;
+    let noise_peak = (cell_noise * ((map.cells.len() as f64).ln() + EULER_GAMMA)).log10() / 2.0;
     let peak = strongest.max(noise_peak);
     let range = match normalisation {
         Normalisation::DynamicRange(db) => db.amplitude_decades(),

@@ -4,7 +4,7 @@
 
 use super::draw::Expected;
 use super::finish::Found;
-use super::propose::end_beams::{BEAMS_PER_ELEMENT, beam_noise_power, beam_of_cos, end_beams};
+use super::propose::end_beams::{beam_count, beam_noise_power, beam_of_cos, end_beams};
 use super::propose::view::View;
 use crate::radar::{End, Radar};
 use crate::signal::TwoEnds;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 const MEAN_SIDE_CELLS: usize = 2;
 
 /// Power of a residual, over that of its noise, up to which it counts as noise. White noise, averaged so, exceeds it in one cell of 300 at most.
-const NOISE_MARGIN: f64 = 3.0;
+pub const NOISE_MARGIN: f64 = 3.0;
 
 /// Least power of a residual, over that of the strongest cell, for a finite logarithm.
 const MIN_RESIDUAL_RATIO: f64 = 1e-36;
@@ -29,7 +29,7 @@ impl Found {
     /// the searched samples, `expected` is the map of the objects found in them.
     pub fn residual_decades(&self, radar: &Radar, ends: &TwoEnds, expected: &Expected) -> Array2<f32> {
         let samples: Vec<Complex64> = ends.flat().iter().map(|v| v * self.scale).collect();
-        let beams = BEAMS_PER_ELEMENT * radar.end_elements;
+        let beams = beam_count(radar);
         let powers = |flat: &[Complex64]| end_beams(radar, flat, beams).map(|b| moving_mean(&b.mapv(|v| v.norm_sqr())));
         let (all, residual) = rayon::join(|| powers(&samples), || powers(&self.drawn_residual));
         let noise = NOISE_MARGIN * beam_noise_power(radar, self.noise_variance);
@@ -94,7 +94,7 @@ mod tests {
         let radar = Radar::default();
         let floor = Floor::Level(DecibelMilliwatts(-20.0));
         let flat = simulate(&radar, &Scene::default(), floor, 1).unwrap().two_ends(&radar).flat();
-        let beams = end_beams(&radar, &flat, BEAMS_PER_ELEMENT * radar.end_elements);
+        let beams = end_beams(&radar, &flat, beam_count(&radar));
         let level = NOISE_MARGIN * beam_noise_power(&radar, DecibelMilliwatts(-20.0).watts());
         for of_end in beams.map(|b| moving_mean(&b.mapv(|v| v.norm_sqr()))) {
             let above = of_end.iter().filter(|power| **power > level).count() as f64 / of_end.len() as f64;

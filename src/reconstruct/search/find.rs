@@ -1,7 +1,7 @@
 //! The whole search, from samples of both ends to objects.
 
 use super::calibrate::{Calibration, asks_for_gains};
-use super::finish::{Found, finish};
+use super::finish::Found;
 use super::ladder::{LADDER, after_rungs};
 use super::propose::peaks::Detector;
 use super::settings::Settings;
@@ -70,16 +70,16 @@ fn found_in(
     let samples = Samples::new(&fitter.sensor, &flat);
     let detector = Detector::of(radar);
     let trace = Trace::default();
-    let (has_white_noise, task) = (request.noise.is_white(), &request.task);
+    let has_white_noise = request.noise.is_white();
     let (fitter, detector, samples) = (&fitter, &detector, &samples);
-    let search = Search { radar, fitter, detector, samples, has_white_noise, settings, task, trace: &trace };
+    let search = Search { radar, fitter, detector, samples, has_white_noise, settings, trace: &trace };
     let followed = previous.map(|p| search.followed(p, scale)).transpose()?.flatten();
     let from_scratch = followed.as_ref().filter(|f| !f.is_complete).and(previous).map(|p| p.search_residual_part);
     let nothing = || State::of(fitter.solve(samples, Vec::new(), Tie::PerEnd, 0.0));
     let answer = search.with_model_order(followed.map_or_else(|| after_rungs(&search, LADDER, nothing()), Ok)?)?;
     request.task.check()?;
     request.task.set_progress(1.0);
-    let found = finish(radar, fitter, samples, answer, request, scale)?;
+    let found = search.finished(answer, scale)?;
     let search_residual_part = from_scratch.unwrap_or(found.search_residual_part);
     Ok(Found { search_residual_part, trace: trace.into_attempts(), ..found })
 }

@@ -19,9 +19,6 @@ const MAX_NEW_ATOMS: usize = 2;
 impl Search<'_> {
     /// The answer from that of `previous`: points with a residual are searched again; or the atoms with a residual are refined, removed or added to.
     /// `None` where the residual is larger than it was. `scale` is as in [`Found::scale`].
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn followed(&self, previous: &Found, scale: f64) -> Result<Option<State>, ReconstructError> {
         self.trace.enter(FOLLOWING);
         let ratio = scale / previous.scale;
@@ -50,14 +47,11 @@ impl Search<'_> {
 
     /// `fit` with the points in whose range bins there is a residual searched again by their tones, however far they moved. `None` where that leaves a
     /// residual.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     fn found_by_tones(&self, fit: &Fit) -> Result<Option<Fit>, ReconstructError> {
         let have_residual = self.have_residual(fit);
         let is_moved = |i: &usize| have_residual[*i] && matches!(fit.atoms[*i], Atom::Point { .. });
         let moved: Vec<usize> = (0..have_residual.len()).filter(is_moved).collect();
-        let stayed = if moved.is_empty() { fit.clone() } else { self.fitter.remove(fit.clone(), &moved) };
+        let stayed = if moved.is_empty() { fit.clone() } else { self.fitter.remove(fit, &moved) };
         let pairs = self.tone_pairs(&stayed).unwrap_or_default();
         if pairs.points.len() > moved.len() + MAX_NEW_ATOMS {
             return Ok(None);

@@ -51,9 +51,8 @@ impl Search<'_> {
 
     /// Increase of the residual energy of `fit` without this object, the others unchanged, in decades.
     pub fn own_decades(&self, fit: &Fit, atom: &Atom, gains: &Gains) -> f64 {
-        let own = |r: Reflector| {
-            self.fitter.energy_of_amplitude(r.reflectivity / (r.x_metres.powi(2) + r.y_metres.powi(2)), self.radar)
-        };
+        let own =
+            |r: Reflector| self.fitter.energy_of_amplitude(r.reflectivity / (r.x_metres.powi(2) + r.y_metres.powi(2)));
         let energy: f64 = atom.reflectors((gains[0].norm() + gains[1].norm()) / 2.0).map(own).sum();
         decades(fit.cost() + energy, fit.cost())
     }
@@ -61,7 +60,7 @@ impl Search<'_> {
     /// Whether no peak of the residual stands out of the noise.
     pub fn is_explained(&self, fit: &Fit) -> bool {
         let flat = fit.residual.flat(&self.fitter.sensor);
-        self.detector.peaks(self.radar, &flat, self.min_peak_power(&flat), 1).is_empty()
+        self.detector.peaks(&flat, self.min_peak_power(&flat), 1).is_empty()
     }
 
     /// Mean power of the noise of `flat` in a beam ([`beam_noise_power`]).
@@ -94,18 +93,14 @@ impl Search<'_> {
     }
 
     /// Adds points to `fit` until no peak stands out, progress is slow, or the largest number of atoms or the budget is reached.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn grown(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         let mut last_check = (self.fitter.work.done(), fit.cost());
         while fit.atoms.len() < self.settings.max_atoms && !self.fitter.work.is_spent() {
-            self.task.check()?;
+            self.fitter.task.check()?;
             self.fitter.work.spend(DETECTION_WORK);
             let flat = fit.residual.flat(&self.fitter.sensor);
             let remaining = self.settings.max_atoms - fit.atoms.len();
-            let points =
-                self.detector.peaks(self.radar, &flat, self.min_peak_power(&flat), MAX_NEW_POINTS.min(remaining));
+            let points = self.detector.peaks(&flat, self.min_peak_power(&flat), MAX_NEW_POINTS.min(remaining));
             if points.is_empty() {
                 break;
             }
@@ -124,9 +119,6 @@ impl Search<'_> {
     }
 
     /// All groups refined one after another, and again while this lowers the residual much: a group's residual disturbs the others.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn refined_in_sweeps(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for _ in 0..MAX_SWEEPS {
             let before = fit.cost();
@@ -140,28 +132,23 @@ impl Search<'_> {
     }
 
     /// `fit` with one more atom for each of `points` (x and y, metres; the strongest first), refined alone, then with its neighbours.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn with_points(&self, mut fit: Fit, points: &[[f64; 2]]) -> Result<Fit, ReconstructError> {
-        let mut refined_point: Vec<(Atom, Gains)> = points.par_iter().map(|p| self.refined_point(&fit, *p)).collect();
-        // The strongest is added compensated if its gains differ between the ends.
-        let mut strongest = true;
-        refined_point.retain(|(atom, gains)| {
-            let is_kept = std::mem::take(&mut strongest) || ends_agree(gains, MAX_NEW_GAIN_RATIO);
+        let refined: Vec<(Atom, Gains)> = points.par_iter().map(|p| self.refined_point(&fit, *p)).collect();
+        let is_kept = |(number, (atom, gains)): &(usize, (Atom, Gains))| {
+            // The strongest is added even if its gains differ between the ends.
+            let is_kept = *number == 0 || ends_agree(gains, MAX_NEW_GAIN_RATIO);
             if !is_kept {
                 self.record_refusal(tried(atom), self.own_decades(&fit, atom, gains), Refusal::EndsDisagree);
             }
             is_kept
-        });
+        };
+        let (atoms, gains): (Vec<Atom>, Vec<Gains>) =
+            refined.into_iter().enumerate().filter(is_kept).map(|(_, new)| new).unzip();
         let known = fit.atoms.len();
-        for (atom, gains) in refined_point {
-            fit.atoms.push(atom);
-            fit.gains.push(gains);
-        }
-        let new = &fit.atoms[known..];
-        let remainder = self.fitter.subtract(&fit.residual, new, &fit.gains[known..]);
+        let remainder = self.fitter.subtract(&fit.residual, &atoms, &gains);
         (fit.residual, fit.energy) = (remainder.residual, remainder.energy);
+        fit.atoms.extend(atoms);
+        fit.gains.extend(gains);
         let marked: Vec<bool> = (0..fit.atoms.len()).map(|i| i >= known).collect();
         self.refined(fit, &marked, LINK_BINS, GROWING_LIMITS)
     }
@@ -181,16 +168,13 @@ impl Search<'_> {
             return (near.atoms[0], near.gains[0]);
         }
         // The nearer one may have missed its best place: at a small array both have nearly the same echo.
-        let [x, y] = far.atoms[0].position_metres(0.0);
-        let back = if x.hypot(y) > max_range { alone(at_other_wrap([x, y], max_range)) } else { near };
+        let place = far.atoms[0].position_metres(0.0);
+        let back = if far.atoms[0].range_metres() > max_range { alone(at_other_wrap(place, max_range)) } else { near };
         let better = if far.cost() < 0.5 * back.cost() { far } else { back };
         (better.atoms[0], better.gains[0])
     }
 
     /// `fit` with each group that contains a marked atom refined, one after another ([`groups`]).
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn refined(
         &self,
         mut fit: Fit,
@@ -200,15 +184,13 @@ impl Search<'_> {
     ) -> Result<Fit, ReconstructError> {
         let spans: Vec<BinSpans> = fit.atoms.iter().map(|a| bin_spans(self.radar, a)).collect();
         for group in groups(self.radar.samples, &spans, marked, link_bins, MAX_GROUP_ATOMS) {
-            self.task.check()?;
+            self.fitter.task.check()?;
             if self.fitter.work.is_spent() {
                 break;
             }
             self.fitter.work.spend(DETECTION_WORK / 2);
-            let atoms: Vec<Atom> = group.iter().map(|&i| fit.atoms[i]).collect();
-            let gains: Vec<Gains> = group.iter().map(|&i| fit.gains[i]).collect();
-            let negative: Vec<Gains> = gains.iter().map(|g| [-g[0], -g[1]]).collect();
-            let base = self.fitter.subtract(&fit.residual, &atoms, &negative).residual;
+            let base = self.fitter.residual_without(&fit, &group).residual;
+            let (atoms, gains) = group.iter().map(|&i| (fit.atoms[i], fit.gains[i])).unzip();
             let own = union_of(group.iter().map(|&i| spans[i]));
             let ridge = own.map_or(0.0, |own| self.ridge(&fit, &base, &own) / group.len() as f64);
             let refined = self.fitter.refine(&base, atoms, gains, Tie::PerEnd, Limits { ridge, ..limits });
@@ -239,9 +221,6 @@ impl Search<'_> {
     }
 
     /// The atoms with residual in their range bins refined with their neighbours, in sweeps.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn refined_by_residual(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         for sweep in 0..MAX_SWEEPS {
             let before = fit.cost();
@@ -252,12 +231,7 @@ impl Search<'_> {
             // Side lobes couple distant groups too, so that later sweeps refine all atoms together.
             let link_bins = if sweep == 0 { LINK_BINS } else { self.radar.samples as f64 };
             fit = self.refined(fit, &marked, link_bins, Limits::FINAL_FIT)?;
-            tracing::debug!(
-                before,
-                cost = fit.cost(),
-                marked = marked.iter().filter(|m| **m).count(),
-                "refined where needed"
-            );
+            tracing::debug!(before, cost = fit.cost(), "refined where needed");
             if fit.cost() > MAX_SWEEP_RESIDUAL_PART * before {
                 break;
             }
@@ -265,20 +239,21 @@ impl Search<'_> {
         Ok(fit)
     }
 
-    /// All atoms refined with their neighbours, at most `rounds` times, while the residual decreases.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
-    pub fn converged(&self, mut fit: Fit, rounds: usize) -> Result<Fit, ReconstructError> {
-        for _ in 0..rounds {
+    /// All atoms refined with their neighbours, and again while the residual decreases.
+    pub fn converged(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
+        loop {
             let before = fit.cost();
-            let all = vec![true; fit.atoms.len()];
-            fit = self.refined(fit, &all, 2.0 * LINK_BINS, Limits::FINAL_FIT)?;
-            if fit.cost() > 0.9 * before {
-                break;
+            fit = self.all_refined(fit)?;
+            if fit.cost() >= 0.9 * before {
+                return Ok(fit);
             }
         }
-        Ok(fit)
+    }
+
+    /// All atoms refined with their neighbours.
+    pub fn all_refined(&self, fit: Fit) -> Result<Fit, ReconstructError> {
+        let all = vec![true; fit.atoms.len()];
+        self.refined(fit, &all, 2.0 * LINK_BINS, Limits::FINAL_FIT)
     }
 }
 

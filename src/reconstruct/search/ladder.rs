@@ -48,9 +48,6 @@ pub(super) const POINTS: Rung = Rung {
 };
 
 /// `state` after `rungs`, up to the first that completes it.
-///
-/// # Errors
-/// [`ReconstructError::Cancelled`].
 pub(super) fn after_rungs(search: &Search, rungs: &[Rung], mut state: State) -> Result<State, ReconstructError> {
     for rung in rungs {
         search.trace.enter(rung.name);

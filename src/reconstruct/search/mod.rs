@@ -59,11 +59,11 @@ mod trace_tests;
 mod tracking_tests;
 
 pub use super::fit::Atom;
+pub(super) use calibrate::MAX_ROUNDING_RESIDUAL_PART;
 pub use draw::Expected;
 pub use element_gains::ElementGains;
 pub use find::{find, find_from};
 pub use finish::Found;
-pub(super) use finish::with_tied_gains;
 pub use ladder::{LADDER, Rung};
 pub(super) use propose::peaks::Detector;
 pub(super) use prune::{MIN_DISTANCE_BINS, MIN_ENERGY_RATIO};
@@ -97,11 +97,6 @@ const CONFIDENCE_SLOPE: f64 = 0.8;
 const CERTAIN_DECADES: f64 = 2.0;
 const MAX_OVER_CERTAIN: f64 = 2.0;
 
-/// [`MethodInfo::prior_knowledge`](crate::reconstruct::MethodInfo::prior_knowledge) of the search.
-const TOLD_TO_SEARCH: &str = "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
-    along or across the array's axis; the kind of floor beneath the samples, and how the thesis' program rounds; \
-    by about how much elements are off, where they are";
-
 /// The method `nomp`: objects from the raw samples, and the exact map of them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Nomp {
@@ -129,7 +124,9 @@ impl Reconstructor for Nomp {
         MethodInfo {
             name: "nomp",
             description: "finds reflectors and lines by Newton steps on the raw samples, then draws their exact map",
-            prior_knowledge: TOLD_TO_SEARCH,
+            prior_knowledge: "that a scene holds single reflectors or straight rows of equal ones at equal steps; that rows often run \
+                along or across the array's axis; the kind of floor beneath the samples, and how the thesis' program rounds; \
+                by about how much elements are off, where they are",
             eta: ETA,
         }
     }

@@ -1,10 +1,7 @@
 //! Expectation of a log map's cell over white noise.
 
-use std::f64::consts::LN_10;
+use std::f64::consts::{EULER_GAMMA, LN_10};
 use std::sync::LazyLock;
-
-/// Euler's constant.
-pub const EULER: f64 = 0.577_215_664_901_532_9;
 
 /// Largest power of a cell over noise at which the noise changes the mean of the logarithm.
 const MAX_NOISY_POWER_RATIO: f64 = 40.0;
@@ -56,7 +53,7 @@ impl OverNoise {
         let at = (over + MAX_DEPTH_DECADES as f32) * NODES_PER_DECADE as f32;
         // A float cast saturates: weaker cells have the first node.
         let node = at as usize;
-        let Some(&[[increase, zero_density], [next_increase, next_emptiness]]) =
+        let Some(&[[increase, zero_density], [next_increase, next_zero_density]]) =
             self.table.get(node..node + 2).and_then(|n| n.first_chunk())
         else {
             return NoisyCell { decades, zero_density: 0.0 };
@@ -67,12 +64,12 @@ impl OverNoise {
         }
         NoisyCell {
             decades: decades + increase + part * (next_increase - increase),
-            zero_density: zero_density + part * (next_emptiness - zero_density),
+            zero_density: zero_density + part * (next_zero_density - zero_density),
         }
     }
 }
 
-/// `ln x + E1(x)`, E1 the exponential integral: -EULER at 0, ln x far out (Abramowitz and Stegun 5.1.11 and 5.1.22). It is the mean of
+/// `ln x + E1(x)`, E1 the exponential integral: -EULER_GAMMA at 0, ln x far out (Abramowitz and Stegun 5.1.11 and 5.1.22). It is the mean of
 /// `ln |Y|^2` for complex Gaussian Y of variance 1 around a mean of power x.
 fn ln_plus_e1(x: f64) -> f64 {
     if x < 1.5 {
@@ -81,7 +78,7 @@ fn ln_plus_e1(x: f64) -> f64 {
             term *= -x / f64::from(k);
             sum -= term / f64::from(k);
         }
-        return sum - EULER;
+        return sum - EULER_GAMMA;
     }
     let mut fraction = 0.0;
     for k in (1..40).rev() {
@@ -102,7 +99,7 @@ mod tests {
             let found = ln_plus_e1(x) - f64::ln(x);
             assert!((found - e1).abs() < 2e-9, "{x}: {found} {e1}");
         }
-        assert!((ln_plus_e1(0.0) + EULER).abs() < 1e-15);
+        assert!((ln_plus_e1(0.0) + EULER_GAMMA).abs() < 1e-15);
     }
 
     #[test]

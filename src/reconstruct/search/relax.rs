@@ -26,14 +26,11 @@ const MAX_CYCLES: usize = 2;
 
 impl Search<'_> {
     /// `fit` with each small group of points that may hide each other searched again, where the price of echoes and the residual become less.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn relaxed(&self, mut fit: Fit) -> Result<Fit, ReconstructError> {
         let spans: Vec<BinSpans> = fit.atoms.iter().map(|atom| bin_spans(self.radar, atom)).collect();
         let are_points: Vec<bool> = fit.atoms.iter().map(|atom| matches!(atom, Atom::Point { .. })).collect();
         let found = groups(self.radar.samples, &spans, &are_points, HIDING_BINS, usize::MAX);
-        let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude(), self.radar);
+        let rounding = self.fitter.energy_of_amplitude(self.rounding_amplitude());
         let price = rounding.max(min_echo_energy_ratio(self.radar) * self.fitter.noise_energy(self.radar, &fit));
         let is_sought = |group: &Vec<usize>| {
             let is_crowd = group.len() > 1 || group.iter().any(|&i| self.is_beyond(&fit.atoms[i]));
@@ -42,12 +39,12 @@ impl Search<'_> {
         let found: Vec<Vec<usize>> = found.into_iter().filter(is_sought).collect();
         let (mut removed, mut new): (Vec<usize>, Vec<(Atom, Gains)>) = (Vec::new(), Vec::new());
         for group in found {
-            self.task.check()?;
+            self.fitter.task.check()?;
             if self.fitter.work.is_spent() {
                 break;
             }
             let Some(own) = union_of(group.iter().map(|&i| spans[i])) else { continue };
-            let base = self.fitter.remove(fit.clone(), &group).residual;
+            let base = self.fitter.residual_without(&fit, &group).residual;
             let best = self.relaxed_group(&base, &own, price, MAX_GROUP_ECHOES.min(group.len() + 1))?;
             let before = price * self.echo_count(group.iter().map(|&i| &fit.atoms[i]));
             if best.cost() + price * self.echo_count(best.atoms.iter()) >= fit.cost() + before {
@@ -75,8 +72,7 @@ impl Search<'_> {
 
     /// Whether `atom` is beyond the maximum range.
     fn is_beyond(&self, atom: &Atom) -> bool {
-        let [x, y] = atom.position_metres(0.0);
-        x.hypot(y) > self.radar.max_range_metres()
+        atom.range_metres() > self.radar.max_range_metres()
     }
 
     /// At most `limit` echoes in the range bins `own` of `base`, as many as each explain the energy `price`.
@@ -84,13 +80,13 @@ impl Search<'_> {
         let mut fit = self.fitter.solve(base, Vec::new(), Tie::PerEnd, 0.0);
         let mut best = fit.clone();
         for count in 1..=limit {
-            self.task.check()?;
+            self.fitter.task.check()?;
             let Some(more) = self.with_one_more(&fit, base, own) else { break };
             fit = more;
             for _ in 0..MAX_CYCLES {
                 let before = fit.cost();
                 for i in 0..count {
-                    let others = self.fitter.remove(fit.clone(), &[i]);
+                    let others = self.fitter.remove(&fit, &[i]);
                     if let Some(trial) =
                         self.with_one_more(&others, base, own).filter(|trial| trial.cost() < fit.cost())
                     {
@@ -114,7 +110,7 @@ impl Search<'_> {
     fn with_one_more(&self, fit: &Fit, base: &Samples, own: &BinSpans) -> Option<Fit> {
         self.fitter.work.spend(DETECTION_WORK);
         let flat = fit.residual.flat(&self.fitter.sensor);
-        let place = self.detector.strongest_within(self.radar, &flat, own)?;
+        let place = self.detector.strongest_within(&flat, own)?;
         let (atom, gains) = self.refined_point(fit, place);
         let (mut atoms, mut all) = (fit.atoms.clone(), fit.gains.clone());
         atoms.push(atom);

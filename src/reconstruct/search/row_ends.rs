@@ -3,13 +3,10 @@
 use super::on_row::MAX_ROW_REFLECTORS;
 use super::propose::strides::MIN_REFLECTORS;
 use super::state::Search;
-use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, RangeGate, Samples, Spectra, Tie, bin_spans};
+use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Limits, RangeGate, Spectra, Tie, bin_spans};
 
 /// Reflectors beyond the best end after which the search for a better one stops.
 const MAX_FAILED_REFLECTORS: usize = 8;
-
-/// Largest number of times that reflectors are removed from both ends.
-const MAX_TRIMS: usize = 2;
 
 /// Largest number of times that a row is made longer and refined.
 const MAX_EXTENSIONS: usize = 8;
@@ -19,10 +16,9 @@ const MIN_MARGIN_BINS: f64 = 12.0;
 const MARGIN_PART: f64 = 0.5;
 
 impl Search<'_> {
-    /// The row `seed` with the ends and the place that fit `samples` best.
-    pub fn extended_to_its_ends(&self, samples: &Samples, seed: Atom) -> Fit {
-        let spectra = Spectra::new(self.radar, self.fitter, samples);
-        let mut gate = self.gate(&spectra, &seed);
+    /// The row `seed` with the ends and the place that fit the samples of `spectra` best.
+    pub fn extended_to_its_ends(&self, spectra: &Spectra, seed: Atom) -> Fit {
+        let mut gate = self.gate(spectra, &seed);
         let seed = trimmed(&gate, seed);
         let mut row = gate.refined(seed, Gains::default());
         for _ in 0..MAX_EXTENSIONS {
@@ -33,7 +29,7 @@ impl Search<'_> {
             }
             let Some(longer) = resized(row.atoms[0], -(before as i64), -(after as i64)) else { break };
             let explained = gate.energy - row.cost();
-            let wider = self.gate(&spectra, &longer);
+            let wider = self.gate(spectra, &longer);
             let trial = wider.refined(longer, row.gains[0]);
             if wider.energy - trial.cost() <= explained || self.fitter.work.is_spent() {
                 break;
@@ -47,7 +43,7 @@ impl Search<'_> {
                 row = trial;
             }
         }
-        self.fitter.refine(samples, row.atoms, row.gains, Tie::PerEnd, Limits::ROUGH)
+        self.fitter.refine(spectra.samples, row.atoms, row.gains, Tie::PerEnd, Limits::ROUGH)
     }
 
     fn gate<'a>(&self, spectra: &Spectra<'a>, row: &Atom) -> RangeGate<'a> {
@@ -77,16 +73,15 @@ impl RangeGate<'_> {
 
 /// `seed` without the reflectors at its ends whose removal lowers the residual.
 fn trimmed(gate: &RangeGate, mut seed: Atom) -> Atom {
-    for _ in 0..MAX_TRIMS {
+    loop {
         let row = gate.fitter.solve_alone(&gate.samples, seed);
         let excess = |at_last| excess_reflectors(&gate.fitter, &row, at_last);
         let (first, last) = rayon::join(|| excess(false), || excess(true));
         match resized(seed, first as i64, last as i64) {
             Some(shorter) if first + last > 0 => seed = shorter,
-            _ => break,
+            _ => return seed,
         }
     }
-    seed
 }
 
 /// Number of reflectors at the last end, or at the first, whose removal has the least residual.

@@ -4,20 +4,14 @@ use super::state::Search;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::fit::{Fit, Limits, Tie};
 
-/// Largest number of rows that one call adds.
-const MAX_ROWS: usize = 8;
-
 impl Search<'_> {
     /// `fit` with rows that begin at `points` (x, y; metres).
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn with_rows(&self, mut fit: Fit, mut points: Vec<[f64; 2]>) -> Result<Fit, ReconstructError> {
         let (known, before) = (fit.atoms.len(), self.fitter.work.done());
         // The other half of the work is for points.
         let max_work = before + self.settings.max_work / 2;
-        while fit.atoms.len() < known + MAX_ROWS && self.fitter.work.done() < max_work {
-            self.task.check()?;
+        while self.fitter.work.done() < max_work {
+            self.fitter.task.check()?;
             let Some(row) = self.next_row(&fit, &mut points) else { break };
             fit.atoms.push(row.atoms[0]);
             fit.gains.push(row.gains[0]);

@@ -1,7 +1,7 @@
 //! The functions of the ladder's rungs.
 
 use super::on_row::is_on_row;
-use super::state::{MAX_ROUNDS, Search, State};
+use super::state::{Search, State};
 use super::trace::decades;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{Proposal, Refusal};
@@ -29,14 +29,14 @@ impl Search<'_> {
 
     /// Points at peaks of the residual, refined and pruned.
     pub fn points_in_residual(&self, state: State) -> Result<State, ReconstructError> {
-        let fit = self.converged(self.grown(state.fit)?, self.settings.rounds)?;
+        let fit = self.converged(self.grown(state.fit)?)?;
         Ok(self.checked(self.pruned(fit)?))
     }
 
     /// Rows that begin where both ends may have a point. Further rounds follow, since rows hide others.
     pub fn rows_of_any_direction(&self, State { mut fit, pairs, .. }: State) -> Result<State, ReconstructError> {
         let mut pairs = pairs.unwrap_or_default();
-        for _ in 0..MAX_ROUNDS {
+        loop {
             let (before, cost) = (fit.atoms.len(), fit.cost());
             fit = self.with_rows(fit, pairs.guesses_metres.clone())?;
             if fit.atoms.len() == before {
@@ -48,7 +48,7 @@ impl Search<'_> {
             }
             if fit.cost() > MAX_ROUND_RESIDUAL_PART * cost {
                 // The residual is so similar that its tones are the same, but for those of the rows.
-                pairs.points.retain(|point| !fit.atoms.iter().any(|row| is_on_row(row, &point.atom)));
+                pairs.points.retain(|point| !fit.atoms.iter().any(|row| is_on_row(row, point)));
                 break;
             }
             pairs = self.tone_pairs(&fit).unwrap_or_default();
@@ -58,10 +58,7 @@ impl Search<'_> {
 
     /// Points from tones that the rows leave, in rounds.
     pub fn paired_in_rounds(&self, State { mut fit, mut pairs, .. }: State) -> Result<State, ReconstructError> {
-        for _ in 0..MAX_ROUNDS {
-            if self.is_explained(&fit) {
-                break;
-            }
+        while !self.is_explained(&fit) {
             let before = fit.cost();
             let pairs = pairs.take().unwrap_or_else(|| self.tone_pairs(&fit).unwrap_or_default());
             fit = self.refined_if_nearly_complete(self.paired(fit, &pairs, true)?)?;

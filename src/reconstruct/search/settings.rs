@@ -9,8 +9,6 @@ pub struct Settings {
     pub max_atoms: usize,
     /// Least power of a peak over the noise of the residual. Noise alone reaches about 7.
     pub min_prominence: f64,
-    /// Largest number of refinements of all atoms after the last is added.
-    pub rounds: usize,
     /// Ridge on gains where all energy around them is unexplained ([`Limits::ridge`](crate::reconstruct::fit::Limits)); in proportion where less is.
     pub gain_price: f64,
     /// Budget of work, in units of about ten microseconds, counted and not timed.
@@ -19,7 +17,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { max_atoms: 150, min_prominence: 14.0, rounds: 6, gain_price: 0.3, max_work: 40_000 }
+        Settings { max_atoms: 150, min_prominence: 14.0, gain_price: 0.3, max_work: 40_000 }
     }
 }
 

@@ -8,13 +8,9 @@ use crate::radar::Radar;
 use crate::reconstruct::ReconstructError;
 use crate::reconstruct::attempt::{AttemptVerdict, Proposal, Refusal};
 use crate::reconstruct::fit::{Atom, Fit, Fitter, Gains, Samples, Tie};
-use crate::task::Task;
 
 /// Largest residual of a list in which no object is missing but places are inexact, as a part of the samples' energy.
 pub const NEARLY_COMPLETE_RESIDUAL_PART: f64 = 1e-5;
-
-/// Largest number of rounds of rows, of pairs, and of removing pairs whose gains differ between the ends.
-pub const MAX_ROUNDS: usize = 3;
 
 /// Largest ratio of the gains of a pair's point at the two ends.
 const MAX_PAIR_GAIN_RATIO: f64 = 1.5;
@@ -43,7 +39,6 @@ pub struct Search<'a> {
     /// Whether the samples contain white noise beside rounding.
     pub has_white_noise: bool,
     pub settings: &'a Settings,
-    pub task: &'a Task,
     pub trace: &'a Trace,
 }
 
@@ -54,9 +49,6 @@ impl Search<'_> {
     }
 
     /// `answer` with the number of echoes that white noise lets be resolved, where there is white noise.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn with_model_order(&self, answer: State) -> Result<State, ReconstructError> {
         if !self.has_white_noise || answer.fit.atoms.is_empty() {
             return Ok(answer);
@@ -106,18 +98,15 @@ impl Search<'_> {
     }
 
     /// `known` with the points of `pairs` whose gains are equal at both ends; `known` alone if they leave more. With `refines` places are refined.
-    ///
-    /// # Errors
-    /// [`ReconstructError::Cancelled`].
     pub fn paired(&self, known: Fit, pairs: &Pairs, refines: bool) -> Result<Fit, ReconstructError> {
         let mut atoms = known.atoms.clone();
-        atoms.extend(pairs.points.iter().map(|point| point.atom));
+        atoms.extend(&pairs.points);
         if atoms.len() == known.atoms.len() {
             return Ok(known);
         }
         atoms.truncate(self.settings.max_atoms);
         let mut fit = self.fitter.solve(self.samples, atoms, Tie::PerEnd, 0.0);
-        for _ in 0..MAX_ROUNDS {
+        loop {
             let (agreed, unequal): (Vec<_>, Vec<_>) =
                 fit.atoms.iter().zip(&fit.gains).partition(|(_, gains)| ends_agree(gains, MAX_PAIR_GAIN_RATIO));
             if unequal.is_empty() {
@@ -134,7 +123,7 @@ impl Search<'_> {
             self.record_refusal(tried, decades(known.cost(), fit.cost()), Refusal::GainsTooLittle);
             return Ok(known);
         }
-        if !refines || self.is_explained(&fit) { self.pruned(fit) } else { self.pruned(self.converged(fit, 1)?) }
+        if !refines || self.is_explained(&fit) { self.pruned(fit) } else { self.pruned(self.all_refined(fit)?) }
     }
 }
 

@@ -9,8 +9,10 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Number of beams of an end for each of its elements. An echo between two beams is hardly weaker.
-pub const BEAMS_PER_ELEMENT: usize = 4;
+/// Number of beams of an end between which an echo is hardly weaker: four for each of its elements.
+pub fn beam_count(radar: &Radar) -> usize {
+    4 * radar.end_elements
+}
 
 /// `count` beams of each end, evenly spaced in cos(theta), `[beam, range bin]`, with phases referred to the middle of the end. `samples` are channel by
 /// channel, `[channels * samples]`.

@@ -13,7 +13,7 @@ const MAX_COS_ERROR: f64 = 0.01;
 /// Largest difference of the amplitudes of a pair, compensated for range by the 1/R^2 law, nepers.
 const MAX_LOG_GAIN_ERROR: f64 = 0.1;
 
-/// Largest [`Paired::disagreement`] of a point.
+/// Largest [`Pair::disagreement`] of a point.
 const MAX_DISAGREEMENT: f64 = 3.0;
 
 /// Range bins around the range predicted by the first end within which the last end's tones are searched: the least, and the largest where noise makes
@@ -49,27 +49,24 @@ struct EndTone {
     cos_tolerance: f64,
 }
 
-/// A point with a tone at both ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Paired {
-    pub atom: Atom,
-    /// Sum of the magnitudes of [`Pair::disagreements`].
-    pub disagreement: f64,
-}
-
-/// A tone at each end that may be one reflector.
+/// A tone at each end, and the point that may have both.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     /// Number of the tone at the first end.
     first: usize,
     /// Number of the tone at the last end.
     last: usize,
-    point: Paired,
+    atom: Atom,
     /// Differences of the directions at both ends and of the gains, over their tolerances.
     disagreements: [f64; 3],
 }
 
 impl Pair {
+    /// Sum of the magnitudes of [`Self::disagreements`].
+    fn disagreement(&self) -> f64 {
+        self.disagreements.iter().map(|part| part.abs()).sum()
+    }
+
     /// Whether `other` has the same tone and nearly the same disagreements.
     fn is_equivalent(&self, other: &Self) -> bool {
         let differences = self.disagreements.iter().zip(other.disagreements).map(|(own, other)| (own - other).abs());
@@ -125,7 +122,7 @@ impl MiddleElement {
 #[derive(Debug, Clone, Default)]
 pub struct Pairs {
     /// Points, no two of which have a tone in common, the one with the least disagreement first.
-    pub points: Vec<Paired>,
+    pub points: Vec<Atom>,
     /// Places (x, y), metres, of points and of further pairs.
     pub guesses_metres: Vec<[f64; 2]>,
 }
@@ -148,18 +145,13 @@ pub fn paired_points(radar: &Radar, flat: &[Complex64], noise_variance: f64) -> 
         pairs.extend(within);
         pairs.extend(beyond);
     }
-    pairs.sort_by(|a, b| a.point.disagreement.total_cmp(&b.point.disagreement));
+    pairs.sort_by(|a, b| a.disagreement().total_cmp(&b.disagreement()));
     let guesses = matched(&pairs, &first, &last, MAX_GUESSES_PER_TONE);
-    let guesses_metres = guesses.iter().map(|pair| pair.point.atom.position_metres(0.0)).collect();
-    pairs.retain(|pair| pair.point.disagreement < MAX_DISAGREEMENT);
-    let points: Vec<Paired> = matched(&pairs, &first, &last, 1).iter().map(|pair| pair.point).collect();
-    tracing::debug!(
-        first = first.tones.len(),
-        last = last.tones.len(),
-        points = points.len(),
-        guesses = guesses.len(),
-        "tones"
-    );
+    let guesses_metres = guesses.iter().map(|pair| pair.atom.position_metres(0.0)).collect();
+    pairs.retain(|pair| pair.disagreement() < MAX_DISAGREEMENT);
+    let points: Vec<Atom> = matched(&pairs, &first, &last, 1).iter().map(|pair| pair.atom).collect();
+    let [first, last] = [first, last].map(|end| end.tones.len());
+    tracing::debug!(first, last, points = points.len(), guesses = guesses.len(), "tones");
     Some(Pairs { points, guesses_metres })
 }
 
@@ -230,7 +222,7 @@ fn candidates(radar: &Radar, first: &MiddleElement, last: &MiddleElement, i: usi
     let from_last = (range * range + between * between - 2.0 * range * cos * between).max(0.0).sqrt();
     let excess = last.excess(first.place_metres(range, cos));
     let predicted = (from_last + excess.range_metres) / bin_metres;
-    let mut pairs = Vec::new();
+    let mut pairs: Vec<Pair> = Vec::new();
     for (j, other) in last.tones.iter().enumerate() {
         let error = (predicted - other.bins + bins / 2.0).rem_euclid(bins) - bins / 2.0;
         let search = MIN_SEARCH_BINS.max((own.cos_tolerance * between / bin_metres).min(MAX_SEARCH_BINS));
@@ -248,12 +240,10 @@ fn candidates(radar: &Radar, first: &MiddleElement, last: &MiddleElement, i: usi
             ((along - between) / other_range - (other.cos - excess.cos)) / other.cos_tolerance,
             (own.amplitude * range * range / (other.amplitude * other_range * other_range)).ln() / MAX_LOG_GAIN_ERROR,
         ];
-        let disagreement = disagreements.iter().map(|part| part.abs()).sum();
-        if disagreement < GUESS_TOLERANCE_RATIO * MAX_DISAGREEMENT {
-            let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
-            pairs.push(Pair { first: i, last: j, point: Paired { atom, disagreement }, disagreements });
-        }
+        let atom = Atom::Point { x_metres: first.x_metres + along, y_metres: square.sqrt() };
+        pairs.push(Pair { first: i, last: j, atom, disagreements });
     }
+    pairs.retain(|pair| pair.disagreement() < GUESS_TOLERANCE_RATIO * MAX_DISAGREEMENT);
     pairs
 }
 
@@ -274,8 +264,8 @@ mod tests {
         let noise = ends_noise_variance(&radar, &ends, Floor::Thesis.into());
         let found = paired_points(&radar, &ends.flat(), noise).unwrap().points;
         let near = |x: f64, y: f64| {
-            let distance = |a: &Paired| {
-                let [fx, fy] = a.atom.position_metres(0.0);
+            let distance = |point: &Atom| {
+                let [fx, fy] = point.position_metres(0.0);
                 (fx - x).hypot(fy - y)
             };
             found.iter().map(distance).fold(f64::INFINITY, f64::min)

@@ -3,7 +3,7 @@
 //!
 //! Amplitudes are not added, since the phase between the ends changes with each column of the full map. A peak of one end alone is a ghost.
 
-use super::end_beams::{BEAMS_PER_ELEMENT, beam_of_cos, end_beams};
+use super::end_beams::{beam_count, beam_of_cos, end_beams};
 use super::view::View;
 use crate::radar::{End, Radar};
 use crate::reconstruct::fit::BinSpans;
@@ -20,36 +20,32 @@ const MIN_PEAK_DISTANCE_BINS: usize = 8;
 /// Range bins beside spans that count as within.
 const SPAN_MARGIN_BINS: f64 = 1.0;
 
-/// Least number of cells of a task.
-const MIN_TASK_CELLS: usize = 4096;
-
 /// The grid of a radar.
 pub struct Detector {
+    radar: Radar,
     /// Centre (x, y) of each cell, metres, `[range bins * columns]`, up to twice the maximum range.
     places_metres: Vec<[f64; 2]>,
     /// Number `beam * range bins + range bin` of each cell at each end.
     cells: [Vec<u32>; 2],
-    beams: usize,
-    bins: usize,
 }
 
 /// The detector of the last radar: the radar seldom changes.
-static LAST_DETECTOR: Mutex<Option<(Radar, Arc<Detector>)>> = Mutex::new(None);
+static LAST_DETECTOR: Mutex<Option<Arc<Detector>>> = Mutex::new(None);
 
 impl Detector {
     /// The detector of `radar`.
     pub fn of(radar: &Radar) -> Arc<Detector> {
         let last = LAST_DETECTOR.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        if let Some((_, detector)) = last.filter(|(of, _)| of == radar) {
+        if let Some(detector) = last.filter(|detector| detector.radar == *radar) {
             return detector;
         }
         let detector = Arc::new(Detector::new(radar));
-        *LAST_DETECTOR.lock().unwrap_or_else(PoisonError::into_inner) = Some((radar.clone(), detector.clone()));
+        *LAST_DETECTOR.lock().unwrap_or_else(PoisonError::into_inner) = Some(detector.clone());
         detector
     }
 
     fn new(radar: &Radar) -> Self {
-        let (beams, columns) = (BEAMS_PER_ELEMENT * radar.end_elements, COLUMNS_PER_ELEMENT * radar.end_elements);
+        let (beams, columns) = (beam_count(radar), COLUMNS_PER_ELEMENT * radar.end_elements);
         let (bins, bin_metres) = (radar.samples, radar.range_resolution_metres());
         let place = |i: usize| {
             let range = (i / columns) as f64 * bin_metres;
@@ -66,18 +62,18 @@ impl Detector {
             };
             places_metres.iter().map(cell).collect()
         });
-        Detector { places_metres, cells, beams, bins }
+        Detector { radar: radar.clone(), places_metres, cells }
     }
 
     /// Range bin of cell `i` at an end.
     fn bin(&self, end: usize, i: u32) -> usize {
-        self.cells[end][i as usize] as usize % self.bins
+        self.cells[end][i as usize] as usize % self.radar.samples
     }
 
     /// At most `max_peaks` places (x, y; metres) whose power exceeds `min_power`, the strongest first, without those that may be side lobes of stronger
     /// ones. `residual` is channel by channel, `[channels * samples]`, without a window.
-    pub fn peaks(&self, radar: &Radar, residual: &[Complex64], min_power: f64, max_peaks: usize) -> Vec<[f64; 2]> {
-        let powers = self.powers(radar, residual);
+    pub fn peaks(&self, residual: &[Complex64], min_power: f64, max_peaks: usize) -> Vec<[f64; 2]> {
+        let powers = self.powers(residual);
         let strong = |i: u32| Some((powers.of(i), i)).filter(|(p, _)| f64::from(*p) > min_power);
         let mut strong: Vec<(f32, u32)> = self.cells().filter_map(strong).collect();
         let mut found = Vec::new();
@@ -97,14 +93,14 @@ impl Detector {
     }
 
     /// The place (x, y; metres) of the largest power in `spans` and their margins.
-    pub fn strongest_within(&self, radar: &Radar, residual: &[Complex64], spans: &BinSpans) -> Option<[f64; 2]> {
-        let powers = self.powers(radar, residual);
-        let bins = self.bins as f64;
+    pub fn strongest_within(&self, residual: &[Complex64], spans: &BinSpans) -> Option<[f64; 2]> {
+        let powers = self.powers(residual);
+        let bins = self.radar.samples;
         let is_within = |end: usize, bin: u32| {
             let (low, high) = spans[end];
-            (f64::from(bin) - low + SPAN_MARGIN_BINS).rem_euclid(bins) <= high - low + 2.0 * SPAN_MARGIN_BINS
+            (f64::from(bin) - low + SPAN_MARGIN_BINS).rem_euclid(bins as f64) <= high - low + 2.0 * SPAN_MARGIN_BINS
         };
-        let near = |end: usize| (0..self.bins as u32).map(|bin| is_within(end, bin)).collect::<Vec<bool>>();
+        let near = |end: usize| (0..bins as u32).map(|bin| is_within(end, bin)).collect::<Vec<bool>>();
         let [first, last] = [0, 1].map(near);
         let is_near = |i: &u32| first[self.bin(0, *i)] && last[self.bin(1, *i)];
         let cells: Vec<(f32, u32)> = self.cells().filter(is_near).map(|i| (powers.of(i), i)).collect();
@@ -112,24 +108,25 @@ impl Detector {
     }
 
     fn cells(&self) -> impl IndexedParallelIterator<Item = u32> {
-        (0..self.places_metres.len() as u32).into_par_iter().with_min_len(MIN_TASK_CELLS)
+        (0..self.places_metres.len() as u32).into_par_iter()
     }
 
-    fn powers(&self, radar: &Radar, residual: &[Complex64]) -> Powers<'_> {
-        let magnitudes = end_beams(radar, residual, self.beams)
+    fn powers(&self, residual: &[Complex64]) -> Powers<'_> {
+        let magnitudes = end_beams(&self.radar, residual, beam_count(&self.radar))
             .map(|beams| beams.into_par_iter().map(|v| v.norm_sqr().sqrt() as f32).collect());
         Powers { cells: &self.cells, magnitudes }
     }
 
     /// Bound of the amplitude, in each range bin of an end, of a reflector in range bin `own`, over its amplitude there.
     fn side_lobes(&self, own: usize) -> Vec<f64> {
+        let bins = self.radar.samples;
         let lobe = |other: usize| {
             let distance = own.abs_diff(other);
-            let distance = distance.min(self.bins - distance);
+            let distance = distance.min(bins - distance);
             // The side lobes of the Hann window, with a margin.
             if distance <= MIN_PEAK_DISTANCE_BINS { f64::INFINITY } else { 4.0 / (distance as f64 - 1.0).powi(3) }
         };
-        (0..self.bins).map(lobe).collect()
+        (0..bins).map(lobe).collect()
     }
 }
 
@@ -164,13 +161,13 @@ mod tests {
         let scene = Scene::of_points([(3.0, 11.0), (-9.0, 20.0)]);
         let flat = simulate(&radar, &scene, Floor::Thesis, 0).unwrap().two_ends(&radar).flat();
         let detector = Detector::of(&radar);
-        let found = detector.peaks(&radar, &flat, 0.0, 2);
+        let found = detector.peaks(&flat, 0.0, 2);
         let [first, second] = found[..] else { panic!("{found:?}") };
         assert!((first[0] - 3.0).hypot(first[1] - 11.0) < 0.3, "{first:?}");
         assert!((second[0] + 9.0).hypot(second[1] - 20.0) < 0.5, "{second:?}");
-        let powers = detector.powers(&radar, &flat);
+        let powers = detector.powers(&flat);
         let highest = detector.cells().map(|i| f64::from(powers.of(i))).reduce(|| 0.0, f64::max);
-        assert_eq!(detector.peaks(&radar, &flat, 0.999 * highest, 1), [first]);
-        assert!(detector.peaks(&radar, &flat, 1.001 * highest, 1).is_empty());
+        assert_eq!(detector.peaks(&flat, 0.999 * highest, 1), [first]);
+        assert!(detector.peaks(&flat, 1.001 * highest, 1).is_empty());
     }
 }

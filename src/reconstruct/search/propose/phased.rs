@@ -27,8 +27,6 @@ pub struct PhasedBeams {
     bins_per_metre: f64,
     /// Phase of an echo in the middle of the chirp for each metre of range, turns.
     pub turns_per_metre: f64,
-    /// Factor of a beam at each wrap of the range. With phases referred to the middle of the chirp it is -1 for an even number of samples, else 1.
-    wrap_sign: f64,
 }
 
 /// A row of reflectors: places at equal steps along a straight line.
@@ -87,7 +85,6 @@ impl PhasedBeams {
             bins_per_metre: 1.0 / radar.range_resolution_metres(),
             turns_per_metre: radar.carrier.turns_per_wavelength() / radar.wavelength_metres()
                 + middle / radar.max_range_metres(),
-            wrap_sign: if bins.is_multiple_of(2) { -1.0 } else { 1.0 },
         }
     }
 
@@ -148,7 +145,7 @@ impl PhasedBeams {
     /// Writes the echoes of the first reflectors of `row` at an end (0 or 1) into `echoes`, one for each entry.
     #[inline(always)]
     pub fn reflector_echoes<const FMA: bool>(&self, end: usize, row: &Row, echoes: &mut [ReflectorEcho]) {
-        let PhasedBeams { bins, bins_per_metre, turns_per_metre, wrap_sign, .. } = *self;
+        let PhasedBeams { bins, bins_per_metre, turns_per_metre, .. } = *self;
         let [x, y] = row.first_metres;
         let [step_x, step_y] = row.step_metres;
         let view = &self.views[end];
@@ -167,7 +164,7 @@ impl PhasedBeams {
                 let low = at.0[lane] as usize;
                 let part = at.0[lane] - low as f64;
                 // Linear interpolation over range. `new` has removed the half turn between neighbouring range bins.
-                let at_bin = |k: usize| if k < bins { beam[k] } else { wrapped(beam, k, wrap_sign) };
+                let at_bin = |k: usize| if k < bins { beam[k] } else { wrapped(beam, k) };
                 let value = at_bin(low) * (1.0 - part) + at_bin(low + 1) * part;
                 let amplitude = amplitude.0[lane];
                 let phase = Complex64::new(phase.re.0[lane], phase.im.0[lane]);
@@ -212,17 +209,17 @@ pub struct RowSums {
 #[inline(always)]
 pub fn row_sums(echoes: &[ReflectorEcho]) -> RowSums {
     let mut out = RowSums { sum: Complex64::default(), weight: 0.0, power: 0.0 };
-    for h in echoes {
-        out.sum += h.weighted;
-        out.weight += h.weight;
-        out.power += h.weighted.norm_sqr() / h.weight;
+    for echo in echoes {
+        out.sum += echo.weighted;
+        out.weight += echo.weight;
+        out.power += echo.weighted.norm_sqr() / echo.weight;
     }
     out
 }
 
-/// Range bin `k` of a beam, beyond the last one.
+/// Range bin `k` of a beam, beyond the last one. With phases referred to the middle of the chirp an even number of samples turns the beam at each wrap.
 #[cold]
-fn wrapped(beam: &[Complex64], k: usize, wrap_sign: f64) -> Complex64 {
+fn wrapped(beam: &[Complex64], k: usize) -> Complex64 {
     let value = beam[k % beam.len()];
-    if (k / beam.len()) % 2 == 1 { value * wrap_sign } else { value }
+    if (k / beam.len()) % 2 == 1 && beam.len().is_multiple_of(2) { -value } else { value }
 }
