@@ -66,7 +66,7 @@ fn samples_of_another_radar_are_told() {
     };
     let shapes = contains("\"sub0\" has shape [64, 12]; expected [128, 12]").and(contains("--radar says"));
     run("[radar]\nsamples = 128\n").failure().stderr(shapes);
-    run("[radar]\nsamples = 0\n").failure().stderr(contains("radar.toml: radar.samples is 0"));
+    run("[radar]\nsamples = 0\n").failure().stderr(contains("radar.toml: line 2, column 11: radar.samples is 0"));
     run("name = \"no radar\"\n").failure().stderr(contains("has no table [radar]"));
     run("[radar]\nsamples = \"many\"\n").failure().stderr(contains("radar.toml: line 2"));
     assert!(!folder.path().join("o.npz").exists());
