@@ -121,6 +121,7 @@ pub fn metadata(path: &Path) -> io::Result<Metadata> {
     }
 }
 
+/// Entry of a folder.
 #[derive(Debug)]
 pub struct DirEntry(PathBuf);
 
@@ -130,6 +131,7 @@ impl DirEntry {
         self.0.clone()
     }
 
+    /// Its name, without the folder.
     pub fn file_name(&self) -> OsString {
         self.0.file_name().unwrap_or_default().to_owned()
     }

@@ -139,13 +139,13 @@ fn marking() -> State {
     state
 }
 
-static JUDGED: LazyLock<JudgedOutput> = LazyLock::new(kinds::tests::judged);
+static JUDGED_OUTPUT: LazyLock<JudgedOutput> = LazyLock::new(kinds::tests::judged);
 
 #[test]
 fn maps_beside_each_other_stay_aligned_while_objects_are_marked() {
     let rect = |kind: MapKind| {
         let map = drawn([500.0, 300.0], marking(), move |input| {
-            let kinds = Some(Kinds { judged: &JUDGED, current: true }).filter(|_| kind == MapKind::Output);
+            let kinds = Some(Kinds { judged: &JUDGED_OUTPUT, current: true }).filter(|_| kind == MapKind::Output);
             Input { kind, kinds, texture: Some(TextureId::default()), ..input }
         });
         map.get_by_label(&format!("{} map", kind.title())).rect()
@@ -177,7 +177,7 @@ fn a_map_of_an_earlier_scene_says_so_where_it_is_there() {
 /// A map with marks for the verdicts on objects.
 fn judged(size: [f32; 2]) -> Harness<'static> {
     let mut map = drawn(size, marking(), |input| {
-        let kinds = Some(Kinds { judged: &JUDGED, current: true });
+        let kinds = Some(Kinds { judged: &JUDGED_OUTPUT, current: true });
         let told_apart = Some(ToldApart { output: &NO_CELLS, target: &NO_CELLS, etas: [0.5, 0.9], ghosts: &[] });
         let texture = Some(TextureId::default());
         Input { kind: MapKind::OutputAbove, kinds, texture, told_apart, ..input }
