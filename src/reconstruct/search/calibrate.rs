@@ -149,7 +149,9 @@ impl Calibration<'_> {
             request.task.check()?;
             let before = last.residual_part;
             last = turned(radar, &fitter, ends, &last.fit.atoms, &last.gains.normalised(false), true);
-            if last.residual_part >= MAX_ROUND_RESIDUAL_PART * before {
+            // False where the residual is no number.
+            let is_progress = last.residual_part < MAX_ROUND_RESIDUAL_PART * before;
+            if !is_progress {
                 return Ok(Some(Fitted { gains: last.gains.normalised(false), ..last }));
             }
         }

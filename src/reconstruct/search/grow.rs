@@ -244,7 +244,9 @@ impl Search<'_> {
         loop {
             let before = fit.cost();
             fit = self.all_refined(fit)?;
-            if fit.cost() >= 0.9 * before {
+            // False where the residual is no number.
+            let is_progress = fit.cost() < 0.9 * before;
+            if !is_progress {
                 return Ok(fit);
             }
         }

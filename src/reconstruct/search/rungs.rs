@@ -46,7 +46,8 @@ impl Search<'_> {
             if self.is_explained(&fit) {
                 break;
             }
-            if fit.cost() > MAX_ROUND_RESIDUAL_PART * cost {
+            let is_progress = fit.cost() <= MAX_ROUND_RESIDUAL_PART * cost;
+            if !is_progress {
                 // The residual is so similar that its tones are the same, but for those of the rows.
                 pairs.points.retain(|point| !fit.atoms.iter().any(|row| is_on_row(row, point)));
                 break;
@@ -63,7 +64,8 @@ impl Search<'_> {
             let pairs = pairs.take().unwrap_or_else(|| self.tone_pairs(&fit).unwrap_or_default());
             fit = self.refined_if_nearly_complete(self.paired(fit, &pairs, true)?)?;
             tracing::debug!(atoms = fit.atoms.len(), before, cost = fit.cost(), "paired");
-            if fit.cost() > MAX_ROUND_RESIDUAL_PART * before {
+            let is_progress = fit.cost() <= MAX_ROUND_RESIDUAL_PART * before;
+            if !is_progress {
                 break;
             }
         }
