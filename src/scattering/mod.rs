@@ -13,7 +13,7 @@
 //! | [`transition`] | Fresnel's transition from light to shadow, for faces and shadows |
 //! | [`parts`] | a polygon as convex parts, for shadows |
 //!
-//! [`Scatterer`] is one object made ready; [`EchoSources`] a whole scene. An echo of range `R` and amplitude `A` adds
+//! [`Scatterer`] is one object, prepared for simulation; [`EchoSources`] is a whole scene. An echo of range `R` and amplitude `A` adds
 //! `A exp(-j kappa_n R)` to sample `n`, where `kappa_n` is the phase of the whole way there and back for each metre of range ([`Wave`]).
 //!
 //! The formulas are physical optics in the plane: Balanis, *Advanced Engineering Electromagnetics*, chapter 7; Keller, J. Opt. Soc. Am. 52

@@ -107,7 +107,7 @@ impl Search<'_> {
         fitter.task.check()?;
         let noise_variance = fitter.noise_model.noise_variance(self.radar, &best.residual.flat(&fitter.sensor));
         let all = fitter.energy(self.samples);
-        // With the mean of both gains the residual contains an echo whose strength differs between the ends.
+        // With the mean of both gains, an echo whose strength differs between the ends stays in the residual.
         let drawn_gains: Vec<Gains> = best.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
         let weight = fitter.squared.iter().sum::<f64>() * fitter.sensor.element_x.len() as f64;
         Ok(Found {

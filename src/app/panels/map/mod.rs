@@ -169,7 +169,7 @@ fn draw_over(
     }
     let line = captions::of_map(state, kind).filter(|_| is_bare);
     let note = if is_old { Some(input.old.clone()) } else { note(state, kind).filter(|_| is_bare) };
-    let said = line.map(|line| (line, OF_CAPTION)).or(note.map(|note| (note, OF_NOTE)));
+    let said = line.map(|line| (line, CAPTION_STYLE)).or(note.map(|note| (note, NOTE_STYLE)));
     if is_bare {
         overlay::marks(inner, frame, input.objects, pointer);
         overlay::found(inner, frame, input.found, input.stale);
@@ -208,10 +208,10 @@ fn taken(state: &State, frame: Frame<'_>, has_foot: bool) -> Vec<Pos2> {
 }
 
 /// Background and size of the text of a caption, points.
-const OF_CAPTION: (Color32, f32) = (CAPTION, 14.0);
+const CAPTION_STYLE: (Color32, f32) = (CAPTION, 14.0);
 
 /// The same of a note on the map.
-const OF_NOTE: (Color32, f32) = (Color32::from_black_alpha(170), 12.0);
+const NOTE_STYLE: (Color32, f32) = (Color32::from_black_alpha(170), 12.0);
 
 /// Largest part of a map's height that a text at its foot may cover.
 const MAX_TEXT_PART: f32 = 0.3;
