@@ -1,24 +1,22 @@
 //! Examples to train on.
 
 use crate::arrays::{self, both_ends, owned};
-use crate::errors::{at, named, value, whole};
+use crate::errors::{named, value, whole};
 use crate::radar::{Radar, or_default};
-use crate::scene::{Scene, purpose_of, set_name};
-use crate::work::{self, Progress};
+use crate::scene::{Scene, purpose_of};
+use crate::work;
 use apertura::evaluate::Target;
 use apertura::maps::channels_map;
 use apertura::maps::network_input::mag_phase;
 use apertura::network::floors::Floors;
 use apertura::network::live::arrays::Arrays;
 use apertura::network::live::constants::reverse_rows;
-use apertura::network::live::dataset::{self as files, DatasetError, DatasetRequest, ExamplePart};
 use apertura::network::live::examples::{self, EndSamples, Example, ExamplesRequest, Features};
 use apertura::network::live::features::{FeatureExtractor, LiveInput};
 use apertura::network::live::grid::{COARSE_CHANNELS, COARSE_COLUMNS, FINE_CHANNELS, FINE_COLUMNS, ROW_CHANNELS};
 use apertura::network::live::radars::Radars;
 use apertura::radar::{Decibels, Tolerances};
 use apertura::reconstruct::check_ends;
-use apertura::scene::generate::Kind;
 use apertura::signal::TwoEnds;
 use apertura::task::Task;
 use ndarray::{Array, Array1, Array3, ArrayD, IxDyn};
@@ -26,7 +24,6 @@ use num_complex::{Complex32, Complex64};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use rayon::prelude::*;
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 /// Makes examples to train on: example `i` is a function of (mixture, seed, i) alone.
@@ -146,7 +143,7 @@ impl Examples {
     ///     scenes: A `Scene` for each number in place of a generated one, before the example's radar. Noise is that of seed and number.
     ///
     /// Returns:
-    ///     One dict an example: `ends` complex64 `[2, end_elements, samples]`, or `end_samples` complex64 `[elements of the layout, samples]`, and the
+    ///     One dict an example: `ends` complex64 `[2, end_elements, samples]`, or `heard` complex64 `[elements of the layout, samples]`, and the
     ///     targets `target_ideal`, `target_measured` and `target_calibrated` that were asked for, float32 `[samples, elements]` (decades of
     ///     amplitude), all relative to the samples' mean power; the live network's input `fine` float32 `[4, samples, 256]`, `coarse` float32
     ///     `[10, samples, 64]`, `rows` float32 `[6, samples]`, `scalars` float32 `[2]`, `constants` float32 `[6]`; `gain` (decades that were taken off),
@@ -208,7 +205,7 @@ fn targets_of(names: Vec<String>) -> PyResult<Vec<Target>> {
     Ok(targets)
 }
 
-fn floors_of(floor: &str, thermal: Option<(f64, f64, f64)>) -> PyResult<Floors> {
+pub fn floors_of(floor: &str, thermal: Option<(f64, f64, f64)>) -> PyResult<Floors> {
     let Some((share, from, to)) = thermal else { return Ok(Floors::Fixed(named(floor)?)) };
     let usable = (0.0..=1.0).contains(&share) && from < to && from >= -100.0 && to <= 300.0;
     if !usable {
@@ -220,7 +217,7 @@ fn floors_of(floor: &str, thermal: Option<(f64, f64, f64)>) -> PyResult<Floors> 
     Ok(Floors::Thermal { share, from: Decibels(from), to: Decibels(to) })
 }
 
-fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
+pub fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
     let Some((share, gain, phase_degrees, position_millimetres)) = elements else { return Ok(Arrays::IDEAL) };
     let tolerances = Tolerances { gain: Decibels(gain), phase_degrees, position_millimetres };
     let usable = [gain, phase_degrees, position_millimetres].iter().all(|v| (0.0..=MAX_TOLERANCE).contains(v));
@@ -231,7 +228,7 @@ fn arrays_of(elements: Option<(f64, f64, f64, f64)>) -> PyResult<Arrays> {
     Ok(Arrays { share, tolerances })
 }
 
-fn radars_of(radar: Option<&Bound<'_, PyAny>>) -> PyResult<Radars> {
+pub fn radars_of(radar: Option<&Bound<'_, PyAny>>) -> PyResult<Radars> {
     let Some(radar) = radar else { return Ok(Radars::default()) };
     if let Ok(radar) = radar.extract::<PyRef<'_, Radar>>() {
         return Ok(Radars::Fixed(Box::new(radar.0.clone())));
@@ -240,80 +237,6 @@ fn radars_of(radar: Option<&Bound<'_, PyAny>>) -> PyResult<Radars> {
         Ok("random") => Ok(Radars::Random),
         _ => Err(value(format!("radar is {}; expected a Radar, \"random\" or None", radar.repr()?))),
     }
-}
-
-/// Writes examples as files: `apertura dataset`. `docs/data.md` says what is in them; `apertura.data.Files` reads them.
-///
-/// Args:
-///     folder: A new folder or an empty one.
-///     sets: Names of kinds (`kinds(training=True)`).
-///     count: Scenes of each set for training.
-///     validation: For validation; a tenth of `count` where none is given.
-///     test: For the test; likewise, but none where "world" is among the sets.
-///     seed: Seed of the scenes.
-///     floor: What lies beneath all scenes: "thesis", "exact", "thermal", "snr=DB" or "dbm=LEVEL".
-///     thermal: (share, lowest dB, highest dB), in place of `floor`, as for `Examples`.
-///     elements: Elements that are off, as for `Examples`.
-///     radar: The `Radar` that sees all scenes, or "random", as for `Examples`; that of table 3.1 where none is given.
-///     layout: Numbers of the elements that are heard, in place of the two ends: the array "heard" then stands in place of "ends".
-///     dtype: "f16" or "f32", the precision of features and targets.
-///     arrays: Which of "ends", "features", "target_ideal", "target_measured" and "target_calibrated" to write; all but the last where nothing is
-///         said, and features only before radars that have the live network's.
-///     shard: Examples of a shard; as many are in memory at once.
-///     progress: Called with the part that is done, 0 to 1.
-///
-/// Raises:
-///     ValueError: A name is unknown, a number can't be used, or the folder is not empty.
-///     OSError: A file can't be written.
-#[pyfunction]
-#[pyo3(signature = (folder, sets, *, count, validation=None, test=None, seed=0, floor="thesis", thermal=None, elements=None, radar=None,
-                    layout=None, dtype="f16", arrays=None, shard=64, progress=None))]
-#[expect(clippy::too_many_arguments, reason = "named in Python")]
-pub fn dataset(
-    py: Python<'_>,
-    folder: PathBuf,
-    sets: Vec<Bound<'_, PyAny>>,
-    count: i128,
-    validation: Option<i128>,
-    test: Option<i128>,
-    seed: i128,
-    floor: &str,
-    thermal: Option<(f64, f64, f64)>,
-    elements: Option<(f64, f64, f64, f64)>,
-    radar: Option<&Bound<'_, PyAny>>,
-    layout: Option<&Bound<'_, PyAny>>,
-    dtype: &str,
-    arrays: Option<Vec<String>>,
-    shard: i128,
-    progress: Progress<'_, '_>,
-) -> PyResult<()> {
-    let kinds: PyResult<Vec<Kind>> =
-        sets.iter().map(|set| Kind::for_training(&set_name(set)?).map_err(value)).collect();
-    let kinds = kinds?;
-    let radars = radars_of(radar)?;
-    let layout = arrays::layout_of(layout, &radars.shape())?;
-    let parts: Result<Vec<ExamplePart>, _> = match arrays {
-        None => Ok(ExamplePart::usual(&radars, layout.as_deref())),
-        Some(names) => names.iter().map(|name| name.parse()).collect(),
-    };
-    let further = |name: &str, count: Option<i128>| count.map(|count| whole(name, count)).transpose();
-    let (validation, test) = (further("validation", validation)?, further("test", test)?);
-    let request = DatasetRequest {
-        counts: DatasetRequest::counts(&kinds, whole("count", count)?, validation, test),
-        kinds,
-        seed: whole("seed", seed)?,
-        floors: floors_of(floor, thermal)?,
-        arrays: arrays_of(elements)?,
-        radars,
-        layout,
-        precision: dtype.parse().map_err(value)?,
-        parts: parts.map_err(value)?,
-        shard: whole("shard", shard)?,
-    };
-    work::run(py, progress, |task| files::write(&folder, &request, task))?.map(|_| ()).map_err(|error| match error {
-        DatasetError::File { path, source } => at(&path)(source),
-        other => value(other),
-    })
 }
 
 fn shaped(values: Vec<f32>, shape: &[usize]) -> PyResult<ArrayD<f32>> {

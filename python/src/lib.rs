@@ -3,6 +3,7 @@
 mod arrays;
 mod bounds;
 mod budget;
+mod dataset;
 mod doppler;
 mod errors;
 mod evaluate;
@@ -30,9 +31,10 @@ mod _apertura {
     use crate::{
         bounds::{ambiguity, cramer_rao, layout},
         budget::LinkBudget,
+        dataset::dataset,
         doppler::{chirp_samples, range_doppler},
         evaluate::evaluate,
-        examples::{Examples, dataset, live_input},
+        examples::{Examples, live_input},
         maps::{Maps, maps, pickled as pickled_maps},
         methods::{Method, method, methods},
         metrics::{cfar, metrics, roc},

@@ -1,10 +1,12 @@
 //! Arguments that several subcommands share.
 
+use super::CommandError;
 use crate::radar::{Carrier, Decibels};
 use crate::signal::Floor;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt::Display;
 use std::ops::RangeInclusive;
+use std::path::Path;
 use std::str::FromStr;
 
 /// The floor: the noise of the maps.
@@ -13,9 +15,27 @@ pub struct FloorArgs {
     /// Noise: thesis (its f64 rounding noise), exact (none), thermal (that of the receivers by the link budget), snr=DB (thermal noise at a
     /// signal-to-noise ratio, -100 to 300) or dbm=LEVEL (thermal noise of LEVEL dBm a sample in every scene, -300 to 200). LEVEL counts the squared
     /// magnitude of a sample as watts: a reflector of sigma 1 at 20 m has +18 dBm. Where the radar has a link budget, LEVEL is the power in
-    /// the receiver, as `apertura budget` prints it
-    #[arg(long, value_name = "thesis|exact|thermal|snr=DB|dbm=LEVEL", default_value_t = Floor::Thesis)]
-    pub floor: Floor,
+    /// the receiver, as `apertura budget` prints it [default: thesis]
+    #[arg(long, value_name = "thesis|exact|thermal|snr=DB|dbm=LEVEL")]
+    floor: Option<Floor>,
+}
+
+impl FloorArgs {
+    pub fn floor(&self) -> Floor {
+        self.floor.unwrap_or(Floor::Thesis)
+    }
+
+    /// Refuses `--floor` and `--seed`, the noise of a simulation, beside the recording at `path`.
+    ///
+    /// # Errors
+    /// [`CommandError`] names `path` and the option.
+    pub fn check_unset(&self, seed: Option<u64>, path: &Path) -> Result<(), CommandError> {
+        let given = [("--floor", self.floor.is_some()), ("--seed", seed.is_some())];
+        given.into_iter().find(|(_, is_given)| *is_given).map_or(Ok(()), |(name, _)| {
+            let message = format!("{name} is a scene's; the noise of a recording is that of its samples");
+            Err(CommandError::on(path)(message))
+        })
+    }
 }
 
 /// The methods that were named, or else the programs of one's own, or else `usual`.

@@ -108,6 +108,9 @@ impl Args {
         };
         radar.carrier = self.carrier.unwrap_or(radar.carrier);
         radar.focus_off_line |= self.focus_off_line;
+        if let InputArgs::Recording(_) = input {
+            self.floor.check_unset(self.seed, &self.input)?;
+        }
         match input {
             InputArgs::Scene(_) if self.explain.is_some() => {
                 return Err(CommandError("--explain takes reflectors off a recording; expected one as input".into()));
@@ -128,15 +131,15 @@ impl Args {
         SceneFile { scene, radar }: &SceneFile,
         format: Option<PictureFormat>,
     ) -> Result<(), CommandError> {
-        let signal = signal::simulate(radar, scene, self.floor.floor, self.seed.unwrap_or(scene.noise_seed))
+        let signal = signal::simulate(radar, scene, self.floor.floor(), self.seed.unwrap_or(scene.noise_seed))
             .map_err(CommandError::on(&self.input))?;
         if let Some(format) = format {
-            let style = Style { floor: self.floor.floor, ..self.style() };
+            let style = Style { floor: self.floor.floor(), ..self.style() };
             let bytes = compose(radar, scene, &signal, self.method(radar)?.as_ref(), &style, format)?;
             return write_file(&self.output, &bytes);
         }
         let layout_samples = self.layout_samples(radar, Some(&signal))?;
-        let (noise, normalisation) = (self.floor.floor.into(), self.normalisation);
+        let (noise, normalisation) = (self.floor.floor().into(), self.normalisation);
         let request = Request { noise, normalisation, layout_samples: layout_samples.clone(), ..Request::default() };
         let output = self.estimate(radar, &signal.two_ends(radar), &request)?;
         let full = write_maps(&self.output, radar, scene, &signal, layout_samples.as_deref(), output.as_ref())

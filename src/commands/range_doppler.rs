@@ -92,7 +92,7 @@ impl Args {
         radar.chirps = self.chirps.unwrap_or(if radar.chirps > 1 { radar.chirps } else { CHIRPS });
         let scene = scene.at(self.time);
         let seed = self.seed.unwrap_or(scene.noise_seed);
-        let map = range_doppler(&radar, &scene, self.floor.floor, seed).map_err(CommandError::on(&self.input))?;
+        let map = range_doppler(&radar, &scene, self.floor.floor(), seed).map_err(CommandError::on(&self.input))?;
         if let Some(sentence) = folded(&radar, &scene) {
             note(&format!("note: {sentence}"));
         }
@@ -109,6 +109,7 @@ impl Args {
             let message = format!("{name} is a scene's; a recording has chirps of its own");
             return Err(CommandError::on(&self.input)(message));
         }
+        self.floor.check_unset(self.seed, &self.input)?;
         let recording = load_recording(&self.input, self.capture.config.as_deref())?;
         let Some(origin) = &recording.origin else {
             return Err(CommandError::on(&self.input)("counts no loops; one chirp tells no velocity"));

@@ -11,8 +11,9 @@ use crate::files::kind::kind_at;
 use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use crate::maps::archive::{add_columns, read_radar};
 use crate::methods;
+use crate::platform::console::note;
 use crate::radar::Radar;
-use crate::reconstruct::found::find;
+use crate::reconstruct::found::{FEW_ELEMENTS, find};
 use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstructor, Request};
 use crate::recording::{self, Recording};
 use crate::scene::file;
@@ -75,6 +76,9 @@ impl Args {
             return Err(CommandError::on(&self.output)("an archive is written; expected a name ending in .npz"));
         }
         check_kept(&self.input, &self.output)?;
+        if recording::file::is_recording_at(&self.input) {
+            self.floor.check_unset(None, &self.input)?;
+        }
         let own = self.network.start_own()?;
         // A wrong name is reported before any file is read.
         let asked = self.method.as_deref().or(own.first().copied()).map(|name| self.method(name)).transpose()?;
@@ -87,6 +91,12 @@ impl Args {
         let answer = answer(method.as_ref(), &input).map_err(CommandError::on(&self.input))?;
         self.write(radar, &answer).map_err(CommandError::on(&self.output))?;
         print_echoes(&answer.found)?;
+        if radar.elements <= FEW_ELEMENTS && !method.lists_few_elements() {
+            let name = method.name();
+            note(&format!(
+                "note: {name} lists no echoes of {FEW_ELEMENTS} elements or fewer: its places are those of the map's cells"
+            ));
+        }
         let doubtful = answer.found.iter().filter(|f| f.confidence.is_some_and(|c| c < DOUBTFUL)).count();
         if doubtful > 0 {
             let of = answer.found.len();
@@ -154,7 +164,7 @@ impl Args {
         let radar = own.unwrap_or(asked);
         let layout = self.layout.numbers(&radar)?;
         let ready_made = !archive.has("sub0") && !archive.has("ends") && archive.has("polar_partial_mag_phase");
-        let noise = self.floor.floor.into();
+        let noise = self.floor.floor().into();
         let mut request = Request { noise, snapshot_range_metres: range_metres, ..Request::default() };
         let samples = if let Some(layout) = layout {
             let samples = archive.complexes::<Ix2>("heard").map_err(CommandError::on(&self.input))?;

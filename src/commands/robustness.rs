@@ -87,7 +87,7 @@ impl Args {
             kind: self.set,
             seed: self.seed,
             count: self.count,
-            floor: self.floor.floor,
+            floor: self.floor.floor(),
             tolerances: Tolerances {
                 gain: Decibels(self.gain_db),
                 phase_degrees: self.phase_degrees,
@@ -107,7 +107,7 @@ impl Args {
             set: self.set.to_string(),
             count: self.count,
             seed: self.seed,
-            floor: self.floor.floor.to_string(),
+            floor: self.floor.floor().to_string(),
             layout: self.layout.other().map(LayoutKind::to_string),
             rows: &rows,
         })

@@ -93,7 +93,7 @@ impl Args {
         let search = ThresholdSearch {
             layout: self.layout.numbers(&radar)?,
             radar,
-            floor: self.floor.floor,
+            floor: self.floor.floor(),
             kinds: self.set.clone(),
             count: self.count,
             seed: self.seed,
@@ -111,7 +111,7 @@ impl Args {
         let report = Report {
             method: method.name().to_owned(),
             sets: self.set.iter().map(Kind::to_string).collect(),
-            floor: self.floor.floor.to_string(),
+            floor: self.floor.floor().to_string(),
             layout: self.layout.other().map(LayoutKind::to_string),
             seed: self.seed,
             wanted: self.false_alarm / 100.0,

@@ -78,7 +78,7 @@ impl Args {
         let [method] = methods.as_slice() else { return Err(CommandError("--method takes one name".into())) };
         let search = WorseningSearch {
             radar: radar.clone(),
-            floor: self.floor.floor,
+            floor: self.floor.floor(),
             goal: if self.repair { WorseningGoal::Repair } else { WorseningGoal::Worsen },
             measure: self.measure,
             within_metres: self.within,

@@ -20,7 +20,7 @@ const MOST_PEAKS: usize = 256;
 
 /// Most elements of an array whose columns are so wide that the fringes between its two ends fall between them: a peak's direction is then
 /// searched between the columns.
-const FEW_ELEMENTS: usize = 128;
+pub const FEW_ELEMENTS: usize = 128;
 
 /// Distance within which peaks of one range bin are one, as a part of a column.
 const ONE_PEAK: f64 = 0.5;

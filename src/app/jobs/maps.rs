@@ -1,5 +1,6 @@
 //! The worker of the maps on screen, its last request and its last result.
 
+use super::MAX_OUTDATED_WORK_TIME;
 use super::rest::Rest;
 use super::scene_maps::{MapsRequest, MapsResult, MapsState};
 use crate::engine::EngineStage;
@@ -7,9 +8,6 @@ use crate::platform::Instant;
 use crate::signal::SimulationError;
 use crate::task::{Reply, Task, Worker};
 use std::time::Duration;
-
-/// Longest time for maps of a scene that has changed; longer work is cancelled.
-const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(400);
 
 /// The worker of the maps, its last request and its last result.
 pub struct MapsJob {

@@ -1,5 +1,6 @@
 //! The worker of one method for the scene on screen: the last request, and the last output or the reason why there is none.
 
+use super::MAX_OUTDATED_WORK_TIME;
 use super::memo::Memo;
 use super::scene_maps::{MapsRequest, MapsResult, Origin, Pair};
 use super::source::Source;
@@ -15,10 +16,6 @@ use crate::signal::{LayoutSamples, TwoEnds};
 use crate::task::{Reply, Task, Worker};
 use std::sync::Arc;
 use std::time::Duration;
-
-/// Longest time of a reconstruction whose scene has changed since; a slower one is cancelled. During a drag none is cancelled, so that the user sees
-/// its output.
-const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(400);
 
 /// Most entries of [`MethodJob::wanted`]. An output older than all of them is marked as outdated in any case.
 const MAX_ORIGINS: usize = 64;

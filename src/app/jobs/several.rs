@@ -1,5 +1,6 @@
 //! One map for several values, off the UI thread. The latest request wins, and each map is shown as soon as it is finished.
 
+use super::MAX_OUTDATED_WORK_TIME;
 use super::painter::Painter;
 use super::subject::{Paint, Subject};
 use crate::app::shared::Shared;
@@ -15,10 +16,6 @@ use crate::task::{Reply, Task, Worker};
 use eframe::egui::ColorImage;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Duration;
-
-/// Longest time for maps of an earlier request; slower ones are cancelled. During a drag all are finished, so that the user sees the movement.
-const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(100);
 
 /// A request for one map with several variants.
 #[derive(Clone, PartialEq)]

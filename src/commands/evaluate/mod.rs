@@ -170,7 +170,7 @@ impl Args {
             seed: self.seed,
             count: self.count,
             shard: self.shard,
-            floor: self.floor.floor,
+            floor: self.floor.floor(),
             cfar: self.cfar,
             ..Campaign::default()
         };

@@ -6,6 +6,7 @@ use super::marks::{HEADER_BYTES, Marks, marks};
 use super::spectrum::Spectrum;
 use super::stream::CaptureStream;
 use super::{Counts, Layout, NumberEncoding, PartOrder, ReceiverOrder};
+use crate::radar::counted;
 use crate::recording::{Fault, RadarProfile};
 use ndarray::Array2;
 use num_complex::Complex64;
@@ -19,6 +20,9 @@ const MAX_BYTES: usize = 1 << 20;
 const MIN_ZERO_RUN_BYTES: usize = 128;
 /// Largest mean level below a flat spectrum of a file without echoes, decibels.
 const MAX_FLATNESS_DB: f64 = 0.35;
+
+/// Least length of a file without a `.cfg` whose layout can be sure: 16 chirps of 64 complex samples.
+const MIN_SURE_BYTES: u64 = 4096;
 
 /// A layout with the evidence for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +58,7 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     /// Sentences on headers, packets and counts.
     pub notes: Vec<String>,
-    /// Whether the counts were searched although much of the file is saturated or no rows repeat.
+    /// Whether the counts were searched although the file is short, much of it is saturated, or no rows repeat.
     pub hides_counts: bool,
 }
 
@@ -103,6 +107,10 @@ pub fn find<R: Read + Seek>(stream: &mut CaptureStream<R>, profile: Option<&Rada
         hides_counts = true;
         notes.push(note.to_owned());
     }
+    if profile.is_none() && facts.bytes < MIN_SURE_BYTES {
+        hides_counts = true;
+        notes.push(format!("The file has {} bytes, too few for a sure choice.", facts.bytes));
+    }
     if profile.is_some() {
         let Candidate { layout, counts, .. } = best;
         let with_counts = Candidates { counts: *counts, only_order: None, header_bytes, facts };
@@ -116,7 +124,8 @@ pub fn find<R: Read + Seek>(stream: &mut CaptureStream<R>, profile: Option<&Rada
 
 /// The error of a file of less than a chirp; `source` is a clause with the source of the expected number, or empty.
 fn too_short(bytes: u64, expected: u64, source: &str) -> Fault {
-    Fault::Data(format!("has {bytes} bytes; expected at least one chirp, {expected} bytes{source}"))
+    let found = counted(bytes, "byte", "bytes");
+    Fault::Data(format!("has {found}; expected at least one chirp, {expected} bytes{source}"))
 }
 
 fn all_zeros() -> Fault {

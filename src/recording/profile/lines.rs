@@ -7,6 +7,9 @@ use std::fmt::Display;
 pub(super) const MAX_CHIRPS: usize = 512;
 pub(super) const MAX_LOOPS: usize = 65536;
 
+/// Largest number of a quantity, in the unit of its command (GHz, ksps): beyond any radar.
+const MAX_NUMBER: f64 = 1e9;
+
 /// A command with its numbers.
 #[derive(Debug, Clone)]
 pub(super) struct ConfigLine<'a> {
@@ -33,13 +36,13 @@ impl ConfigLine<'_> {
         self.values.get(index).copied().ok_or_else(missing)
     }
 
-    /// A number above 0.
+    /// A number above 0, at most [`MAX_NUMBER`].
     pub fn positive(&self, index: usize, name: &str) -> Result<f64, Fault> {
         let value = self.real(index, name)?;
-        if value.is_finite() && value > 0.0 {
+        if value > 0.0 && value <= MAX_NUMBER {
             Ok(value)
         } else {
-            Err(self.fault(format!("{name} is {value}; expected a number above 0")))
+            Err(self.fault(format!("{name} is {value}; expected a number above 0, and at most {MAX_NUMBER:e}")))
         }
     }
 
