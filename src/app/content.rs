@@ -108,7 +108,7 @@ pub trait AnyPanel: std::any::Any {
 }
 
 /// Opacity of an old panel.
-pub const OLD: f32 = 0.55;
+pub const OLD_PANEL_OPACITY: f32 = 0.55;
 
 impl<M: 'static, Q: Query> AnyPanel for Held<M, Q> {
     fn wants(&self) -> &'static [Want] {
@@ -157,7 +157,7 @@ impl<M: 'static, Q: Query> AnyPanel for Held<M, Q> {
             return Vec::new();
         }
         if !self.content.marks_age && self.is_stale(jobs, panel) {
-            ui.multiply_opacity(OLD);
+            ui.multiply_opacity(OLD_PANEL_OPACITY);
         }
         let Held { content, memory, derived } = self;
         (content.show)(ui, Cx { panel, state, jobs, memory, value: derived.value() })

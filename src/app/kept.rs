@@ -9,16 +9,16 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Name of the file in which the window library keeps settings.
-const SETTINGS: &str = "app.ron";
+const SETTINGS_FILE: &str = "app.ron";
 
 /// Name of the copy of the settings' file from the last start.
-const COPY: &str = "app.ron.copy";
+const SETTINGS_COPY_FILE: &str = "app.ron.copy";
 
 /// Key of the program's version in the settings' file.
 const VERSION_KEY: &str = "version";
 
 /// Largest file of settings that is read, bytes.
-const MOST_BYTES: u64 = 16 << 20;
+const MAX_SETTINGS_BYTES: u64 = 16 << 20;
 
 /// State kept between starts.
 #[derive(Default, Serialize, Deserialize)]
@@ -113,8 +113,8 @@ fn unkept(reason: &str) -> String {
 /// # Errors
 /// When no file can be written into `folder`.
 fn keep_whole(folder: &Path) -> io::Result<Option<String>> {
-    let (path, copy) = (folder.join(SETTINGS), folder.join(COPY));
-    let read = |path: &Path| crate::files::read_bounded(path, MOST_BYTES).ok();
+    let (path, copy) = (folder.join(SETTINGS_FILE), folder.join(SETTINGS_COPY_FILE));
+    let read = |path: &Path| crate::files::read_bounded(path, MAX_SETTINGS_BYTES).ok();
     match (read(&path), read(&copy)) {
         (Some(now), before) if is_whole(&now) => {
             if before.as_deref() != Some(&now) {
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn settings_that_were_cut_come_back_from_the_copy() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(SETTINGS);
+        let path = folder.path().join(SETTINGS_FILE);
         assert_eq!(problems(Some(folder.path())), Vec::<String>::new(), "a first start");
         let whole = "{\n    \"app\": \"(zoom:None)\",\n}";
         std::fs::write(&path, whole).unwrap();

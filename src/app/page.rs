@@ -30,7 +30,7 @@ fn measured() -> String {
 }
 
 /// Key of an address that names a notebook's cell. The page sends its scene to the cell (`page.js`).
-const CELL: &str = "cell";
+const CELL_KEY: &str = "cell";
 
 /// The options in a page's address: `?scene=street`, `?lesson=two-ends` (the beginning of a lesson's name), `?recording=chip-8`, or a shared text behind `#`.
 ///
@@ -43,7 +43,7 @@ pub fn options_of(address: &str) -> Result<Options, String> {
         options.commands.push(DocumentCommand::OpenShared(fragment.to_owned()).into());
     }
     for (key, name) in query.trim_start_matches('?').split('&').filter_map(|part| part.split_once('=')) {
-        if key == CELL {
+        if key == CELL_KEY {
             continue;
         }
         options.commands.push(command_of(key, name)?);

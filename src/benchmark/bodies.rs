@@ -14,9 +14,9 @@ use crate::signal::simd::Simd;
 use serde::Serialize;
 
 /// Updates before the timed ones, since the first moves of a drag take the body out of the sum at rest.
-const WARM_UP: usize = 3;
+const WARM_UP_UPDATES: usize = 3;
 /// Measured time after which no further repeat begins, milliseconds: crowds take seconds a map.
-const ENOUGH_MS: f64 = 4000.0;
+const MAX_MEASURED_MS: f64 = 4000.0;
 /// Distance that a dragged body moves from one update to the next, metres.
 const STEP_METRES: f64 = 0.01;
 
@@ -119,18 +119,18 @@ fn measured(radar: &Radar, case: &BodyCase, convention: MapConvention, repeats: 
     // The first update fills the tables that are kept from scene to scene, such as the floor's noise.
     timed(&mut engine, &scene)?;
     let mut scratch = Vec::new();
-    while scratch.len() < repeats && scratch.iter().sum::<f64>() < ENOUGH_MS {
+    while scratch.len() < repeats && scratch.iter().sum::<f64>() < MAX_MEASURED_MS {
         engine.forget();
         scratch.push(timed(&mut engine, &scene)?.0);
     }
     let (mut drag, mut computed) = (Vec::new(), String::new());
     let mut step = 0;
-    while drag.len() < repeats && drag.iter().sum::<f64>() < ENOUGH_MS {
+    while drag.len() < repeats && drag.iter().sum::<f64>() < MAX_MEASURED_MS {
         if let Some(object) = scene.objects.first_mut() {
             object.translate(STEP_METRES, 0.0);
         }
         let (took, frame) = timed(&mut engine, &scene)?;
-        if step >= WARM_UP {
+        if step >= WARM_UP_UPDATES {
             drag.push(took);
         }
         step += 1;

@@ -13,9 +13,9 @@ use std::f64::consts::TAU;
 
 const REPEATS: usize = 7;
 
-const WARM_UP: usize = 2;
+const WARM_UP_RUNS: usize = 2;
 
-const REFLECTORS: [usize; 2] = [10, 300];
+const REFLECTOR_COUNTS: [usize; 2] = [10, 300];
 
 const DRAG_METRES: f64 = 0.01;
 
@@ -36,12 +36,12 @@ fn spread(count: usize) -> Scene {
 
 fn median(mut work: impl FnMut(usize) -> Result<(), String>) -> Result<f64, String> {
     let mut times = Vec::new();
-    for run in 0..WARM_UP + REPEATS {
+    for run in 0..WARM_UP_RUNS + REPEATS {
         let began = Instant::now();
         work(run)?;
         times.push(1e3 * began.elapsed().as_secs_f64());
     }
-    Ok(quantile(&mut times[WARM_UP..], 0.5))
+    Ok(quantile(&mut times[WARM_UP_RUNS..], 0.5))
 }
 
 /// Three maps of 10 and of 300 reflectors, from scratch and while one is dragged, and the live network, on rayon's threads.
@@ -50,7 +50,7 @@ fn median(mut work: impl FnMut(usize) -> Result<(), String>) -> Result<f64, Stri
 pub fn measure() -> Result<Vec<Timed>, String> {
     let radar = Radar::default();
     let mut timed = Vec::new();
-    for count in REFLECTORS {
+    for count in REFLECTOR_COUNTS {
         let scene = spread(count);
         let mut moved = scene.clone();
         if let Some(object) = moved.objects.first_mut() {
@@ -70,7 +70,7 @@ pub fn measure() -> Result<Vec<Timed>, String> {
         timed.push(Timed { name: format!("maps of {count} reflectors, one dragged"), milliseconds: dragged });
     }
     let live = methods::by_name("live").map_err(|e| e.to_string())?;
-    let signal = simulate(&radar, &spread(REFLECTORS[0]), Floor::Thesis, 0).map_err(|e| e.to_string())?;
+    let signal = simulate(&radar, &spread(REFLECTOR_COUNTS[0]), Floor::Thesis, 0).map_err(|e| e.to_string())?;
     let ends = signal.two_ends(&radar);
     let milliseconds =
         median(|_| live.reconstruct(&radar, &ends, &Request::default()).map(|_| ()).map_err(|e| e.to_string()))?;
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn spread_reflectors_lie_in_range() {
         let radar = Radar::default();
-        for count in REFLECTORS {
+        for count in REFLECTOR_COUNTS {
             let scene = spread(count);
             assert!(scene.validate(&radar).is_ok() && scene.reflector_count() == count);
         }

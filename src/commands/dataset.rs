@@ -77,13 +77,13 @@ pub struct Args {
 }
 
 /// Ratios of --thermal, those that the live network was trained at.
-const THERMAL: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
+const THERMAL_SNR: [Decibels; 2] = [Decibels(10.0), Decibels(60.0)];
 
-const TICK: Duration = Duration::from_millis(100);
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
-        let [from, to] = THERMAL;
+        let [from, to] = THERMAL_SNR;
         let radar = self.radar.load()?.0;
         let layout = self.layout.numbers(&radar)?;
         let radars = Radars::Fixed(Box::new(radar));
@@ -105,7 +105,7 @@ impl Args {
             let writing = scope.spawn(|| write(&self.output, &request, &task));
             while !writing.is_finished() {
                 bar.set_position((1000.0 * task.progress()) as u64);
-                std::thread::sleep(TICK);
+                std::thread::sleep(PROGRESS_INTERVAL);
             }
             writing.join()
         });

@@ -8,7 +8,7 @@ use image::{Delay, Frame, ImageFormat, RgbaImage};
 use std::path::Path;
 use std::time::Duration;
 
-const INTERVAL: Duration = Duration::from_millis(100);
+const FRAME_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Number of frames; 1 where the file counts none.
 pub fn count(opened: &Recording) -> usize {
@@ -38,7 +38,7 @@ pub fn animate(
         let mut gif = GifEncoder::new_with_speed(out, 20);
         gif.set_repeat(Repeat::Infinite)?;
         for n in 0..count(opened) {
-            let delay = Delay::from_saturating_duration(INTERVAL);
+            let delay = Delay::from_saturating_duration(FRAME_INTERVAL);
             gif.encode_frame(Frame::from_parts(picture(n)?, 0, 0, delay))?;
         }
         Ok(())

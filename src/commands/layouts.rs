@@ -39,10 +39,10 @@ pub struct Args {
     output: Option<PathBuf>,
 }
 
-const FALSE_ALARM: f64 = 0.01;
+const FALSE_ALARM_RATE: f64 = 0.01;
 
 /// Place of the reflector whose side lobes are measured: 20 m ahead.
-const CENTRE: Polar = Polar { range_metres: 20.0, cos_theta: 0.0 };
+const REFLECTOR_PLACE: Polar = Polar { range_metres: 20.0, cos_theta: 0.0 };
 
 const DRAWN_COLUMNS: f64 = 60.0;
 
@@ -84,7 +84,7 @@ impl Args {
             }
             for ((row, errors), roc) in rows.iter_mut().zip(&errors).zip(&rocs) {
                 row.squared_error.push(Estimate::of(errors));
-                row.detection.push(roc.at_false_alarm(FALSE_ALARM).map(|p| p.detection));
+                row.detection.push(roc.at_false_alarm(FALSE_ALARM_RATE).map(|p| p.detection));
             }
         }
         bar.finish_and_clear();
@@ -121,11 +121,11 @@ fn print_table(radar: &Radar, count: u32, rows: &[Row]) -> Result<(), CommandErr
 
 impl Row {
     fn new(radar: &Radar, kind: &LayoutKind, layout: &Layout) -> Self {
-        let cut = cut(radar, layout, CENTRE, 8);
+        let cut = cut(radar, layout, REFLECTOR_PLACE, 8);
         Row {
             layout: kind.to_string(),
             elements: layout.len(),
-            lobes: lobes(&cut.0, &cut.1, CENTRE.cos_theta),
+            lobes: lobes(&cut.0, &cut.1, REFLECTOR_PLACE.cos_theta),
             squared_error: Vec::new(),
             detection: Vec::new(),
             cut,
@@ -166,7 +166,7 @@ impl Drawing for CutFigure<'_> {
                 .draw()?;
             let per_column = self.radar.elements as f64 / 2.0;
             let points = row.cut.0.iter().zip(&row.cut.1).map(|(cos, likeness)| {
-                ((cos - CENTRE.cos_theta) * per_column, (20.0 * likeness.max(1e-9).log10()).max(-40.0))
+                ((cos - REFLECTOR_PLACE.cos_theta) * per_column, (20.0 * likeness.max(1e-9).log10()).max(-40.0))
             });
             let drawn = points.filter(|(columns, _)| columns.abs() <= DRAWN_COLUMNS);
             chart.draw_series(LineSeries::new(drawn, RGBColor(30, 100, 200)))?;

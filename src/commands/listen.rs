@@ -47,7 +47,7 @@ pub struct Args {
 }
 
 /// Frames that wait to be looked at.
-const WAITING: usize = 2;
+const MAX_WAITING_FRAMES: usize = 2;
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
@@ -59,7 +59,7 @@ impl Args {
         card.max_frames = self.frames;
         card.silence = self.silence.map(|s| Duration::from_secs(s.into()));
         print(&format!("listening on port {}, {frame_bytes} bytes a frame", self.port))?;
-        let (sender, frames) = sync_channel(WAITING);
+        let (sender, frames) = sync_channel(MAX_WAITING_FRAMES);
         let hand = move |frame| match sender.try_send(frame) {
             Ok(()) => FrameResponse::Taken,
             Err(TrySendError::Full(_)) => FrameResponse::Dropped,

@@ -170,7 +170,7 @@ impl Args {
         let failed = |told: String| NpzError::Io(std::io::Error::other(told));
         let map = |n: usize| {
             let frame = frames::frame(recording, n).map_err(|error| failed(error.0))?;
-            maps_of(&frame).1.ok_or_else(|| failed(ENDS_ALONE.to_owned()))
+            maps_of(&frame).1.ok_or_else(|| failed(ENDS_ALONE_MESSAGE.to_owned()))
         };
         write_frames(&self.output, radar, frames::count(recording), map).map_err(CommandError::on(&self.output))
     }
@@ -229,7 +229,7 @@ impl Args {
         signal: Option<&BeatSignal>,
     ) -> Result<Option<Arc<LayoutSamples>>, CommandError> {
         let Some(layout) = self.layout.numbers(radar)? else { return Ok(None) };
-        let alone = || CommandError(format!("{}: {ENDS_ALONE}, or no --layout", self.input.display()));
+        let alone = || CommandError(format!("{}: {ENDS_ALONE_MESSAGE}, or no --layout", self.input.display()));
         Ok(Some(Arc::new(signal.ok_or_else(alone)?.of_layout(&layout))))
     }
 
@@ -247,4 +247,4 @@ fn span(full: &LogMap) -> String {
     )
 }
 
-const ENDS_ALONE: &str = "the recording has the two ends alone; expected samples of every element";
+const ENDS_ALONE_MESSAGE: &str = "the recording has the two ends alone; expected samples of every element";

@@ -16,7 +16,7 @@ pub struct Args {
 }
 
 /// Columns of a name and the space behind it.
-const WIDTH: usize = 27;
+const NAME_WIDTH: usize = 27;
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
@@ -41,7 +41,7 @@ fn line(method: &dyn Reconstructor, input: Option<&InputArgs>) -> String {
         Some(Err(ReconstructError::Unusable { reason, .. })) => format!("no: {reason}"),
         Some(Err(error)) => format!("no: {error}"),
     };
-    format!("  {:<WIDTH$}{told}", method.name())
+    format!("  {:<NAME_WIDTH$}{told}", method.name())
 }
 
 fn takes(method: &dyn Reconstructor, input: &InputArgs) -> Result<(), ReconstructError> {

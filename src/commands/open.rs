@@ -39,7 +39,7 @@ pub struct Args {
 }
 
 /// Name of the picture drawn where there is no display.
-const PICTURE: &str = "apertura.png";
+const PICTURE_FILE: &str = "apertura.png";
 
 impl Args {
     /// Opens the app; without one, or without a display, says so and draws the scene's panels to a picture.
@@ -132,7 +132,7 @@ fn draw_instead(input: &InputArgs, method: Option<Arc<dyn Reconstructor>>) -> Re
 fn free_name(folder: &Path) -> PathBuf {
     let ours = |path: &Path| std::fs::read(path).is_ok_and(|bytes| is_our_png(&bytes));
     let path = |number: u32| {
-        let name = if number == 1 { PICTURE.to_owned() } else { format!("apertura-{number}.png") };
+        let name = if number == 1 { PICTURE_FILE.to_owned() } else { format!("apertura-{number}.png") };
         if folder == Path::new(".") { PathBuf::from(name) } else { folder.join(name) }
     };
     let is_free = |path: &PathBuf| std::fs::symlink_metadata(path).is_err() || ours(path);

@@ -73,7 +73,7 @@ pub struct Args {
 
 const UNKNOWN_INTERVAL: &str = "Nothing says the interval of chirps: a step of velocity is shown as 1 m/s. radar.chirp_interval_seconds of a TOML says it.";
 
-const CHIRPS: usize = 128;
+const USUAL_CHIRPS: usize = 128;
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
@@ -89,7 +89,7 @@ impl Args {
         if let Some(microseconds) = self.interval {
             radar.chirp_interval_seconds = 1e-6 * microseconds;
         }
-        radar.chirps = self.chirps.unwrap_or(if radar.chirps > 1 { radar.chirps } else { CHIRPS });
+        radar.chirps = self.chirps.unwrap_or(if radar.chirps > 1 { radar.chirps } else { USUAL_CHIRPS });
         let scene = scene.at(self.time);
         let seed = self.seed.unwrap_or(scene.noise_seed);
         let map = range_doppler(&radar, &scene, self.floor.floor(), seed).map_err(CommandError::on(&self.input))?;

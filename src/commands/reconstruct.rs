@@ -13,7 +13,7 @@ use crate::maps::archive::{add_columns, read_radar};
 use crate::methods;
 use crate::platform::console::note;
 use crate::radar::Radar;
-use crate::reconstruct::found::{FEW_ELEMENTS, find};
+use crate::reconstruct::found::{MAX_COARSE_ELEMENTS, find};
 use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstructor, Request};
 use crate::recording::{self, Recording};
 use crate::scene::file;
@@ -91,16 +91,18 @@ impl Args {
         let answer = answer(method.as_ref(), &input).map_err(CommandError::on(&self.input))?;
         self.write(radar, &answer).map_err(CommandError::on(&self.output))?;
         print_echoes(&answer.found)?;
-        if radar.elements <= FEW_ELEMENTS && !method.lists_few_elements() {
+        if radar.elements <= MAX_COARSE_ELEMENTS && !method.lists_few_elements() {
             let name = method.name();
             note(&format!(
-                "note: {name} lists no echoes of {FEW_ELEMENTS} elements or fewer: its places are those of the map's cells"
+                "note: {name} lists no echoes of {MAX_COARSE_ELEMENTS} elements or fewer: its places are those of the map's cells"
             ));
         }
-        let doubtful = answer.found.iter().filter(|f| f.confidence.is_some_and(|c| c < DOUBTFUL)).count();
+        let doubtful = answer.found.iter().filter(|f| f.confidence.is_some_and(|c| c < MIN_SURE_CONFIDENCE)).count();
         if doubtful > 0 {
             let of = answer.found.len();
-            print(&format!("{doubtful} of {of} echoes are doubtful: found_confidence is less than {DOUBTFUL}"))?;
+            print(&format!(
+                "{doubtful} of {of} echoes are doubtful: found_confidence is less than {MIN_SURE_CONFIDENCE}"
+            ))?;
         }
         print(&format!("wrote {} ({}, {:.1} ms)", self.output.display(), method.name(), answer.milliseconds))
     }
@@ -299,7 +301,7 @@ fn print_echoes(found: &[Detection]) -> Result<(), CommandError> {
     }
 }
 
-const DOUBTFUL: f64 = 0.5;
+const MIN_SURE_CONFIDENCE: f64 = 0.5;
 
 struct Input {
     radar: Radar,

@@ -5,8 +5,8 @@ use crate::radar::Radar;
 use ndarray::Array2;
 
 /// Largest distance of a blob from the place it is searched at: range bins, and as a divisor of the number of columns.
-const NEAR_BINS: usize = 8;
-const NEAR_PART: usize = 48;
+const MAX_BLOB_DISTANCE_BINS: usize = 8;
+const BLOB_DISTANCE_DIVISOR: usize = 48;
 
 /// Regions of touching cells: 8 neighbours, columns wrap around as angles do.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,8 +67,8 @@ pub fn dip_between(radar: &Radar, map: &RangeAngleMap, places_metres: [[f64; 2];
         let bin = radar.bin_of_range(blob.range_metres).rem_euclid(rows as f64);
         [(bin.round() as usize).min(rows - 1), (radar.column_of_cos(blob.cos_theta).round() as usize).min(columns - 1)]
     });
-    let reach = (a[1].abs_diff(b[1]).saturating_sub(1) / 2).min(columns / NEAR_PART);
-    let [a, b] = [a, b].map(|at| brightest_near(map, at, [NEAR_BINS, reach]));
+    let reach = (a[1].abs_diff(b[1]).saturating_sub(1) / 2).min(columns / BLOB_DISTANCE_DIVISOR);
+    let [a, b] = [a, b].map(|at| brightest_near(map, at, [MAX_BLOB_DISTANCE_BINS, reach]));
     let steps = a[0].abs_diff(b[0]).max(a[1].abs_diff(b[1])).max(1);
     let between = (0..=steps).map(|step| {
         let at = |axis: usize| {

@@ -3,8 +3,8 @@
 use super::TARGET_ETA;
 use crate::maps::RangeAngleMap;
 
-/// Thresholds at which a [`Roc`] is sampled: eta = i / `STEPS`.
-const STEPS: usize = 4096;
+/// Thresholds at which a [`Roc`] is sampled: eta = i / `THRESHOLD_STEPS`.
+const THRESHOLD_STEPS: usize = 4096;
 
 /// P_D and P_FA at one threshold.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Roc {
 
 impl Default for Roc {
     fn default() -> Self {
-        Roc { detection: vec![0.0; STEPS + 1], false_alarm: vec![0.0; STEPS + 1], scenes: 0 }
+        Roc { detection: vec![0.0; THRESHOLD_STEPS + 1], false_alarm: vec![0.0; THRESHOLD_STEPS + 1], scenes: 0 }
     }
 }
 
@@ -46,10 +46,10 @@ impl Roc {
 
     /// Adds a scene to the average. A scene without target cells has no P_D and is left out.
     pub fn add(&mut self, target: &RangeAngleMap, output: &RangeAngleMap) {
-        // A cell with output o exceeds eta_i = i/STEPS for i < o * STEPS: it is counted in the last such i, and counts are summed from the top.
-        let (mut hits, mut alarms) = (vec![0u64; STEPS + 2], vec![0u64; STEPS + 2]);
+        // A cell with output o exceeds eta_i = i/THRESHOLD_STEPS for i < o * THRESHOLD_STEPS: it is counted in the last such i, and counts are summed from the top.
+        let (mut hits, mut alarms) = (vec![0u64; THRESHOLD_STEPS + 2], vec![0u64; THRESHOLD_STEPS + 2]);
         for (t, o) in target.lambda.iter().zip(&output.lambda) {
-            let slot = (o.clamp(0.0, 1.0) * STEPS as f32).ceil() as usize;
+            let slot = (o.clamp(0.0, 1.0) * THRESHOLD_STEPS as f32).ceil() as usize;
             if *t > TARGET_ETA { hits[slot] += 1 } else { alarms[slot] += 1 }
         }
         let (targets, others) = (hits.iter().sum::<u64>(), alarms.iter().sum::<u64>());
@@ -57,7 +57,7 @@ impl Roc {
             return;
         }
         let (mut hit, mut alarm) = (0, 0);
-        for i in (0..=STEPS).rev() {
+        for i in (0..=THRESHOLD_STEPS).rev() {
             hit += hits[i + 1];
             alarm += alarms[i + 1];
             self.detection[i] += hit as f64 / targets as f64;
@@ -74,8 +74,8 @@ impl Roc {
     /// The curve from eta = 0 to eta = 1; empty without scenes.
     pub fn points(&self) -> impl Iterator<Item = RocPoint> + '_ {
         let scenes = self.scenes as f64;
-        (0..=STEPS).filter(move |_| scenes > 0.0).map(move |i| RocPoint {
-            eta: i as f32 / STEPS as f32,
+        (0..=THRESHOLD_STEPS).filter(move |_| scenes > 0.0).map(move |i| RocPoint {
+            eta: i as f32 / THRESHOLD_STEPS as f32,
             detection: self.detection[i] / scenes,
             false_alarm: self.false_alarm[i] / scenes,
         })
@@ -197,7 +197,7 @@ mod tests {
             }),
         };
         let roc = Roc::of(&target, &output);
-        let below = |eta: f32| eta - 1.0 / STEPS as f32;
+        let below = |eta: f32| eta - 1.0 / THRESHOLD_STEPS as f32;
         assert_eq!(roc.at_detection(1.0).unwrap().eta, below(0.5));
         assert_eq!(roc.at_detection(0.9).unwrap().eta, below(0.75));
         assert_eq!(Roc::of(&target, &RangeAngleMap { lambda: Array2::zeros((10, 10)) }).at_detection(0.9), None);

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A false-alarm rate for scenes that the thesis prints no table of.
-const FALSE_ALARM_ELSEWHERE: f64 = 0.01;
+const UNPRINTED_FALSE_ALARM_RATE: f64 = 0.01;
 
 /// Level of the noise of scenes of noise alone, where no thermal noise was asked for.
 pub const NOISE_LEVEL: DecibelMilliwatts = DecibelMilliwatts(-20.0);
@@ -197,7 +197,7 @@ impl SceneSet {
 /// [`SceneSet::false_alarm`] of test set 1, 2 or 3, or of another set.
 pub fn false_alarm(test_set: Option<usize>) -> f64 {
     let printed = test_set.and_then(|set| PRINTED_EXPERIMENT_2.get(set.wrapping_sub(1)));
-    printed.map_or(FALSE_ALARM_ELSEWHERE, |p| p.false_alarm)
+    printed.map_or(UNPRINTED_FALSE_ALARM_RATE, |p| p.false_alarm)
 }
 
 /// The set's name in rows. A folder that is called like a kind is "./kind".

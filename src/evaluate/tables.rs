@@ -48,15 +48,15 @@ pub const PRINTED_EXPERIMENT_2: [Printed; 3] = [
 ];
 
 /// Largest ratio to the least SE that counts as near the best in [`part_near_best`].
-pub const NEAR_BEST: f64 = 1.2;
+pub const MAX_NEAR_BEST_RATIO: f64 = 1.2;
 
-/// Part of the scenes on which the SE of `method` is at most [`NEAR_BEST`] times the least SE of the other methods; `None` where no scene has
+/// Part of the scenes on which the SE of `method` is at most [`MAX_NEAR_BEST_RATIO`] times the least SE of the other methods; `None` where no scene has
 /// another method's row. `rows` are those of one set.
 pub fn part_near_best(rows: &[&Row], method: &str) -> Option<f64> {
     let is_near = |row: &&&Row| {
         let others = rows.iter().filter(|r| (r.seed, r.index) == (row.seed, row.index) && r.method != method);
         let least = others.map(|r| r.squared_error).reduce(f64::min)?;
-        Some(row.squared_error <= NEAR_BEST * least)
+        Some(row.squared_error <= MAX_NEAR_BEST_RATIO * least)
     };
     let near: Vec<bool> = rows.iter().filter(|row| row.method == method).filter_map(|row| is_near(&row)).collect();
     (!near.is_empty()).then(|| near.iter().filter(|n| **n).count() as f64 / near.len() as f64)

@@ -4,7 +4,7 @@ use super::echoes::{self, EchoCounts, EchoTally};
 use super::rows::Row;
 use super::verdict::{Footprints, ObjectVerdict, OutputVerdicts};
 use super::{Metrics, Roc, Target, part_within, squared_doubt, squared_error};
-use crate::maps::cfar::{Cfar, CfarError, DETECTED};
+use crate::maps::cfar::{Cfar, CfarError, DETECTION_THRESHOLD};
 use crate::maps::{self, Aperture, LambdaScale, LogMap, Normalisation, RangeAngleMap};
 use crate::platform::Instant;
 use crate::radar::{BuiltArray, Radar};
@@ -127,7 +127,7 @@ impl Trial {
     pub fn cfar_metrics(&self, answer: &TimedAnswer, cfar: &Cfar) -> Result<Metrics, CfarError> {
         let detected = |map: &RangeAngleMap| Ok(cfar.detect_lambda(map, self.scale)?.as_map());
         let (target, output) = (detected(&self.target)?, detected(&answer.found.lambda)?);
-        let by_cfar = Metrics::of_echoes(!self.scene.is_silent(), &target, &output, DETECTED);
+        let by_cfar = Metrics::of_echoes(!self.scene.is_silent(), &target, &output, DETECTION_THRESHOLD);
         Ok(Metrics { squared_error: squared_error(&self.target, &answer.found.lambda), ..by_cfar })
     }
 

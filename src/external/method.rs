@@ -14,9 +14,9 @@ use std::time::Duration;
 
 const USUAL_ETA: f32 = 0.9;
 
-const LONGEST_NAME: usize = 40;
+const MAX_NAME_CHARACTERS: usize = 40;
 
-const LONGEST_TEXT: usize = 400;
+const MAX_TEXT_CHARACTERS: usize = 400;
 
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
@@ -75,20 +75,20 @@ fn greeted(process: &mut Process, task: &Task, limit: Duration) -> Result<Answer
 fn who(line: AnswerHeader) -> Result<(MethodInfo, Option<Weights>), String> {
     let AnswerHeader { name, description, told, weights, eta, .. } = line;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_plain) {
+    if name.is_empty() || name.len() > MAX_NAME_CHARACTERS || !name.chars().all(is_plain) {
         let shown = name.escape_debug();
         return Err(format!(
-            "its name is \"{shown}\"; expected 1 to {LONGEST_NAME} letters, digits, \"-\", \"_\" or \".\""
+            "its name is \"{shown}\"; expected 1 to {MAX_NAME_CHARACTERS} letters, digits, \"-\", \"_\" or \".\""
         ));
     }
     let eta = eta.unwrap_or(USUAL_ETA);
     check_eta(eta)?;
-    if weights.len() > LONGEST_NAME || !weights.chars().all(|c| c.is_ascii_hexdigit()) {
+    if weights.len() > MAX_NAME_CHARACTERS || !weights.chars().all(|c| c.is_ascii_hexdigit()) {
         return Err(format!("its weights are \"{}\"; expected hexadecimal digits", weights.escape_debug()));
     }
     let text = |text: String, otherwise: &'static str| match text.trim() {
         "" => otherwise,
-        text => &*text.chars().take(LONGEST_TEXT).collect::<String>().leak(),
+        text => &*text.chars().take(MAX_TEXT_CHARACTERS).collect::<String>().leak(),
     };
     let info = MethodInfo {
         name: name.leak(),
@@ -195,7 +195,7 @@ impl Reconstructor for ExternalMethod {
         }
         let answer = asked.map_err(failed)?;
         if let Some(error) = &answer.line.error {
-            return Err(self.unusable(error.chars().take(LONGEST_TEXT).collect()));
+            return Err(self.unusable(error.chars().take(MAX_TEXT_CHARACTERS).collect()));
         }
         self.read(&answer, radar, request).map_err(|why| {
             let words = state.process.as_ref().map(|p| p.with_last_words(why.clone(), Duration::ZERO));

@@ -14,9 +14,9 @@ use std::time::Duration;
 
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
-const LAST_WORDS: Duration = Duration::from_millis(500);
+const STDERR_TIMEOUT: Duration = Duration::from_millis(500);
 
-const FAREWELL: Duration = Duration::from_millis(500);
+const EXIT_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Longest array of an answer before the first question has set a limit, bytes.
 const MAX_UNASKED_BYTES: u64 = 1 << 20;
@@ -133,14 +133,14 @@ impl Process {
                     return Ok(answer);
                 }
                 Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => {
-                    let ended = match self.end_within(LAST_WORDS) {
+                    let ended = match self.end_within(STDERR_TIMEOUT) {
                         Some(status) => format!("it ended ({status}) before it answered"),
                         None => "it closed its standard output before it answered".to_owned(),
                     };
-                    return Err(ProcessFailure::Broken(self.with_last_words(ended, LAST_WORDS)));
+                    return Err(ProcessFailure::Broken(self.with_last_words(ended, STDERR_TIMEOUT)));
                 }
                 Ok(Err(error)) => {
-                    return Err(ProcessFailure::Broken(self.with_last_words(error.to_string(), LAST_WORDS / 5)));
+                    return Err(ProcessFailure::Broken(self.with_last_words(error.to_string(), STDERR_TIMEOUT / 5)));
                 }
                 Err(RecvTimeoutError::Timeout) if self.since.elapsed() > limit => {
                     let hangs = format!("it gave no answer within {} s", limit.as_secs_f64());
@@ -180,7 +180,7 @@ impl Drop for Process {
         }
         self.questions = None;
         if self.pending == 0 {
-            self.end_within(FAREWELL);
+            self.end_within(EXIT_TIMEOUT);
         }
         #[cfg(unix)]
         {

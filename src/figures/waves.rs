@@ -46,15 +46,15 @@ pub fn range_profile(source: &SceneSource) -> Result<Sheet, FigureError> {
 }
 
 pub fn windows(_: &SceneSource) -> Result<Sheet, FigureError> {
-    const POINTS: usize = 64;
+    const WAVE_POINTS: usize = 64;
     const PADDED_LENGTH: usize = 4096;
     let strokes = [Stroke::Solid, Stroke::Dashed, Stroke::Solid, Stroke::Dashed];
     let spectrum = Spectrum::new(PADDED_LENGTH);
     let (mut weights, mut transforms) = (Vec::new(), Vec::new());
     for (window, stroke) in WindowFunction::ALL.into_iter().zip(strokes) {
-        let values = window.weights(POINTS);
+        let values = window.weights(WAVE_POINTS);
         let lobes = decibels(spectrum.of(values.iter().map(|w| Complex64::from(*w))).into_iter().map(|v| v.norm()));
-        let bins = POINTS as f64 / PADDED_LENGTH as f64;
+        let bins = WAVE_POINTS as f64 / PADDED_LENGTH as f64;
         let shown =
             lobes.into_iter().take(PADDED_LENGTH / 4).enumerate().map(|(k, db)| (k as f64 * bins, db.max(-120.0)));
         weights

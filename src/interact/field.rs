@@ -77,7 +77,7 @@ pub struct SharedField {
     pub is_same: bool,
 }
 
-const MOTION: &[Field] = &[Field::VelocityX, Field::VelocityY];
+const MOTION_FIELDS: &[Field] = &[Field::VelocityX, Field::VelocityY];
 
 impl Field {
     fn of_place(coordinates: Coordinates) -> &'static [Field] {
@@ -208,7 +208,7 @@ fn size(metres: f64) -> f64 {
 /// The fields that all `objects` have, in the order of a form.
 pub fn shared<'a>(objects: impl Iterator<Item = &'a Object> + Clone, coordinates: Coordinates) -> Vec<SharedField> {
     let Some(first) = objects.clone().next() else { return Vec::new() };
-    let fields = Field::of_place(coordinates).iter().chain(Field::of_kind(first)).chain(MOTION);
+    let fields = Field::of_place(coordinates).iter().chain(Field::of_kind(first)).chain(MOTION_FIELDS);
     let shared = |field: &Field| {
         let value = field.get(first)?;
         let mut is_same = true;

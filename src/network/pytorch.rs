@@ -12,13 +12,13 @@ const MAX_BYTES: u64 = 1 << 30;
 
 /// Keys under which programs keep a network's state beside an optimizer's and others; the first that a file has counts. `training` keeps the
 /// averaged weights, which it validates and ships, under `average`.
-const STATES: [&str; 6] = ["average", "model_state_dict", "state_dict", "model", "network", "net"];
-const DEEPEST_STATE: usize = 4;
+const STATE_KEYS: [&str; 6] = ["average", "model_state_dict", "state_dict", "model", "network", "net"];
+const MAX_STATE_DEPTH: usize = 4;
 /// Prefix that `DataParallel` adds to every name.
-const PARALLEL: &str = "module.";
+const PARALLEL_PREFIX: &str = "module.";
 
 /// The bytes of the weight file at `path` as safetensors: those of a safetensors file as they are; those of a PyTorch checkpoint,
-/// which holds a `state_dict` by itself or under one of [`STATES`], translated. Names, shapes and types stay PyTorch's; tensors beside
+/// which holds a `state_dict` by itself or under one of [`STATE_KEYS`], translated. Names, shapes and types stay PyTorch's; tensors beside
 /// the state, such as an optimizer's, are not read.
 /// # Errors
 /// [`WeightsError`] when it can't be read, and when it is neither.
@@ -45,24 +45,27 @@ fn is_pytorch(bytes: &[u8]) -> bool {
 /// Prefix of the network's own tensors among `names`: "" for a bare `state_dict`, such as "model." for one beside others.
 fn state_prefix(names: &[&str]) -> String {
     let mut prefix = String::new();
-    for _ in 0..DEEPEST_STATE {
+    for _ in 0..MAX_STATE_DEPTH {
         let under = |state: &&&str| {
             let start = format!("{prefix}{state}.");
             names.iter().any(|name| name.starts_with(&start))
         };
-        match STATES.iter().find(under) {
+        match STATE_KEYS.iter().find(under) {
             Some(state) => prefix = format!("{prefix}{state}."),
             None => break,
         }
     }
     let mut own = names.iter().filter_map(|name| name.strip_prefix(prefix.as_str()));
-    if own.all(|name| name.starts_with(PARALLEL)) { prefix + PARALLEL } else { prefix }
+    if own.all(|name| name.starts_with(PARALLEL_PREFIX)) { prefix + PARALLEL_PREFIX } else { prefix }
 }
 
 fn translate(path: &Path) -> Result<Vec<u8>, String> {
     let mut tensors = PytorchReader::new(path).map_err(|e| e.to_string())?.into_tensors();
     if tensors.is_empty() {
-        return Err(format!("it holds no tensors; expected a state_dict, by itself or under {}", STATES.join(", ")));
+        return Err(format!(
+            "it holds no tensors; expected a state_dict, by itself or under {}",
+            STATE_KEYS.join(", ")
+        ));
     }
     let prefix = state_prefix(&tensors.keys().map(String::as_str).collect::<Vec<_>>());
     tensors.retain(|name, _| name.starts_with(&prefix));

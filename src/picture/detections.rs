@@ -21,7 +21,8 @@ pub enum CellVerdict {
 
 impl CellVerdict {
     /// The visible verdicts, in the order of a legend.
-    pub const SEEN: [CellVerdict; 4] = [CellVerdict::Hit, CellVerdict::Rim, CellVerdict::FalseAlarm, CellVerdict::Miss];
+    pub const VISIBLE_VERDICTS: [CellVerdict; 4] =
+        [CellVerdict::Hit, CellVerdict::Rim, CellVerdict::FalseAlarm, CellVerdict::Miss];
 
     /// The verdict on a cell, by whether the `target` and the `output` exceed their thresholds there; a rim counts as a false alarm.
     pub fn of(target: bool, output: bool) -> CellVerdict {
@@ -148,7 +149,7 @@ mod tests {
     #[test]
     fn outlines_contrast_under_common_colour_deficiencies() {
         for (name, vision) in &VISIONS {
-            let outlined = CellVerdict::SEEN.into_iter().filter(|kind| *kind != CellVerdict::Rim);
+            let outlined = CellVerdict::VISIBLE_VERDICTS.into_iter().filter(|kind| *kind != CellVerdict::Rim);
             for (kind, dark) in outlined.flat_map(|kind| [(kind, true), (kind, false)]) {
                 for beside in [kind.fill(dark), CellVerdict::Nothing.fill(dark)] {
                     let contrast = contrast(kind.outline(dark), beside, vision);

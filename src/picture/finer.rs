@@ -1,13 +1,13 @@
 //! Columns between those of a map of few elements, for the eye.
 
-use crate::radar::{FEW_COLUMNS, Radar};
+use crate::radar::{MIN_FINE_COLUMNS, Radar};
 use ndarray::{Array2, ArrayView2};
 
 const MIN_DRAWN_COLUMNS: usize = 256;
 
 /// `map`, `[range bins, columns]` as [`Radar::left_to_right`] has it, on 256 columns or more, over the directions of the drawn axis. Values between
 /// follow the cubic through the four columns around (Catmull and Rom, 1974), not below the least of the map; the last column is followed by the
-/// first, as the transform has it. Nothing more is resolved than before. `None` where the map has [`FEW_COLUMNS`] already, or one.
+/// first, as the transform has it. Nothing more is resolved than before. `None` where the map has [`MIN_FINE_COLUMNS`] already, or one.
 pub fn finer(radar: &Radar, map: ArrayView2<'_, f32>) -> Option<Array2<f32>> {
     let (rows, columns) = map.dim();
     if !is_few(radar, columns) {
@@ -27,7 +27,7 @@ pub fn finer(radar: &Radar, map: ArrayView2<'_, f32>) -> Option<Array2<f32>> {
 }
 
 /// Cells as they are, from left to right, where the axis has their directions: of few on two columns each, so that the outermost one stands
-/// half at either edge. `None` where the map has [`FEW_COLUMNS`] already, or one.
+/// half at either edge. `None` where the map has [`MIN_FINE_COLUMNS`] already, or one.
 pub fn in_place<T: Copy>(radar: &Radar, cells: ArrayView2<'_, T>) -> Option<Array2<T>> {
     let (rows, columns) = cells.dim();
     if !is_few(radar, columns) {
@@ -40,7 +40,7 @@ pub fn in_place<T: Copy>(radar: &Radar, cells: ArrayView2<'_, T>) -> Option<Arra
 
 /// Whether a map is the radar's, and of few columns.
 fn is_few(radar: &Radar, columns: usize) -> bool {
-    columns == radar.elements && (2..FEW_COLUMNS).contains(&columns)
+    columns == radar.elements && (2..MIN_FINE_COLUMNS).contains(&columns)
 }
 
 #[cfg(test)]

@@ -8,12 +8,12 @@ use super::Radar;
 use ndarray::{Array2, ArrayView2, Axis};
 
 /// Number of columns from which a map is fine enough for the eye, and half a column is neglected.
-pub const FEW_COLUMNS: usize = 128;
+pub const MIN_FINE_COLUMNS: usize = 128;
 
 impl Radar {
     /// Distance of the middle of column 0 from the map's edge, columns.
     fn middle_of_first_column(&self) -> f64 {
-        let is_halved = self.elements < FEW_COLUMNS && self.elements.is_multiple_of(2);
+        let is_halved = self.elements < MIN_FINE_COLUMNS && self.elements.is_multiple_of(2);
         if is_halved { 0.0 } else { 0.5 }
     }
 

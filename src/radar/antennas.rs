@@ -16,13 +16,13 @@ const MAX_ELEMENTS: usize = 65536;
 const MAX_OFF_LINE_PART: f64 = 0.01;
 
 /// Midpoints nearer to each other than this fraction of their mean distance count as one place.
-const ONE_PLACE: f64 = 0.02;
+const MAX_SAME_PLACE_PART: f64 = 0.02;
 
 /// Largest number of spacings in the smallest distance of midpoints. Distances of 2 and 3 spacings alone need 2.
 const MAX_SPACING_DIVISIONS: usize = 4;
 
 /// The line is moved where its middle lies farther from x = 0 than this fraction of the spacing.
-const CENTRED: f64 = 1e-6;
+const MAX_OFF_CENTRE_PART: f64 = 1e-6;
 
 /// Transmitters and receivers whose pairs form a uniform line of virtual elements along x, centred on x = 0.
 ///
@@ -74,7 +74,8 @@ impl Midpoints {
     /// The largest spacing of a line on which all midpoints stand.
     fn spacing_metres(&self) -> Result<f64, String> {
         let mean = self.length_metres() / (self.x_metres.len() - 1) as f64;
-        let apart = self.x_metres.windows(2).map(|two| two[1] - two[0]).filter(|apart| *apart > ONE_PLACE * mean);
+        let apart =
+            self.x_metres.windows(2).map(|two| two[1] - two[0]).filter(|apart| *apart > MAX_SAME_PLACE_PART * mean);
         let smallest = apart.fold(f64::INFINITY, f64::min);
         if !(smallest.is_finite() && mean > 0.0) {
             return Err("all pairs have one midpoint; expected a line of them".to_owned());
@@ -137,7 +138,7 @@ impl Antennas {
             *at = at.map_or(Some(*pair), |first| Some(first.min(*pair)));
         }
         let middle = (midpoints.x_metres[0] + midpoints.x_metres[midpoints.x_metres.len() - 1]) / 2.0;
-        let shift = if middle.abs() <= CENTRED * spacing_metres { 0.0 } else { middle };
+        let shift = if middle.abs() <= MAX_OFF_CENTRE_PART * spacing_metres { 0.0 } else { middle };
         let moved = |places: &[f64]| places.iter().map(|x| x - shift).collect();
         Ok(Antennas {
             transmitter_x_metres: moved(transmitter_x_metres),

@@ -5,7 +5,7 @@ use super::{BuiltArray, Decibels, ElementError};
 const COLUMNS: [&str; 4] = ["place in mm", "forward in mm", "gain in dB", "phase in degrees"];
 
 /// Characters of a cell in an error message.
-const SHOWN: usize = 20;
+const MAX_SHOWN_CHARACTERS: usize = 20;
 
 impl BuiltArray {
     /// The elements that `text` describes: a line an element, the leftmost first. A line holds up to four numbers, separated by
@@ -45,7 +45,7 @@ fn element(line: usize, text: &str) -> Result<ElementError, String> {
     for ((number, cell), column) in numbers.iter_mut().zip(cells).zip(COLUMNS) {
         if !cell.is_empty() {
             let parsed = cell.parse::<f64>().ok().filter(|v| v.is_finite());
-            let shown: String = cell.chars().take(SHOWN).collect();
+            let shown: String = cell.chars().take(MAX_SHOWN_CHARACTERS).collect();
             let problem = || format!("line {line}, {column}: \"{shown}\" is no number");
             *number = parsed.ok_or_else(problem)?;
         }

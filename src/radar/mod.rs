@@ -21,7 +21,7 @@ mod units;
 mod wave;
 mod window;
 
-pub use across::FEW_COLUMNS;
+pub use across::MIN_FINE_COLUMNS;
 pub use antennas::Antennas;
 pub use budget::{LinkBudget, LinkFigures, Pattern};
 pub use convention::Convention;

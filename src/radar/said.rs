@@ -44,7 +44,7 @@ pub(super) struct Said {
 }
 
 /// Largest relative difference between a spacing and that of the pairs beside it in a text.
-const SAME_SPACING: f64 = 1e-3;
+const MAX_SPACING_DIFFERENCE: f64 = 1e-3;
 
 impl From<Radar> for Said {
     fn from(radar: Radar) -> Self {
@@ -146,7 +146,7 @@ impl Said {
                 "radar.elements is {elements}; the antennas make {pairs} places: expected that, or no such key"
             ));
         }
-        let is_alike = |said: &f64| (said / spacing - 1.0).abs() < SAME_SPACING;
+        let is_alike = |said: &f64| (said / spacing - 1.0).abs() < MAX_SPACING_DIFFERENCE;
         if let Some(said) = self.element_spacing_metres.filter(|said| !is_alike(said)) {
             return Err(format!(
                 "radar.element_spacing_metres is {said}; the midpoints of the antennas' pairs stand {spacing} m apart: expected that, or no such key"

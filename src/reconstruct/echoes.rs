@@ -10,7 +10,7 @@ use crate::scene::Reflector;
 use crate::signal::path::PairBlocks;
 use crate::signal::phase::EchoModel;
 use crate::signal::simd::{ComplexLanes, Kernel, LANES_F64, Simd};
-use crate::signal::split::{CHUNK, Factors, STRIDE, add_products, fill_factors};
+use crate::signal::split::{CHUNK_REFLECTORS, Factors, ROW_SAMPLES, add_products, fill_factors};
 use crate::signal::{BeatSignal, TwoEnds};
 use ndarray::Axis;
 use num_complex::Complex64;
@@ -64,16 +64,16 @@ impl Kernel for Sum<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let mut factors = vec![Factors::<f64, W>::new(self.samples); CHUNK];
-        let mut sum = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
-        for chunk in self.found.chunks(CHUNK) {
+        let mut factors = vec![Factors::<f64, W>::new(self.samples); CHUNK_REFLECTORS];
+        let mut sum = vec![ComplexLanes::zero(); factors[0].rows.len() * ROW_SAMPLES];
+        for chunk in self.found.chunks(CHUNK_REFLECTORS) {
             for (f, Gained { reflector, gain }) in factors.iter_mut().zip(chunk) {
                 fill_factors::<f64, W, FMA>(self.model, self.pairs, reflector, &mut f.rows, &mut f.columns);
                 for row in &mut f.rows {
                     *row = row.times::<FMA>(ComplexLanes::splat(*gain));
                 }
             }
-            let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());
+            let products: [_; CHUNK_REFLECTORS] = std::array::from_fn(|i| factors[i].product());
             add_products::<f64, W, FMA>(&products[..chunk.len()], &mut sum);
         }
         sum

@@ -11,19 +11,19 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Level below its strongest to which a map's peaks are listed.
-const SPAN: Decibels = Decibels(20.0);
+const MAX_PEAK_DEPTH: Decibels = Decibels(20.0);
 
 /// Dynamic range of the map in which peaks are searched.
 const MAP_RANGE: Decibels = Decibels(60.0);
 
-const MOST_PEAKS: usize = 256;
+const MAX_LISTED_PEAKS: usize = 256;
 
 /// Most elements of an array whose columns are so wide that the fringes between its two ends fall between them: a peak's direction is then
 /// searched between the columns.
-pub const FEW_ELEMENTS: usize = 128;
+pub const MAX_COARSE_ELEMENTS: usize = 128;
 
 /// Distance within which peaks of one range bin are one, as a part of a column.
-const ONE_PEAK: f64 = 0.5;
+const MAX_SAME_PEAK_COLUMNS: f64 = 0.5;
 
 /// Reconstructs, and lists the detections of [`find`].
 /// # Errors
@@ -54,7 +54,7 @@ pub fn find(
     let normalisation = Normalisation::DynamicRange(MAP_RANGE);
     // Beside another layout the ends have no samples.
     let heard = request.layout_samples.is_none().then_some(ends);
-    if radar.elements <= FEW_ELEMENTS && !method.lists_few_elements() {
+    if radar.elements <= MAX_COARSE_ELEMENTS && !method.lists_few_elements() {
         Ok(Vec::new())
     } else if !answer.reflectors.is_empty() {
         Ok(answer.detections(radar))
@@ -68,7 +68,7 @@ pub fn find(
 
 fn found_in_map(radar: &Radar, ends: Option<&TwoEnds>, answer: &Reconstruction) -> Vec<Detection> {
     let decibels = answer.lambda.lambda.mapv(|v| (f64::from(v) - 1.0) * MAP_RANGE.0);
-    let peaks = peaks(decibels.view(), SPAN.0, MOST_PEAKS);
+    let peaks = peaks(decibels.view(), MAX_PEAK_DEPTH.0, MAX_LISTED_PEAKS);
     let strongest = peaks.first().map_or(0.0, |p| p.value);
     let place = |column: f64| radar.cos_of_column(column).clamp(-1.0, 1.0);
     let found = peaks.into_iter().map(|p| Detection {
@@ -77,7 +77,7 @@ fn found_in_map(radar: &Radar, ends: Option<&TwoEnds>, answer: &Reconstruction) 
         relative_power: Decibels(p.value - strongest),
         confidence: None,
     });
-    match ends.filter(|_| radar.elements <= FEW_ELEMENTS) {
+    match ends.filter(|_| radar.elements <= MAX_COARSE_ELEMENTS) {
         Some(ends) => between_columns(radar, ends, found),
         None => found.collect(),
     }
@@ -93,7 +93,7 @@ fn between_columns(radar: &Radar, ends: &TwoEnds, peaks: impl Iterator<Item = De
         let (cos_theta, power) = beam.strongest_near(peak.range_metres, peak.cos_theta, 1.5 * column);
         let is_new = |(_, f): &(f64, Detection)| {
             let bins = (f.range_metres - peak.range_metres).abs() / radar.range_resolution_metres();
-            bins > 1.5 || (f.cos_theta - cos_theta).abs() > ONE_PEAK * column
+            bins > 1.5 || (f.cos_theta - cos_theta).abs() > MAX_SAME_PEAK_COLUMNS * column
         };
         if found.iter().all(is_new) {
             found.push((power, Detection { cos_theta, ..peak }));
@@ -103,7 +103,7 @@ fn between_columns(radar: &Radar, ends: &TwoEnds, peaks: impl Iterator<Item = De
     let strongest = found.first().map_or(0.0, |(power, _)| *power).max(f64::MIN_POSITIVE);
     let level = |power: f64| Decibels(10.0 * (power / strongest).max(f64::MIN_POSITIVE).log10());
     let all = found.into_iter().map(|(power, f)| Detection { relative_power: level(power), ..f });
-    all.filter(|f| f.relative_power.0 > -SPAN.0).collect()
+    all.filter(|f| f.relative_power.0 > -MAX_PEAK_DEPTH.0).collect()
 }
 
 const BEAM_STEPS: i32 = 48;

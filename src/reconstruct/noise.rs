@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// Largest shape of the Kaiser window: side lobes 300 dB down, below the rounding of f64.
-const MOST_BETA: f64 = 32.0;
+const MAX_KAISER_BETA: f64 = 32.0;
 
 /// Range bins for each bin of half the window's main lobe, so that a few reflectors leave bins of noise alone.
 const BINS_PER_LOBE: f64 = 16.0;
@@ -16,10 +16,10 @@ const BINS_PER_LOBE: f64 = 16.0;
 const QUIET_PART: f64 = 0.2;
 
 /// Least ratio of the quietest bins' power to the quantile of [`QUIET_PART`] that counts as white noise.
-const EVEN: f64 = 0.03;
+const MIN_QUIET_POWER_RATIO: f64 = 0.03;
 
 /// Noise that is assumed where too few samples separate it from side lobes, as a part of the samples' mean power: 60 dB down.
-const ASSUMED: f64 = 1e-6;
+const ASSUMED_NOISE_PART: f64 = 1e-6;
 
 pub(super) fn noise_variance<'a>(radar: &Radar, channels: impl Iterator<Item = ArrayView1<'a, Complex64>>) -> f64 {
     measured_noise(radar, channels).variance
@@ -64,14 +64,14 @@ pub(super) fn measured_noise<'a>(
     // The mean of `count` exponential powers is nearly normal with this relative spread; its 20 % quantile is 0.84 below.
     let heard = quantile / (count * power) / (1.0 - 0.84 / f64::sqrt(count)).max(0.3);
     let is_side_lobe = quantile < strongest * side_lobe_part(beta) * 1e2;
-    let variance = if is_side_lobe { heard.min(energy / count * ASSUMED) } else { heard };
-    MeasuredNoise { variance, is_even: quietest > EVEN * quantile }
+    let variance = if is_side_lobe { heard.min(energy / count * ASSUMED_NOISE_PART) } else { heard };
+    MeasuredNoise { variance, is_even: quietest > MIN_QUIET_POWER_RATIO * quantile }
 }
 
 /// Shape of the window for chirps of `samples`: the lower its side lobes, the wider its main lobe.
 fn beta(samples: usize) -> f64 {
     let lobe_bins = samples as f64 / BINS_PER_LOBE;
-    (PI * (lobe_bins * lobe_bins - 1.0).max(0.0).sqrt()).min(MOST_BETA)
+    (PI * (lobe_bins * lobe_bins - 1.0).max(0.0).sqrt()).min(MAX_KAISER_BETA)
 }
 
 /// Power of the Kaiser window's highest side lobe, as a part of its main lobe's (the design formula of Kaiser's paper).

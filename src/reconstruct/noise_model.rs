@@ -16,7 +16,7 @@ pub(crate) fn ends_noise_variance(radar: &Radar, ends: &TwoEnds, noise: NoisePri
 /// The noise model of a reconstruction's samples.
 #[derive(Debug, Clone, Copy)]
 pub struct NoiseModel {
-    /// Expected variance a sample, which replaces a measured one that is more than [`MARGIN`] times as large and uneven.
+    /// Expected variance a sample, which replaces a measured one that is more than [`ROUNDING_MARGIN`] times as large and uneven.
     expected: f64,
     /// Variance a sample, where the request gives it.
     known: Option<f64>,
@@ -60,7 +60,7 @@ impl NoiseModel {
             return variance;
         }
         let measured = measured_noise(radar, channels);
-        let is_echo = !measured.is_even && measured.variance > MARGIN * self.expected;
+        let is_echo = !measured.is_even && measured.variance > ROUNDING_MARGIN * self.expected;
         if is_echo { self.expected } else { measured.variance }
     }
 }
@@ -72,7 +72,7 @@ pub(super) fn range_energy(radar: &Radar, channels: ArrayView2<'_, Complex64>) -
 }
 
 /// Ratio of the possible rounding to the expected one: echoes from beyond the maximum range have more rounding than their range bin suggests.
-const MARGIN: f64 = 3.0;
+const ROUNDING_MARGIN: f64 = 3.0;
 
 #[cfg(test)]
 mod tests {

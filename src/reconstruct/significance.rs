@@ -4,7 +4,7 @@
 //! that is measured in the samples, in two ways, and both only raise the threshold:
 //!
 //! * Of the samples: where no cell of either end's own range-angle map exceeds the level that the largest of so many cells of white noise
-//!   exceeds with probability [`CHANCE`], they hold noise alone, and the answer's threshold is 1, which no cell exceeds. This is independent of
+//!   exceeds with probability [`FALSE_ALARM_PROBABILITY`], they hold noise alone, and the answer's threshold is 1, which no cell exceeds. This is independent of
 //!   the method: it holds for pseudo-spectra and networks as for maps of power.
 //! * Of the map: a method that knows the level of noise in its map gives it ([`Reconstruction::least_eta`]), and no threshold lies lower.
 
@@ -16,14 +16,14 @@ use crate::signal::simd::Simd;
 use num_complex::Complex64;
 
 /// Probability that a map of noise alone has a cell above the level.
-const CHANCE: f64 = 1e-6;
+const FALSE_ALARM_PROBABILITY: f64 = 1e-6;
 
 /// Threshold that no cell exceeds.
-pub(super) const NOTHING: f32 = 1.0;
+pub(super) const UNREACHABLE_ETA: f32 = 1.0;
 
-/// Ratio of the strongest of `cells` noise cells to their mean, exceeded with probability [`CHANCE`]: powers of complex normal noise are exponential.
+/// Ratio of the strongest of `cells` noise cells to their mean, exceeded with probability [`FALSE_ALARM_PROBABILITY`]: powers of complex normal noise are exponential.
 fn times_the_mean(cells: usize) -> f64 {
-    (cells.max(1) as f64 / CHANCE).ln()
+    (cells.max(1) as f64 / FALSE_ALARM_PROBABILITY).ln()
 }
 
 /// Mean square of a noise cell of the whole array's map for noise of variance 1 a sample.
@@ -32,17 +32,17 @@ pub(super) fn cell_noise(radar: &Radar) -> f64 {
     mean(radar.samples) * mean(radar.elements)
 }
 
-/// Decades of amplitude that a cell of the whole array's map of noise of this variance a sample exceeds with probability [`CHANCE`] only.
+/// Decades of amplitude that a cell of the whole array's map of noise of this variance a sample exceeds with probability [`FALSE_ALARM_PROBABILITY`] only.
 fn noise_decades(radar: &Radar, noise_variance: f64) -> f64 {
     decades_above_cells(noise_variance * cell_noise(radar), radar.samples * radar.elements)
 }
 
-/// Decades of amplitude that a map exceeds with probability [`CHANCE`] only, whose noise cells have this mean power.
+/// Decades of amplitude that a map exceeds with probability [`FALSE_ALARM_PROBABILITY`] only, whose noise cells have this mean power.
 pub(super) fn decades_above_cells(cell_noise: f64, cells: usize) -> f64 {
     0.5 * (cell_noise * times_the_mean(cells)).max(f64::MIN_POSITIVE).log10()
 }
 
-/// Decades from the mean of the logarithm of `cells` noise cells to the level that one of them exceeds with probability [`CHANCE`] only. The
+/// Decades from the mean of the logarithm of `cells` noise cells to the level that one of them exceeds with probability [`FALSE_ALARM_PROBABILITY`] only. The
 /// mean of log10 |n| lies 0.125 decades below the root mean square of complex normal n.
 #[cfg(feature = "live")]
 pub(crate) fn level_above_mean_decades(cells: usize) -> f64 {
@@ -93,7 +93,7 @@ pub(super) fn tested(
 ) -> Reconstruction {
     let found_nothing = found.reflectors.is_empty() && is_flat(&found);
     if found_nothing || !holds_echo(radar, ends, noise_variance) {
-        found.eta = Some(NOTHING);
+        found.eta = Some(UNREACHABLE_ETA);
         return found;
     }
     let eta = found.eta.unwrap_or(own_eta);

@@ -8,7 +8,7 @@ use super::geometry::V;
 use super::{AntennaPlaces, EchoKind, PathEcho, Wave};
 
 /// Sign of a further reflection: -1 for E along z, +1 for H along z.
-const BOUNCE: f64 = -1.0;
+const BOUNCE_SIGN: f64 = -1.0;
 
 /// A direction that misses the second arm's line by less is taken to be parallel to it, metres.
 const MIN_DISTANCE_METRES: f64 = 1e-9;
@@ -39,7 +39,8 @@ fn one_order(wave: &Wave, antennas: &AntennaPlaces, first: &Face, second: &Face)
     let hits = [first.from, first.place(first.length_metres)].map(hit);
     let clip = |u: f64| u.clamp(0.0, second.length_metres);
     let lit = if is_open { [clip(hits[0].min(hits[1])), clip(hits[0].max(hits[1]))] } else { [0.0, 0.0] };
-    let both = Face { is_two_sided: false, reflectivity: BOUNCE * first.reflectivity * second.reflectivity, ..*second };
+    let both =
+        Face { is_two_sided: false, reflectivity: BOUNCE_SIGN * first.reflectivity * second.reflectivity, ..*second };
     let seen = AntennaPlaces { transmitter_metres: image.into(), ..*antennas };
     both.lit_echoes(wave, &seen, lit).map(|echo| PathEcho { kind: EchoKind::DoubleBounce, ..echo })
 }

@@ -13,10 +13,10 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Between these magnitudes of the Fresnel parameter the ripple beside an obstacle is faded out: farther out it would belong to another range.
-const FADE_PARAMETERS: [f64; 2] = [3.0, FADED];
+const FADE_PARAMETERS: [f64; 2] = [3.0, MAX_FRESNEL_PARAMETER];
 
 /// Magnitude of the Fresnel parameter from which on an edge beside the path has no effect.
-pub(super) const FADED: f64 = 6.0;
+pub(super) const MAX_FRESNEL_PARAMETER: f64 = 6.0;
 
 /// Most corners for which no memory is allocated.
 const MAX_INLINE_CORNERS: usize = 16;
@@ -48,7 +48,7 @@ pub struct Passage {
 }
 
 impl Passage {
-    const CLEAR: Passage = Passage { factor: Complex64::new(1.0, 0.0), detour_metres: 0.0, part: 0.0 };
+    const CLEAR_PASSAGE: Passage = Passage { factor: Complex64::new(1.0, 0.0), detour_metres: 0.0, part: 0.0 };
 }
 
 impl Obstacle {
@@ -72,11 +72,11 @@ impl Obstacle {
         let to_centre = self.centre - antenna;
         let (along, across) = (to_centre.dot(unit), unit.cross(to_centre));
         if along + self.radius_metres < 0.0 || along - self.radius_metres > full || full == 0.0 {
-            return Passage::CLEAR;
+            return Passage::CLEAR_PASSAGE;
         }
         let beside = across.abs() - self.radius_metres;
         if beside > 0.0 && (beside * beside >= faded_square || ray.has_faded(along, self.radius_metres, beside)) {
-            return Passage::CLEAR;
+            return Passage::CLEAR_PASSAGE;
         }
         let mut edges = Edges::none();
         match &self.shape {
@@ -203,7 +203,7 @@ impl Edges {
     fn passage(&self, ray: &Ray) -> Passage {
         let Edges { max_parameter, min_parameter, nearest: (_, l) } = *self;
         if max_parameter < min_parameter {
-            return Passage::CLEAR;
+            return Passage::CLEAR_PASSAGE;
         }
         let part = l / (ray.whole - l).max(1e-9);
         if max_parameter > 0.0 && min_parameter < 0.0 {
@@ -216,7 +216,7 @@ impl Edges {
         let near = max_parameter.abs().min(min_parameter.abs());
         let remaining = ((FADE_PARAMETERS[1] - near) / (FADE_PARAMETERS[1] - FADE_PARAMETERS[0])).clamp(0.0, 1.0);
         if remaining == 0.0 {
-            return Passage::CLEAR;
+            return Passage::CLEAR_PASSAGE;
         }
         let fade = remaining * remaining * (3.0 - 2.0 * remaining);
         let factor = 1.0 + (passing(max_parameter) + passing(-min_parameter) - 1.0) * fade;
@@ -238,7 +238,7 @@ pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlac
     for obstacle in obstacles {
         let passed = obstacle.passage(&there);
         let passed_back = back.as_ref().map(|path| obstacle.passage(path));
-        if passed != Passage::CLEAR || passed_back.is_some_and(|back| back != Passage::CLEAR) {
+        if passed != Passage::CLEAR_PASSAGE || passed_back.is_some_and(|back| back != Passage::CLEAR_PASSAGE) {
             echo = diffracted(passed, passed_back, echo);
         }
     }

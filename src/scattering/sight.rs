@@ -1,12 +1,12 @@
 //! Choice of the bodies that can shadow an object at all: those near enough to the paths between the array and the object to change its echoes.
 //!
 //! All ways together are the convex hull of the array and of the object. A body has no effect on a way, to the last bit, where the detour over
-//! each of its corners is so long that its ripple has faded ([`FADED`]). A detour of a given length is an ellipse around the ends of the way, so
+//! each of its corners is so long that its ripple has faded ([`MAX_FRESNEL_PARAMETER`]). A detour of a given length is an ellipse around the ends of the way, so
 //! bodies farther from the hull than the width of that ellipse are left out.
 
 use super::Wave;
 use super::geometry::V;
-use super::shadow::FADED;
+use super::shadow::MAX_FRESNEL_PARAMETER;
 use crate::radar::{BuiltArray, Radar};
 use crate::scene::{Object, Shape};
 
@@ -50,7 +50,7 @@ impl Array {
         let [left, hind, right, fore] = places.fold([left, hind, right, fore], |[left, hind, right, fore], [x, y]| {
             [left.min(x), hind.min(y), right.max(x), fore.max(y)]
         });
-        let faded = FADED * FADED / Wave::of(radar).radians_per_metre;
+        let faded = MAX_FRESNEL_PARAMETER * MAX_FRESNEL_PARAMETER / Wave::of(radar).radians_per_metre;
         Array { corners: [V(left, hind), V(right, hind), V(right, fore), V(left, fore)], faded }
     }
 

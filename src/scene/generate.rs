@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn named_kinds_keep_to_the_field() {
         let radar = Radar::default();
-        for kind in Kind::VARIED.into_iter().chain(Kind::IRREGULAR) {
+        for kind in Kind::VARIED_KINDS.into_iter().chain(Kind::IRREGULAR_KINDS) {
             for (number, objects) in scenes(kind).into_iter().enumerate() {
                 let scene = Scene { objects, ..Scene::default() };
                 scene.validate(&radar).unwrap();
@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn every_scene_of_bodies_can_be_simulated() {
-        for kind in Kind::THINGS {
+        for kind in Kind::BODY_KINDS {
             let mut bodies = 0;
             for (number, objects) in scenes(kind).into_iter().enumerate() {
                 let scene = Scene { objects, ..Scene::default() };

@@ -31,7 +31,7 @@ pub const MAX_END_ELEMENTS: usize = 4;
 const RESTART_SAMPLES: usize = 128;
 
 /// Number of independent phasor recurrences, which hide the latency of a multiplication.
-const LANES: usize = 8;
+const PHASOR_LANES: usize = 8;
 
 /// Noise streams of one chirp: the largest number of elements of a radar.
 const STREAMS_PER_CHIRP: usize = 65536;
@@ -227,7 +227,7 @@ impl Motion<'_> {
         let carrier = self.radar.carrier_turns_per_metre() * per_sample;
         let beat = self.radar.beat_turns_per_metre(1.0) * per_sample;
         let step = echo.turns_at(1) - echo.turns_at(0) + carrier;
-        let lanes = LANES as f64;
+        let lanes = PHASOR_LANES as f64;
         // Growth of the phase's step from one sample, lane or vector to the next.
         let [bend, leap_over_lane, leap_over_vector] =
             [1.0, lanes, lanes * lanes].map(|times| Complex64::cis(TAU * 2.0 * beat * times));
@@ -235,15 +235,15 @@ impl Motion<'_> {
             let n = (block * RESTART_SAMPLES) as f64;
             let turns = echo.turns_at(block * RESTART_SAMPLES) + (carrier + beat * n) * n;
             let mut turn = Complex64::cis(TAU * (step + beat * (2.0 * n + 1.0)));
-            let mut phasors = [gain * Complex64::from_polar(echo.amplitude, TAU * turns); LANES];
+            let mut phasors = [gain * Complex64::from_polar(echo.amplitude, TAU * turns); PHASOR_LANES];
             // From each sample to that of its lane in the next vector.
-            let mut leaps = [Complex64::cis(TAU * lanes * (step + beat * (2.0 * n + lanes))); LANES];
-            for lane in 1..LANES {
+            let mut leaps = [Complex64::cis(TAU * lanes * (step + beat * (2.0 * n + lanes))); PHASOR_LANES];
+            for lane in 1..PHASOR_LANES {
                 phasors[lane] = phasors[lane - 1] * turn;
                 turn *= bend;
                 leaps[lane] = leaps[lane - 1] * leap_over_lane;
             }
-            for vector in samples.chunks_mut(LANES) {
+            for vector in samples.chunks_mut(PHASOR_LANES) {
                 for (lane, sample) in vector.iter_mut().enumerate() {
                     *sample += phasors[lane];
                     phasors[lane] *= leaps[lane];

@@ -39,9 +39,9 @@ pub enum Floor {
 }
 
 /// Signal-to-noise ratios that a floor may have, dB.
-pub const SNR_DECIBELS: std::ops::RangeInclusive<f64> = -100.0..=300.0;
+pub const SNR_RANGE_DECIBELS: std::ops::RangeInclusive<f64> = -100.0..=300.0;
 /// Levels that a floor may have, dBm.
-pub const LEVEL_DECIBEL_MILLIWATTS: std::ops::RangeInclusive<f64> = -300.0..=200.0;
+pub const LEVEL_RANGE_DBM: std::ops::RangeInclusive<f64> = -300.0..=200.0;
 
 impl Floor {
     /// Variance of the floor's noise where its level does not depend on the scene.
@@ -82,9 +82,9 @@ impl FromStr for Floor {
             ("thesis", _) => Some(Floor::Thesis),
             ("exact", _) => Some(Floor::Exact),
             ("thermal", _) => Some(Floor::Thermal),
-            (_, Some(("snr", db))) => number(db, SNR_DECIBELS).map(|db| Floor::Snr(Decibels(db))),
+            (_, Some(("snr", db))) => number(db, SNR_RANGE_DECIBELS).map(|db| Floor::Snr(Decibels(db))),
             (_, Some(("dbm", level))) => {
-                number(level, LEVEL_DECIBEL_MILLIWATTS).map(|level| Floor::Level(DecibelMilliwatts(level)))
+                number(level, LEVEL_RANGE_DBM).map(|level| Floor::Level(DecibelMilliwatts(level)))
             }
             _ => None,
         };
@@ -232,8 +232,8 @@ pub fn add_noise_from(samples: &mut Array2<Complex64>, first_element: usize, var
 /// Distance from a positive normal `v` to the next f64 above it; 0 for 0.
 #[inline(always)]
 fn ulp(v: f64) -> f64 {
-    const EXPONENT: u64 = 0x7FF0_0000_0000_0000;
-    f64::from_bits(v.to_bits() & EXPONENT) * f64::EPSILON
+    const EXPONENT_BITS: u64 = 0x7FF0_0000_0000_0000;
+    f64::from_bits(v.to_bits() & EXPONENT_BITS) * f64::EPSILON
 }
 
 #[cfg(test)]
@@ -252,7 +252,7 @@ mod tests {
             let told = bad.parse::<Floor>().unwrap_err().to_string();
             assert!(told.contains("between -100 and 300") && told.contains("between -300 and 200"), "{told}");
         }
-        assert_eq!((SNR_DECIBELS, LEVEL_DECIBEL_MILLIWATTS), (-100.0..=300.0, -300.0..=200.0), "as the message says");
+        assert_eq!((SNR_RANGE_DECIBELS, LEVEL_RANGE_DBM), (-100.0..=300.0, -300.0..=200.0), "as the message says");
     }
 
     #[test]

@@ -10,17 +10,17 @@ use super::simd::{ComplexLanes, Real, phasor};
 use crate::scene::Reflector;
 
 /// Samples in a row of the split.
-pub const STRIDE: usize = 32;
+pub const ROW_SAMPLES: usize = 32;
 /// Reflectors whose phasors are computed together: they fit the first-level cache.
-pub const CHUNK: usize = 8;
+pub const CHUNK_REFLECTORS: usize = 8;
 /// Distance between phasors that are evaluated from their phase; those between are products.
-const STEP: usize = 4;
+const EXACT_PHASOR_STEP: usize = 4;
 /// Rows and columns of the product kept in registers.
 const TILE: (usize, usize) = (2, 4);
 
 /// Rows of the split of chirps of `samples` samples; the last may extend beyond the chirp.
 pub const fn rows_of(samples: usize) -> usize {
-    samples.div_ceil(STRIDE).next_multiple_of(STEP)
+    samples.div_ceil(ROW_SAMPLES).next_multiple_of(EXACT_PHASOR_STEP)
 }
 
 /// Phasors of one reflector: its echo at sample `32 a + b` is `rows[a] * columns[b]`.
@@ -29,14 +29,14 @@ pub struct Factors<T, const W: usize> {
     /// Amplitude and phase of every 32nd sample, [`rows_of`] of them.
     pub rows: Vec<ComplexLanes<T, W>>,
     /// Phase from such a sample to each of the next 32.
-    pub columns: [ComplexLanes<T, W>; STRIDE],
+    pub columns: [ComplexLanes<T, W>; ROW_SAMPLES],
 }
 
 /// [`Factors`] by reference, which may have rows of another gain.
 #[derive(Debug, Clone, Copy)]
 pub struct Product<'a, T, const W: usize> {
     pub rows: &'a [ComplexLanes<T, W>],
-    pub columns: &'a [ComplexLanes<T, W>; STRIDE],
+    pub columns: &'a [ComplexLanes<T, W>; ROW_SAMPLES],
 }
 
 impl<T: Real, const W: usize> Factors<T, W> {
@@ -47,7 +47,7 @@ impl<T: Real, const W: usize> Factors<T, W> {
 
     pub fn new(samples: usize) -> Self {
         let zero = ComplexLanes::zero();
-        Factors { rows: vec![zero; rows_of(samples)], columns: [zero; STRIDE] }
+        Factors { rows: vec![zero; rows_of(samples)], columns: [zero; ROW_SAMPLES] }
     }
 }
 
@@ -60,8 +60,8 @@ pub struct SplitScratch<T, const W: usize> {
 
 impl<T: Real, const W: usize> SplitScratch<T, W> {
     pub fn new(samples: usize) -> Self {
-        let factors = vec![Factors::new(samples); CHUNK];
-        let padded = vec![ComplexLanes::zero(); factors[0].rows.len() * STRIDE];
+        let factors = vec![Factors::new(samples); CHUNK_REFLECTORS];
+        let padded = vec![ComplexLanes::zero(); factors[0].rows.len() * ROW_SAMPLES];
         SplitScratch { factors, padded }
     }
 }
@@ -74,13 +74,13 @@ pub(super) fn block_signal<'s, T: Real, const W: usize, const FMA: bool>(
 ) -> &'s mut [ComplexLanes<T, W>] {
     let SplitScratch { factors, padded } = scratch;
     padded.fill(ComplexLanes::zero());
-    for begin in (0..echoes.len()).step_by(CHUNK) {
-        let count = CHUNK.min(echoes.len() - begin);
+    for begin in (0..echoes.len()).step_by(CHUNK_REFLECTORS) {
+        let count = CHUNK_REFLECTORS.min(echoes.len() - begin);
         for (i, f) in factors.iter_mut().enumerate().take(count) {
             let echo = echoes.echo::<FMA>(begin + i);
             fill_with::<T, W, FMA>(&echo, &mut f.rows, &mut f.columns);
         }
-        let products: [_; CHUNK] = std::array::from_fn(|i| factors[i].product());
+        let products: [_; CHUNK_REFLECTORS] = std::array::from_fn(|i| factors[i].product());
         add_products::<T, W, FMA>(&products[..count], padded);
     }
     &mut padded[..samples]
@@ -93,7 +93,7 @@ pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     pairs: impl Into<PairBlocks<W>>,
     r: &Reflector,
     rows: &mut [ComplexLanes<T, W>],
-    columns: &mut [ComplexLanes<T, W>; STRIDE],
+    columns: &mut [ComplexLanes<T, W>; ROW_SAMPLES],
 ) {
     fill_with::<T, W, FMA>(&model.echo_lanes::<W, FMA>(pairs, r), rows, columns);
 }
@@ -103,24 +103,24 @@ pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
 fn fill_with<T: Real, const W: usize, const FMA: bool>(
     echo: &EchoLanes<W>,
     rows: &mut [ComplexLanes<T, W>],
-    columns: &mut [ComplexLanes<T, W>; STRIDE],
+    columns: &mut [ComplexLanes<T, W>; ROW_SAMPLES],
 ) {
-    let mut fine = [ComplexLanes::zero(); STEP];
+    let mut fine = [ComplexLanes::zero(); EXACT_PHASOR_STEP];
     for (i, fine) in fine.iter_mut().enumerate() {
         *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>(i as f64));
     }
-    for (i, columns) in columns.chunks_exact_mut(STEP).enumerate() {
-        let coarse = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STEP) as f64));
+    for (i, columns) in columns.chunks_exact_mut(EXACT_PHASOR_STEP).enumerate() {
+        let coarse = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * EXACT_PHASOR_STEP) as f64));
         for (column, fine) in columns.iter_mut().zip(fine) {
             *column = coarse.times::<FMA>(fine);
         }
     }
     let amplitude = echo.amplitude.round_to();
     for (i, fine) in fine.iter_mut().enumerate() {
-        *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * STRIDE) as f64)).scaled(amplitude);
+        *fine = phasor::<T, W, FMA>(echo.beat_turns_at::<FMA>((i * ROW_SAMPLES) as f64)).scaled(amplitude);
     }
-    for (i, rows) in rows.chunks_exact_mut(STEP).enumerate() {
-        let turns = echo.beat_turns_at::<FMA>((i * STEP * STRIDE) as f64) + echo.carrier_turns;
+    for (i, rows) in rows.chunks_exact_mut(EXACT_PHASOR_STEP).enumerate() {
+        let turns = echo.beat_turns_at::<FMA>((i * EXACT_PHASOR_STEP * ROW_SAMPLES) as f64) + echo.carrier_turns;
         let coarse = phasor::<T, W, FMA>(turns);
         for (row, fine) in rows.iter_mut().zip(fine) {
             *row = coarse.times::<FMA>(fine);
@@ -135,8 +135,8 @@ pub fn add_products<T: Real, const W: usize, const FMA: bool>(
     factors: &[Product<'_, T, W>],
     out: &mut [ComplexLanes<T, W>],
 ) {
-    for a in (0..out.len() / STRIDE).step_by(TILE.0) {
-        for b in (0..STRIDE).step_by(TILE.1) {
+    for a in (0..out.len() / ROW_SAMPLES).step_by(TILE.0) {
+        for b in (0..ROW_SAMPLES).step_by(TILE.1) {
             let mut tile = [[ComplexLanes::zero(); TILE.1]; TILE.0];
             for f in factors {
                 let rows: [_; TILE.0] = std::array::from_fn(|i| f.rows[a + i]);
@@ -148,7 +148,7 @@ pub fn add_products<T: Real, const W: usize, const FMA: bool>(
                 }
             }
             for (i, sums) in tile.iter().enumerate() {
-                let begin = (a + i) * STRIDE + b;
+                let begin = (a + i) * ROW_SAMPLES + b;
                 for (sample, sum) in out[begin..begin + TILE.1].iter_mut().zip(sums) {
                     *sample = *sample + *sum;
                 }

@@ -6,8 +6,8 @@ use crate::radar::{Decibels, Polar, Radar};
 use crate::scene::Reflector;
 
 /// Level of a streak's ends below its peak.
-pub const STREAK: Decibels = Decibels(20.0);
-const TEETH_DRAWN: usize = 3;
+pub const STREAK_DEPTH: Decibels = Decibels(20.0);
+const DRAWN_TEETH: usize = 3;
 /// Farthest wrap partners, in maximum ranges.
 const WRAPPED_RANGES: f64 = 3.0;
 
@@ -18,7 +18,7 @@ pub struct Overlay {
     pub place: Polar,
     /// Peak, half-power widths and first side lobes.
     pub blob: Blob,
-    /// Extent of the blob by the near field, [`STREAK`] down.
+    /// Extent of the blob by the near field, [`STREAK_DEPTH`] down.
     pub streak: Streak,
     /// Places of the next teeth of the two ends' comb.
     pub teeth: Vec<MapPlace>,
@@ -36,7 +36,7 @@ impl Overlay {
         Some(Overlay {
             place,
             blob: Blob::of(radar, reflector, aperture)?,
-            streak: Streak::of(radar, reflector, aperture, STREAK)?,
+            streak: Streak::of(radar, reflector, aperture, STREAK_DEPTH)?,
             teeth: teeth(radar, reflector),
             fold_partners: fold_partners(radar, place.cos_theta),
             wrap_partners_metres: wrap_partners(radar, place, farthest).iter().map(|p| p.range_metres).collect(),
@@ -50,5 +50,5 @@ fn teeth(radar: &Radar, reflector: &Reflector) -> Vec<MapPlace> {
         let (x_metres, y_metres) = (place.range_metres * cos, place.range_metres * (1.0 - cos * cos).max(0.0).sqrt());
         blob_cell(radar, x_metres, y_metres, Aperture::Full)
     };
-    comb_teeth(radar, place, TEETH_DRAWN).into_iter().map(cell).collect()
+    comb_teeth(radar, place, DRAWN_TEETH).into_iter().map(cell).collect()
 }

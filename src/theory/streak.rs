@@ -11,7 +11,7 @@ use crate::radar::{Decibels, Radar};
 use crate::scene::Reflector;
 use std::collections::{BTreeMap, BTreeSet};
 
-const POINTS: usize = 65;
+const STREAK_POINTS: usize = 65;
 
 /// Extent of one reflector's streak.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +37,7 @@ impl Streak {
         };
         let level = blob.magnitude / 10f64.powf(below.amplitude_decades());
         let [bins, columns] = extent(blob.peak, [radar.samples, radar.elements], level, cell);
-        Some(Streak { path: path(radar, reflector, aperture, POINTS), bins, columns })
+        Some(Streak { path: path(radar, reflector, aperture, STREAK_POINTS), bins, columns })
     }
 }
 

@@ -10,7 +10,7 @@ use crate::share::{LessonPlace, ShareError, SharedScene, SharedView, VisiblePart
 use eframe::egui::pos2;
 
 /// Longest link that browsers open, bytes.
-const MOST_OF_A_LINK: usize = 2 << 20;
+const MAX_LINK_BYTES: usize = 2 << 20;
 
 /// A link to this page that opens the scene on screen.
 ///
@@ -22,10 +22,10 @@ pub fn link(state: &State) -> Result<String, String> {
     let letters = link.len();
     let too_long = || {
         format!(
-            "the link would have {letters} letters, browsers open {MOST_OF_A_LINK}; save the scene as a file instead"
+            "the link would have {letters} letters, browsers open {MAX_LINK_BYTES}; save the scene as a file instead"
         )
     };
-    (letters <= MOST_OF_A_LINK).then_some(link).ok_or_else(too_long)
+    (letters <= MAX_LINK_BYTES).then_some(link).ok_or_else(too_long)
 }
 
 /// The scene on screen and its view as text.

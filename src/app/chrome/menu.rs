@@ -63,7 +63,7 @@ pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
 /// Least width of a window with a button for each kind of body, points.
 const MIN_BUTTONS_WIDTH_POINTS: f32 = 1150.0;
 /// Least width of a window with a menu of bodies, points.
-const MEDIUM: f32 = 950.0;
+const MIN_BODY_MENU_WIDTH_POINTS: f32 = 950.0;
 
 fn buttons(ui: &mut Ui, state: &State, width: f32, asked: &mut Vec<Command>) {
     let (heaps, bodies) = NewObject::ALL.split_at(3);
@@ -76,7 +76,7 @@ fn buttons(ui: &mut Ui, state: &State, width: f32, asked: &mut Vec<Command>) {
     add(ui, heaps);
     if width >= MIN_BUTTONS_WIDTH_POINTS {
         add(ui, bodies);
-    } else if width >= MEDIUM {
+    } else if width >= MIN_BODY_MENU_WIDTH_POINTS {
         let of_bodies = bodies.iter().map(|kind| Command::Edit(EditCommand::Add(*kind, None)));
         ui.menu_button("+ Body", |ui| entries(ui, of_bodies, asked))
             .response

@@ -6,7 +6,7 @@ use crate::app::widgets::{Icon, icon};
 use eframe::egui::{self, Align2, Area, Context, Frame, Id, Margin, Order, Pos2, Stroke, vec2};
 
 /// Room for what stands beside a message's text: its sign, its number and its button, with the frame, points.
-const BESIDE_TEXT: f32 = 130.0;
+const BUTTON_ROOM_POINTS: f32 = 130.0;
 
 /// Seconds for which a message stays: long enough to read an error and act on it.
 const INFO_SECONDS: f64 = 6.0;
@@ -26,7 +26,7 @@ pub fn show(ctx: &Context, notices: &mut Notices) {
         .interactable(true)
         .show(ctx, |ui| {
             ui.set_max_width(width);
-            draw(ui, message, count, width - BESIDE_TEXT)
+            draw(ui, message, count, width - BUTTON_ROOM_POINTS)
         });
     let seconds = if message.is_error { ERROR_SECONDS } else { INFO_SECONDS };
     let until = message.until.get_or_insert(now + seconds);

@@ -20,7 +20,7 @@ pub struct PaletteMemory {
     pub recent: Vec<String>,
 }
 
-const RECENT: usize = 8;
+const RECENT_COMMANDS: usize = 8;
 
 impl PaletteMemory {
     /// Whether the palette is on screen.
@@ -42,7 +42,7 @@ impl PaletteMemory {
     fn remember(&mut self, name: String) {
         self.recent.retain(|before| *before != name);
         self.recent.insert(0, name);
-        self.recent.truncate(RECENT);
+        self.recent.truncate(RECENT_COMMANDS);
     }
 }
 

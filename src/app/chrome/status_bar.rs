@@ -10,7 +10,7 @@ use eframe::egui::{self, Align, Color32, Layout, TextStyle, Ui};
 use std::time::Duration;
 
 /// Gap between two texts, points.
-const GAP: f32 = 18.0;
+const TEXT_GAP_POINTS: f32 = 18.0;
 
 /// Draws as many texts as there is room for, the most important first.
 /// `took` is the time of the last update of maps and pictures.
@@ -19,13 +19,13 @@ pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
     let echo = cursor.and_then(|cursor| echo_at(state, &cursor));
     egui::Panel::bottom("status").show(ui, |ui| {
         ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = GAP;
+            ui.spacing_mut().item_spacing.x = TEXT_GAP_POINTS;
             let (room, font) = (ui.available_width(), TextStyle::Monospace.resolve(ui.style()));
             let painter = ui.painter().clone();
             let width = |text: &str| painter.layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE).size().x;
             let left = texts_of(state, cursor, echo.as_deref()).into_iter().rfind(|text| width(text) <= room);
             let left = left.unwrap_or_default();
-            let mut rest = room - width(&left) - GAP;
+            let mut rest = room - width(&left) - TEXT_GAP_POINTS;
             if cursor.is_some() {
                 ui.monospace(left);
             } else {
@@ -36,7 +36,7 @@ pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
             let took = took.map(|took| format!("maps {:.1} ms", took.as_secs_f64() * 1e3));
             // The monospaced width is the larger one.
             let mut fits = |text: &String| {
-                let wanted = width(text) + GAP;
+                let wanted = width(text) + TEXT_GAP_POINTS;
                 let fits = wanted <= rest;
                 rest -= if fits { wanted } else { 0.0 };
                 fits
@@ -99,18 +99,18 @@ fn count_of(scene: &Scene, is_predicting: bool) -> String {
 }
 
 /// Most bodies among which the echo under the pointer is searched.
-const MOST_BODIES: usize = 60;
+const MAX_SEARCHED_BODIES: usize = 60;
 /// Largest distance of the pointer from an echo, in range bins and columns.
-const NEAR_CELLS: [f64; 2] = [1.5, 8.0];
+const MAX_ECHO_DISTANCE_CELLS: [f64; 2] = [1.5, 8.0];
 
 /// Kind and body of the strongest echo under the pointer, in words.
 fn echo_at(state: &State, cursor: &Cursor) -> Option<String> {
     let (radar, scene) = (state.radar(), state.editor.scene());
     let bodies = scene.objects.iter().filter(|o| o.body().is_some()).count();
-    if !(1..=MOST_BODIES).contains(&bodies) {
+    if !(1..=MAX_SEARCHED_BODIES).contains(&bodies) {
         return None;
     }
-    let [bins, columns] = NEAR_CELLS;
+    let [bins, columns] = MAX_ECHO_DISTANCE_CELLS;
     let near = |(_, echo): &(usize, PathEcho)| {
         let [x, y] = echo.place_metres;
         let bin = radar.bin_of_range(echo.range_metres - cursor.range_metres).abs();

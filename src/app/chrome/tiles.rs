@@ -1,7 +1,7 @@
 //! The panels' tiles: tabs, title bars, and a maximised panel.
 
 use super::column;
-use crate::app::content::OLD;
+use crate::app::content::OLD_PANEL_OPACITY;
 use crate::app::state::{Arrangement, Command, Panel, WindowCommand};
 use crate::app::widgets::{Icon, icon};
 use eframe::egui::text::LayoutJob;
@@ -60,13 +60,13 @@ fn maximised(ui: &mut Ui, panel: Panel, behavior: &mut Behavior<'_>) {
 /// Gap between a tab's title and its sides, points.
 const TAB_MARGIN: f32 = 8.0;
 
-const LEAST_CAPTION: f32 = 60.0;
+const MIN_CAPTION_POINTS: f32 = 60.0;
 
 /// Size of a caption in two lines, points.
-const SMALL_CAPTION: f32 = 10.0;
+const SMALL_CAPTION_POINTS: f32 = 10.0;
 
 /// Width of the two arrows that scroll the tabs, points.
-const ARROWS: f32 = 64.0;
+const SCROLL_ARROWS_POINTS: f32 = 64.0;
 
 struct Behavior<'a> {
     panels: &'a mut dyn Draw,
@@ -104,14 +104,14 @@ impl Behavior<'_> {
     /// Draws the longest form of a panel's caption that fits `room` points, or the shortest in two small lines; none where `room` is too narrow.
     fn caption(&self, ui: &mut Ui, panel: Panel, room: f32) {
         let forms = self.panels.caption(panel);
-        let Some(shortest) = forms.last().filter(|_| room >= LEAST_CAPTION) else { return };
+        let Some(shortest) = forms.last().filter(|_| room >= MIN_CAPTION_POINTS) else { return };
         let ink = ui.visuals().weak_text_color();
-        let ink = if self.panels.is_old(panel) { ink.gamma_multiply(OLD) } else { ink };
+        let ink = if self.panels.is_old(panel) { ink.gamma_multiply(OLD_PANEL_OPACITY) } else { ink };
         let lines = |text: &str, size| LayoutJob::simple(text.to_owned(), FontId::proportional(size), ink, room);
         let fits = |form: &&String| ui.painter().layout_job(lines(form, 12.0)).rows.len() == 1;
         let mut text = match forms.iter().find(fits) {
             Some(form) => lines(form, 12.0),
-            None => lines(&shortest.replacen(", ", ",\n", 1), SMALL_CAPTION),
+            None => lines(&shortest.replacen(", ", ",\n", 1), SMALL_CAPTION_POINTS),
         };
         text.wrap.max_rows = 2;
         let layout = egui::Layout::right_to_left(egui::Align::Center);
@@ -202,7 +202,7 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
             self.caption(ui, panel, room - needed - TAB_MARGIN);
         }
         if let Some(front) = row.iter().find(|tab| Some(tab.tile) == tabs.active) {
-            show_front(ui, tile, front, if needed <= room { room } else { room - ARROWS }, offset);
+            show_front(ui, tile, front, if needed <= room { room } else { room - SCROLL_ARROWS_POINTS }, offset);
         }
     }
 

@@ -51,7 +51,7 @@ pub struct BoundsResult {
 }
 
 /// Echoes compared for one picture, which take a few tenths of a second.
-const BUDGET: f64 = 2.0e6;
+const MAX_COMPARED_ECHOES: f64 = 2.0e6;
 
 impl Query for BoundsRequest {
     type Value = BoundsResult;
@@ -68,7 +68,7 @@ impl Query for BoundsRequest {
         let bound = cramer_rao(radar, &layout, std::slice::from_ref(reflector), variance).map(|bounds| bounds[0]);
         let per_end = cramer_rao_of(radar, &layout, std::slice::from_ref(reflector), variance, Gains::PerEnd);
         let gain_per_end = per_end.ok().and_then(|bounds| bounds.first().copied());
-        let cells = (BUDGET / layout.len().max(1) as f64).clamp(1e3, 8e4);
+        let cells = (MAX_COMPARED_ECHOES / layout.len().max(1) as f64).clamp(1e3, 8e4);
         // Odd numbers, so that the reflector itself is a cell.
         let across = 2 * ((cells * 2.0).sqrt() / 2.0) as i32 + 1;
         let up = 2 * ((cells / 2.0).sqrt() / 2.0) as i32 + 1;

@@ -11,7 +11,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 /// Least time for which a dialog is on screen: no user closes one sooner.
-const NEVER_SHOWN: Duration = Duration::from_millis(250);
+const MIN_DIALOG_TIME: Duration = Duration::from_millis(250);
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Question {
@@ -77,7 +77,7 @@ pub struct Dialogs {
 }
 
 /// Message where the system has no dialogs, shown once.
-const APOLOGY: &str = "This system shows no file dialog (no portal, no zenity), so the window shows its own.";
+const NO_DIALOG_MESSAGE: &str = "This system shows no file dialog (no portal, no zenity), so the window shows its own.";
 
 impl Dialogs {
     /// Dialogs of the system, as long as it shows any.
@@ -85,7 +85,7 @@ impl Dialogs {
         let [bus, runtime, path] = ["DBUS_SESSION_BUS_ADDRESS", "XDG_RUNTIME_DIR", "PATH"].map(std::env::var_os);
         match cfg!(not(target_os = "linux")) || may_have_dialogs(bus, runtime, path) {
             true => Dialogs::by(Some(Arc::new(platform::choose_file))),
-            false => Dialogs { apology: Some(APOLOGY), ..Dialogs::by(None) },
+            false => Dialogs { apology: Some(NO_DIALOG_MESSAGE), ..Dialogs::by(None) },
         }
     }
 
@@ -118,7 +118,7 @@ impl Dialogs {
                     Answer::Again(Question::at(question.purpose, &path))
                 }
                 Some((Ok(path), _)) => Answer::Chosen(question.purpose.command(path)),
-                None if began.elapsed() < NEVER_SHOWN => Answer::NotShown(question),
+                None if began.elapsed() < MIN_DIALOG_TIME => Answer::NotShown(question),
                 None => return,
             };
             // The window may be gone by now.
@@ -139,7 +139,7 @@ impl Dialogs {
                 Answer::NotShown(question) => {
                     self.unanswered = Some(question);
                     if self.system.take().is_some() {
-                        told = Some(APOLOGY);
+                        told = Some(NO_DIALOG_MESSAGE);
                     }
                 }
             }
@@ -209,8 +209,8 @@ mod tests {
 
     #[test]
     fn a_system_without_dialogs_is_told_once() {
-        let mut dialogs = Dialogs { apology: Some(APOLOGY), ..Dialogs::by(None) };
-        for told in [Some(APOLOGY), None] {
+        let mut dialogs = Dialogs { apology: Some(NO_DIALOG_MESSAGE), ..Dialogs::by(None) };
+        for told in [Some(NO_DIALOG_MESSAGE), None] {
             dialogs.ask(Question::beside(Purpose::Open, None), || ()).unwrap();
             assert_eq!(dialogs.poll(), (Vec::new(), Vec::new(), told), "told once");
             assert!(dialogs.take_unanswered().is_some());
@@ -236,7 +236,7 @@ mod tests {
             reply(None);
             Ok(())
         })));
-        for (purpose, told) in [(Purpose::Open, Some(APOLOGY)), (Purpose::SaveScene, None)] {
+        for (purpose, told) in [(Purpose::Open, Some(NO_DIALOG_MESSAGE)), (Purpose::SaveScene, None)] {
             let question = || Question::beside(purpose, Some(Path::new("/scenes/a.npz")));
             assert_eq!(answer(&mut dialogs, question()), (Vec::new(), told), "told once");
             assert_eq!(dialogs.take_unanswered(), Some(question()));
@@ -247,7 +247,7 @@ mod tests {
     /// Commands, message and question that follow where the user closes every dialog except the one for a scene to open.
     fn answered(purpose: Purpose) -> (Vec<Command>, Option<&'static str>, Option<Question>) {
         let slow: System = Arc::new(|question, reply| {
-            std::thread::sleep(NEVER_SHOWN + Duration::from_millis(50));
+            std::thread::sleep(MIN_DIALOG_TIME + Duration::from_millis(50));
             reply((question.title == Purpose::Open.facts().title).then(|| PathBuf::from("a.toml")));
             Ok(())
         });

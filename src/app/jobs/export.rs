@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub struct Exports(pub Background<Result<String, String>>);
 
 /// Beginning of the message of an export under way, which the message of its end replaces.
-pub const EXPORTING: &str = "Exporting ";
+pub const EXPORT_MESSAGE_START: &str = "Exporting ";
 
 /// The message after an export to `path`, with a remark about a missing part where there is one.
 ///
@@ -113,7 +113,7 @@ impl Exports {
         let (name, of) = (path.display().to_string(), path.clone());
         let failed = move |why| told(&of, Err(format!("failed: {why}")));
         match self.0.begin("export", move || told(&path, write(&path)), failed) {
-            Ok(()) => Ok(format!("{EXPORTING}{name}…")),
+            Ok(()) => Ok(format!("{EXPORT_MESSAGE_START}{name}…")),
             Err(error) => Err(format!("{name}: the export could not be started: {error}")),
         }
     }

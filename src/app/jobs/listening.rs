@@ -17,8 +17,8 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
 /// Number of attempts to open a port that this program listened to a moment ago, and the time between two attempts.
-const TRIES: u32 = 20;
-const BETWEEN_TRIES: Duration = Duration::from_millis(50);
+const BIND_TRIES: u32 = 20;
+const BIND_INTERVAL: Duration = Duration::from_millis(50);
 
 /// The listener to a capture card.
 pub struct Listening {
@@ -63,7 +63,7 @@ impl Listening {
     /// # Errors
     /// A sentence about the error in the `.cfg`, or about the port that is taken.
     pub fn begin(&mut self, plan: CardPlan) -> Result<u16, String> {
-        let tries = if self.running.is_some() { TRIES } else { 0 };
+        let tries = if self.running.is_some() { BIND_TRIES } else { 0 };
         self.stop();
         let frame_bytes = raw::frame_bytes(&plan.config).map_err(|e| e.to_string())?;
         let failed = |e: io::Error| format!("UDP port {} can't be listened to: {e}", plan.port);
@@ -79,7 +79,7 @@ impl Listening {
             Some(card) => Ok(card),
             None => (0..tries).fold(listen(), |card, _| {
                 card.or_else(|_| {
-                    std::thread::sleep(BETWEEN_TRIES);
+                    std::thread::sleep(BIND_INTERVAL);
                     listen()
                 })
             }),

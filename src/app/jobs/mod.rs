@@ -43,7 +43,7 @@ pub use chirp::{ChirpQuery, ChirpResult};
 pub use derived::{Derived, Failure, Query};
 pub use dialogs::{Dialogs, Question};
 pub use doppler::{DopplerQuery, DopplerResult};
-pub use export::{EXPORTING, Exports};
+pub use export::{EXPORT_MESSAGE_START, Exports};
 #[cfg(test)]
 pub use failures::some_row;
 pub use failures::{
@@ -76,7 +76,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// Time between two frames while a progress bar is shown.
-const BAR: Duration = Duration::from_millis(100);
+const PROGRESS_FRAME_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Longest time of work for an earlier request; longer work is cancelled, but during a drag, so that the user sees what changes.
 const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(400);
@@ -144,7 +144,7 @@ impl Jobs {
         }
         errors.into_iter().for_each(|e| state.notices.error(e));
         for export in self.exports.0.finished() {
-            state.notices.list.retain(|notice| !notice.text.starts_with(EXPORTING));
+            state.notices.list.retain(|notice| !notice.text.starts_with(EXPORT_MESSAGE_START));
             tell(state, export);
         }
         let (frame, failed) = self.listening.poll();
@@ -173,7 +173,7 @@ impl Jobs {
             self.wake.request_repaint_after(later);
         }
         if self.pipeline.is_busy() {
-            self.wake.request_repaint_after(BAR);
+            self.wake.request_repaint_after(PROGRESS_FRAME_INTERVAL);
         }
         self.keep_unsaved(state);
     }

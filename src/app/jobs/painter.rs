@@ -35,10 +35,10 @@ pub struct Painter {
 }
 
 /// Colour beyond the maximum range of a Cartesian map.
-const OUTSIDE: Color32 = Color32::TRANSPARENT;
+const OUTSIDE_COLOUR: Color32 = Color32::TRANSPARENT;
 
 /// Approximate numbers of columns and rows that a map on screen has room for.
-const ON_SCREEN: [usize; 2] = [340, 128];
+const SCREEN_CELLS: [usize; 2] = [340, 128];
 
 impl Painter {
     /// The picture of `subject`; the same [`Arc`] as before where nothing changed.
@@ -101,7 +101,7 @@ impl Painter {
 /// End of a picture's scale. For a difference it is the smallest of 1, 2, 5, 10 ... that is not exceeded. Its labels are then round, and it stays while a
 /// reflector is dragged.
 fn end_of(subject: &Subject) -> f32 {
-    let round = |most: f32| ENDS.into_iter().find(|end| *end >= most).unwrap_or(1.0);
+    let round = |most: f32| SCALE_ENDS.into_iter().find(|end| *end >= most).unwrap_or(1.0);
     if let Paint::Doubt(_) = subject.paint {
         return round(subject.map.lambda.iter().copied().fold(0.0, f32::max));
     }
@@ -118,12 +118,12 @@ pub fn largest_difference(map: &RangeAngleMap, minus: &RangeAngleMap) -> f32 {
 }
 
 /// Ends of scales below 1.
-const ENDS: [f32; 9] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+const SCALE_ENDS: [f32; 9] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 
 fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<'_, f32>>, end: f32) -> Vec<Color32> {
     let cells = map.iter();
     // NaN marks cells beyond the maximum range of a Cartesian map.
-    let shown = |v: f32, colour: Color32| if v.is_nan() { OUTSIDE } else { colour };
+    let shown = |v: f32, colour: Color32| if v.is_nan() { OUTSIDE_COLOUR } else { colour };
     match (subject.paint, minus) {
         (Paint::Lambda(colours) | Paint::Doubt(colours), _) => {
             let table = colour_table(colours);
@@ -151,14 +151,14 @@ fn colour(subject: &Subject, map: ArrayView2<'_, f32>, minus: Option<ArrayView2<
                 .map(|(&v, &m)| shown(v, table[(127.5 * (1.0 + (v - m) / end) + 0.5) as u8 as usize]))
                 .collect()
         }
-        (Paint::Difference { .. }, None) => vec![OUTSIDE; map.len()],
+        (Paint::Difference { .. }, None) => vec![OUTSIDE_COLOUR; map.len()],
     }
 }
 
 /// Fills of hits, rims, misses and false alarms, and an outline around each patch.
 fn fills(kinds: &[CellVerdict], (rows, columns): (usize, usize), dark: bool) -> Vec<Color32> {
     // A map of many cells is shrunk on screen, where a thinner outline would vanish.
-    let [wide, high] = [(columns / ON_SCREEN[0]).max(1), (rows / ON_SCREEN[1]).max(1)];
+    let [wide, high] = [(columns / SCREEN_CELLS[0]).max(1), (rows / SCREEN_CELLS[1]).max(1)];
     let mut around = vec![CellVerdict::Nothing; kinds.len()];
     let near = |at: usize, by: usize, end: usize| at.saturating_sub(by)..(at + by + 1).min(end);
     for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {

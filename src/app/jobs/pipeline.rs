@@ -19,7 +19,7 @@ use crate::app::state::{CutMap, MapKind, MethodSlot, MethodTimes, State};
 use crate::engine::{EngineFrame, MapRequest};
 use crate::evaluate::TARGET_ETA;
 use crate::maps::RangeAngleMap;
-use crate::maps::cfar::DETECTED;
+use crate::maps::cfar::DETECTION_THRESHOLD;
 use crate::platform::Instant;
 use crate::scene::Reflector;
 use std::collections::BTreeSet;
@@ -192,7 +192,7 @@ impl Pipeline {
         let Some(cfar) = state.settings.cfar else { return Some((&**output, self.eta(state, slot))) };
         let result = self.maps.result().filter(|r| r.request.cfar == Some(cfar))?;
         let is_of_it = result.request.pairs[slot as usize].as_ref().is_some_and(|p| p.output == *output);
-        Some((result.detected.outputs[slot as usize].as_ref().filter(|_| is_of_it)?, DETECTED))
+        Some((result.detected.outputs[slot as usize].as_ref().filter(|_| is_of_it)?, DETECTION_THRESHOLD))
     }
 
     pub fn cut_maps(&self) -> Vec<CutMap> {

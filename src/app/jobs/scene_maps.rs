@@ -12,7 +12,7 @@ use crate::app::shared::Shared;
 use crate::app::state::{DifferenceView, MapKind, Projection};
 use crate::engine::{Engine, EngineFrame, MapRequest, ReadyMap};
 use crate::evaluate::{Metrics, Roc, RocPoint, blobs, squared_error};
-use crate::maps::cfar::{Cfar, DETECTED};
+use crate::maps::cfar::{Cfar, DETECTION_THRESHOLD};
 use crate::maps::{Normalisation, RangeAngleMap};
 use crate::picture::ColourMap;
 use crate::radar::{BuiltArray, Radar};
@@ -249,7 +249,7 @@ fn scored(
     let target = pair.target.as_ref()?;
     let (above, [target_eta, output_eta]) = match cfar {
         None => ((&**target, &*pair.output), etas),
-        Some(_) => (detected?, [DETECTED; 2]),
+        Some(_) => (detected?, [DETECTION_THRESHOLD; 2]),
     };
     // Hits and misses are counted against the map that the target's picture shows.
     let truth = if cfar.is_some() { above.0 } else { target };
@@ -286,7 +286,7 @@ fn subject(
     let dark = request.dark;
     let (target, target_eta) = match request.cfar {
         None => (lambda(&frame.full), request.target_eta),
-        Some(_) => (shared(&detected.target), DETECTED),
+        Some(_) => (shared(&detected.target), DETECTION_THRESHOLD),
     };
     let (map, minus, paint) = match kind {
         MapKind::Input0 => (lambda(&frame.first), None, colours),
@@ -299,7 +299,9 @@ fn subject(
             let of_pair = pair?.target.clone();
             let (output, target, eta) = match request.cfar {
                 None => (output, of_pair, request.etas[slot?]),
-                Some(_) => (shared(&detected.outputs[slot?]), target.filter(|_| of_pair.is_some()), DETECTED),
+                Some(_) => {
+                    (shared(&detected.outputs[slot?]), target.filter(|_| of_pair.is_some()), DETECTION_THRESHOLD)
+                }
             };
             (output, target, Paint::Above { eta, dark })
         }

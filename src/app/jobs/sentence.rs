@@ -9,10 +9,10 @@ use crate::radar::{Radar, counted};
 use ndarray::Array2;
 
 /// Most peaks that a sentence names.
-const PLACES: usize = 3;
+const MAX_NAMED_PEAKS: usize = 3;
 
 /// Largest distance of a named peak below the highest cell, in Lambda.
-const BELOW: f32 = 0.1;
+const MAX_PEAK_DEPTH: f32 = 0.1;
 
 /// Least distance between two named peaks, as ratios of the map's height and width.
 const PEAK_DISTANCE_RATIO: [f32; 2] = [1.0 / 32.0, 1.0 / 10.0];
@@ -66,13 +66,13 @@ fn highest(map: &Array2<f32>) -> Vec<(usize, usize)> {
     let (rows, columns) = map.dim();
     let top = map.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let high: Vec<((usize, usize), f32)> =
-        map.indexed_iter().filter(|(_, v)| **v >= top - BELOW).map(|(at, v)| (at, *v)).collect();
+        map.indexed_iter().filter(|(_, v)| **v >= top - MAX_PEAK_DEPTH).map(|(at, v)| (at, *v)).collect();
     let is_near = |a: (usize, usize), b: (usize, usize)| {
         a.0.abs_diff(b.0) as f32 <= PEAK_DISTANCE_RATIO[0] * rows as f32
             && a.1.abs_diff(b.1) as f32 <= PEAK_DISTANCE_RATIO[1] * columns as f32
     };
     let mut named: Vec<(usize, usize)> = Vec::new();
-    while named.len() < PLACES {
+    while named.len() < MAX_NAMED_PEAKS {
         let free = high.iter().filter(|(at, _)| !named.iter().any(|before| is_near(*at, *before)));
         let Some((at, _)) = free.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         named.push(*at);

@@ -11,7 +11,7 @@ use std::time::Duration;
 pub const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Most points of a curve; a longer log is thinned.
-const POINTS: usize = 4000;
+const MAX_CURVE_POINTS: usize = 4000;
 
 /// The curves and the last line of a log.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -39,7 +39,7 @@ impl Log {
         };
         let smoothed = column("smoothed_loss");
         let rows: Vec<&str> = lines.filter(|l| !l.trim().is_empty()).collect();
-        let thin = rows.len().div_ceil(POINTS).max(1);
+        let thin = rows.len().div_ceil(MAX_CURVE_POINTS).max(1);
         let mut log = Log::default();
         for (number, row) in rows.iter().enumerate() {
             if number % thin != 0 && number + 1 != rows.len() {
@@ -125,12 +125,12 @@ mod tests {
     #[test]
     fn long_logs_are_thinned_to_their_last_line() {
         let mut text = String::from("step,loss\n");
-        for i in 0..3 * POINTS {
+        for i in 0..3 * MAX_CURVE_POINTS {
             text += &format!("{i},{}\n", 1.0 / (1 + i) as f64);
         }
         let log = Log::parse(&text).unwrap();
-        assert!(log.loss.len() <= POINTS + 1);
-        assert_eq!(log.step, (3 * POINTS - 1) as f64);
+        assert!(log.loss.len() <= MAX_CURVE_POINTS + 1);
+        assert_eq!(log.step, (3 * MAX_CURVE_POINTS - 1) as f64);
     }
 
     #[test]

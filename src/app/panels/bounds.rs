@@ -152,7 +152,7 @@ fn numbers(ui: &mut Ui, bound: &PositionBound, per_end: Option<&PositionBound>, 
             ui.weak("one gain").on_hover_text(
                 "All elements hear the reflector with one unknown gain: the phase between the ends is known",
             );
-            ui.weak("a gain an end").on_hover_text(PER_END);
+            ui.weak("a gain an end").on_hover_text(GAIN_PER_END_TOOLTIP);
             ui.end_row();
         }
         for ((what, value), second) in rows(bound).into_iter().zip(second) {
@@ -160,14 +160,14 @@ fn numbers(ui: &mut Ui, bound: &PositionBound, per_end: Option<&PositionBound>, 
             let shown = ui.monospace(value);
             match both {
                 true => _ = ui.monospace(second),
-                false => _ = shown.on_hover_text(format!("{second} with a gain an end. {PER_END}.")),
+                false => _ = shown.on_hover_text(format!("{second} with a gain an end. {GAIN_PER_END_TOOLTIP}.")),
             }
             ui.end_row();
         }
     });
 }
 
-const PER_END: &str =
+const GAIN_PER_END_TOOLTIP: &str =
     "Either half of the elements has an unknown gain of its own: the phase between the ends is not known";
 
 fn millimetres(metres: f64) -> String {

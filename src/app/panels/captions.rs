@@ -17,7 +17,7 @@ pub struct Hint {
 }
 
 /// The scene of a first start, as it opens.
-static STREET: LazyLock<Scene> = LazyLock::new(|| presets::default_scene().scene);
+static STREET_SCENE: LazyLock<Scene> = LazyLock::new(|| presets::default_scene().scene);
 
 /// Index of the post that is to be dragged, in that scene.
 const STREET_POST: usize = 3;
@@ -58,27 +58,27 @@ pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     }
     let is_told = state.tells_first_drag && state.lesson.is_none() && state.editor.dragged().is_none();
     let places_metres = (is_told && *state.radar() == Radar::default()).then(|| post_and_wall(scene)).flatten()?;
-    if scene.objects == STREET.objects {
+    if scene.objects == STREET_SCENE.objects {
         return Some(hint(scene, state.radar(), false));
     }
     let is_old = [MapKind::Input0, MapKind::Input1, MapKind::Target].iter().any(|kind| pipeline.is_stale(*kind));
     let frame = &pipeline.maps.result().filter(|_| !is_old)?.frame;
     let maps = [frame.first.as_ref()?, frame.last.as_ref()?, frame.full.as_ref()?];
     let text = match places_metres {
-        None => OFF_THE_RING,
-        Some(places) => told(maps.map(|map| dip_between(state.radar(), &map.lambda, places) >= SEEN_DIP)),
+        None => OFF_RING_HINT,
+        Some(places) => told(maps.map(|map| dip_between(state.radar(), &map.lambda, places) >= MIN_DIP)),
     };
     Some(Hint { text: text.to_owned(), way: Vec::new() })
 }
 
 /// Least dip of Lambda between two blobs that separates them.
-const SEEN_DIP: f32 = 0.05;
+const MIN_DIP: f32 = 0.05;
 
 /// Largest difference in range between post and wall while the post is on its ring, metres.
 const SAME_RANGE_METRES: f64 = 0.5;
 
 /// The hint after the post was dragged off its ring.
-const OFF_THE_RING: &str = "Post and wall now differ in range: drag the post along its ring, to the wall's range";
+const OFF_RING_HINT: &str = "Post and wall now differ in range: drag the post along its ring, to the wall's range";
 
 /// The hint after a drag, from whether input 0, input 1 and the target show post and wall apart.
 fn told([first, last, target]: [bool; 3]) -> &'static str {
@@ -98,7 +98,7 @@ fn hint(scene: &Scene, radar: &Radar, is_recorded: bool) -> Hint {
     if scene.objects.is_empty() {
         return plain("Double-click to add a reflector");
     }
-    let is_street = scene.objects == STREET.objects && *radar == Radar::default();
+    let is_street = scene.objects == STREET_SCENE.objects && *radar == Radar::default();
     match post_and_wall(scene).flatten().filter(|_| is_street) {
         Some(ends) => Hint { text: "Drag the post along its ring, to the wall".to_owned(), way: along_the_ring(ends) },
         None => plain("Drag a reflector: every map follows"),
@@ -110,8 +110,8 @@ fn hint(scene: &Scene, radar: &Radar, is_recorded: bool) -> Hint {
 fn post_and_wall(scene: &Scene) -> Option<Option<[[f64; 2]; 2]>> {
     let is_post = |index: usize| index == STREET_POST;
     let same = |(index, (now, then)): (usize, (&Object, &Object))| is_post(index) || now == then;
-    let is_street =
-        scene.objects.len() == STREET.objects.len() && scene.objects.iter().zip(&STREET.objects).enumerate().all(same);
+    let is_street = scene.objects.len() == STREET_SCENE.objects.len()
+        && scene.objects.iter().zip(&STREET_SCENE.objects).enumerate().all(same);
     let post = scene.objects.get(STREET_POST).filter(|_| is_street)?.centre_metres();
     let wall = scene.objects.iter().find(|o| matches!(o, Object::Line(_)))?;
     let range = post[0].hypot(post[1]);
@@ -123,14 +123,14 @@ fn post_and_wall(scene: &Scene) -> Option<Option<[[f64; 2]; 2]>> {
 
 /// Places on a ring around the array, from the direction of `from` to that of `to`.
 fn along_the_ring([from, to]: [[f64; 2]; 2]) -> Vec<Place> {
-    const STEPS: usize = 48;
+    const DIP_STEPS: usize = 48;
     let range = from[0].hypot(from[1]);
     let angle = |at: [f64; 2]| at[1].atan2(at[0]);
     let at = |step: usize| {
-        let angle = angle(from) + (angle(to) - angle(from)) * step as f64 / STEPS as f64;
+        let angle = angle(from) + (angle(to) - angle(from)) * step as f64 / DIP_STEPS as f64;
         Place::new(range * angle.cos(), range * angle.sin())
     };
-    (0..=STEPS).map(at).collect()
+    (0..=DIP_STEPS).map(at).collect()
 }
 
 #[cfg(test)]

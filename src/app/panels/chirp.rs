@@ -14,7 +14,7 @@ use egui_plot::{LineStyle, PlotPoints, Points};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Part of the chirp's duration as which the delay from the maximum range is drawn, where the delay is shorter.
-const DRAWN_DELAY: f64 = 0.25;
+const MIN_DRAWN_DELAY_PART: f64 = 0.25;
 
 /// Most echoes that are drawn, unless there are more objects.
 const MAX_ECHOES: usize = 60;
@@ -29,7 +29,7 @@ const LOW_PANEL_HEIGHT_POINTS: f32 = 370.0;
 const BEAT_PLACES: [f64; 2] = [0.2, 0.65];
 
 /// Radius of a handle, points.
-const HANDLE: f32 = 5.0;
+const HANDLE_RADIUS_POINTS: f32 = 5.0;
 
 /// Least and largest bandwidth and carrier that dragging reaches, hertz.
 const DRAGGED_BANDWIDTH_HZ: [f64; 2] = [1e6, 2e10];
@@ -39,7 +39,7 @@ const DRAGGED_CARRIER_HZ: [f64; 2] = [1e9, 3e11];
 const MIN_TITLE_HEIGHT_POINTS: f32 = 170.0;
 
 /// Least height in which the charts can be read, points.
-const LEAST_CHARTS_HEIGHT: f32 = 230.0;
+const MIN_CHARTS_HEIGHT_POINTS: f32 = 230.0;
 
 /// Decibels that the spectrum spans.
 const SPECTRUM_DB: f64 = 100.0;
@@ -69,7 +69,7 @@ fn contents(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>, heigh
     let interferer = state.scene().disturbances.interferer.filter(|_| !state.is_recorded());
     let longest = delay_seconds(radar.max_range_metres());
     let chirp = ChirpShape::of(radar);
-    let stretch = (DRAWN_DELAY * chirp.duration_seconds / longest).max(1.0);
+    let stretch = (MIN_DRAWN_DELAY_PART * chirp.duration_seconds / longest).max(1.0);
     let mut shown = Shown { state, chirp, echoes, interferer, stretch };
     choices(ui, radar, element, asked);
     let is_low = height < LOW_PANEL_HEIGHT_POINTS;
@@ -79,7 +79,7 @@ fn contents(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>, heigh
         let half_gigahertz = radar.carrier_hz / 2e9;
         ui.weak(format!("Drawn rising; the thesis' formula falls from {half_gigahertz} GHz: the same beats."));
     }
-    let left = (height - 1.0 - (ui.cursor().top() - top)).max(LEAST_CHARTS_HEIGHT);
+    let left = (height - 1.0 - (ui.cursor().top() - top)).max(MIN_CHARTS_HEIGHT_POINTS);
     let (_, area) = ui.allocate_space(vec2(ui.available_width(), left));
     let [frequencies, beat, spectrum] = parts(area);
     shown.thin();
@@ -229,7 +229,7 @@ impl Shown<'_> {
     /// Draws the handles at both ends of the sent chirp: the beginning is dragged up and down for the carrier, the end for bandwidth and duration.
     fn handles(&self, ui: &mut Ui, drawn: &Drawn, [microseconds, giga]: [f64; 2], asked: &mut Vec<Command>) {
         let mut radar = self.state.radar().clone();
-        let size = vec2(6.0 * HANDLE, 6.0 * HANDLE);
+        let size = vec2(6.0 * HANDLE_RADIUS_POINTS, 6.0 * HANDLE_RADIUS_POINTS);
         for (at, name, icon) in [
             ([0.0, 0.0], "Beginning of the chirp: its carrier", CursorIcon::ResizeVertical),
             ([microseconds, giga], "End of the chirp: bandwidth and duration", CursorIcon::Move),
@@ -249,7 +249,11 @@ impl Shown<'_> {
                 let seconds = radar.chirp_seconds * (1.0 + across);
                 radar.set_chirp_seconds(seconds.clamp(DRAGGED_SECONDS[0], DRAGGED_SECONDS[1]));
             }
-            let radius = if response.hovered() || response.dragged() { HANDLE + 1.5 } else { HANDLE };
+            let radius = if response.hovered() || response.dragged() {
+                HANDLE_RADIUS_POINTS + 1.5
+            } else {
+                HANDLE_RADIUS_POINTS
+            };
             let stroke = Stroke::new(1.0, ui.visuals().text_color());
             drawn.painter.circle(centre, radius, Inks::of(ui.visuals()).selected, stroke);
             response.on_hover_cursor(icon).on_hover_text(name);

@@ -8,7 +8,7 @@ use crate::app::widgets::{LIST_HEIGHT, button, choice, labelled, method_list, pa
 use eframe::egui::{ComboBox, Label, Rect, RichText, Ui, UiBuilder, Vec2, vec2};
 
 /// Height of a map's title, points.
-const TITLE: f32 = 18.0;
+const TITLE_HEIGHT_POINTS: f32 = 18.0;
 
 pub const PANEL: Content<MapMemory> =
     Content { wants: &[Want::Output, Want::Second], marks_age: true, ..Content::drawn(draw) };
@@ -75,7 +75,7 @@ pub fn show(
             Layout::Flip => (vec![area], compare.front),
         };
         for (index, (place, (title, map))) in places.into_iter().zip(maps.into_iter().skip(skipped)).enumerate() {
-            let (above, below) = place.split_top_bottom_at_y(place.top() + TITLE);
+            let (above, below) = place.split_top_bottom_at_y(place.top() + TITLE_HEIGHT_POINTS);
             // With the opacity of the map below.
             let old_ink = map.stale.then(|| ui.visuals().weak_text_color().gamma_multiply(0.55));
             let title = RichText::new(title).size(12.0);
@@ -118,7 +118,7 @@ fn choices(ui: &mut Ui, state: &State, second_progress: Option<f32>, asked: &mut
         }
         if compare.layout != Layout::Beside {
             for (label, map) in ["of", "and"].into_iter().zip(&mut compare.maps) {
-                choice(ui, label, "", map, Compare::OFFERED, |kind| (kind.title().to_owned(), kind.describe()));
+                choice(ui, label, "", map, Compare::OFFERED_MAPS, |kind| (kind.title().to_owned(), kind.describe()));
             }
         }
         button(ui, "Flip maps", ViewCommand::Flip, true, asked);

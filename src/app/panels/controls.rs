@@ -16,7 +16,7 @@ use eframe::egui::{self, ComboBox, Grid, Slider, SliderClamping, Ui};
 use std::time::Duration;
 
 /// Gap between two figures, points.
-const FIGURES_GAP: f32 = 20.0;
+const FIGURE_GAP_POINTS: f32 = 20.0;
 
 /// Settings, and the state of the reconstruction.
 pub struct Input<'a> {
@@ -199,7 +199,7 @@ fn figures(ui: &mut Ui, method: &dyn Reconstructor, run: &Run<'_>, asked: &mut V
     // Figures of an earlier scene or method are dimmed as their maps are.
     let is_current = !run.outdated || run.progress.is_none();
     ui.add_enabled_ui(is_current, |ui| {
-        Grid::new("figures").num_columns(3).spacing([FIGURES_GAP, 2.0]).show(ui, |ui| {
+        Grid::new("figures").num_columns(3).spacing([FIGURE_GAP_POINTS, 2.0]).show(ui, |ui| {
             let detection = m.detection.map_or("–".to_owned(), percent);
             for (name, value, tooltip) in [
                 ("P_D", detection, "Part of the target's cells above 0.9 that the output finds"),

@@ -15,13 +15,13 @@ use eframe::egui::{Align2, Sense, Slider, Stroke, TextureId, TextureOptions, Ui,
 use egui_plot::{LineStyle, VLine};
 
 /// Number of chirps that the button of an empty map sets.
-const FIRST_CHIRPS: usize = 128;
+const INITIAL_CHIRPS: usize = 128;
 
 /// Most objects that are marked.
-const MARKS: usize = 200;
+const MAX_MARKED_OBJECTS: usize = 200;
 
 /// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.
-const MOST_INTERVAL_MICROSECONDS: f64 = 1e5;
+const MAX_CHIRP_INTERVAL_MICROSECONDS: f64 = 1e5;
 
 pub const PANEL: Content<Texture, DopplerQuery> = Content {
     tells_answers: true,
@@ -56,7 +56,7 @@ fn chirps(ui: &mut Ui, state: &State, result: Computed<'_, DopplerResult>, asked
                 "From the beginning of a chirp to that of the next. Half as long makes twice the velocity unambiguous.";
             let mut microseconds = 1e6 * radar.chirp_interval_seconds;
             let least = 1e6 * radar.chirp_seconds;
-            let most = MOST_INTERVAL_MICROSECONDS.max(least);
+            let most = MAX_CHIRP_INTERVAL_MICROSECONDS.max(least);
             let field = NumberField::new(&mut microseconds).range(least..=most).speed(0.05).suffix(" µs");
             if labelled(ui, "Interval", tooltip, field).changed() {
                 radar.chirp_interval_seconds = (1e-6 * microseconds).max(radar.chirp_seconds);
@@ -128,9 +128,9 @@ fn said(ui: &mut Ui, state: &State, result: Computed<'_, DopplerResult>, asked: 
         ui.horizontal_wrapped(|ui| {
             ui.label("One chirp tells no velocity.");
             let mut radar = state.radar().clone();
-            radar.chirps = FIRST_CHIRPS;
+            radar.chirps = INITIAL_CHIRPS;
             radar.chirp_interval_seconds = radar.chirp_interval_seconds.max(radar.chirp_seconds);
-            press(ui, format!("Send {FIRST_CHIRPS} chirps"), "", RadarCommand::Set(Box::new(radar)), asked);
+            press(ui, format!("Send {INITIAL_CHIRPS} chirps"), "", RadarCommand::Set(Box::new(radar)), asked);
         });
     } else if !state.scene().is_moving() {
         ui.weak("Nothing moves: everything stands at 0 m/s. The Inspector sets velocities.");
@@ -179,7 +179,7 @@ fn velocity_ticks(most: f64) -> Vec<Tick> {
 
 /// Draws a ring at the predicted place of each object, dashed where its velocity folds.
 fn marks(ui: &Ui, state: &State, drawn: &Drawn, radar: &Radar) {
-    for (index, object) in state.scene().objects.iter().take(MARKS).enumerate() {
+    for (index, object) in state.scene().objects.iter().take(MAX_MARKED_OBJECTS).enumerate() {
         let blob = DopplerBlob::of(radar, object);
         let at = drawn.at([blob.apparent_velocity_metres_per_second, blob.apparent_range_metres]);
         edged([3.0, 1.4], MARK, |stroke| drawn.painter.circle_stroke(at, 7.0, stroke));

@@ -6,7 +6,7 @@ mod strip;
 #[cfg(test)]
 mod tests;
 
-use self::strip::MOST_MILLIMETRES;
+use self::strip::MAX_DISPLACEMENT_MILLIMETRES;
 use crate::app::content::Content;
 use crate::app::jobs::{Calibrated, CalibrationQuery};
 use crate::app::state::{Command, RadarCommand, State};
@@ -112,8 +112,8 @@ fn one(ui: &mut Ui, state: &State, memory: &mut ElementsMemory, asked: &mut Vec<
         for (name, value, unit, most, speed) in [
             ("gain", &mut error.gain.0, " dB", 60.0, 0.05),
             ("phase", &mut error.phase_degrees, "°", 360.0, 0.5),
-            ("place", &mut error.position_millimetres, " mm", MOST_MILLIMETRES, 0.01),
-            ("forward", &mut error.forward_millimetres, " mm", MOST_MILLIMETRES, 0.01),
+            ("place", &mut error.position_millimetres, " mm", MAX_DISPLACEMENT_MILLIMETRES, 0.01),
+            ("forward", &mut error.forward_millimetres, " mm", MAX_DISPLACEMENT_MILLIMETRES, 0.01),
         ] {
             let field = NumberField::new(value).range(-most..=most).clamp_existing_to_range(false);
             labelled(ui, name, "", field.speed(speed).max_decimals(3).suffix(unit));

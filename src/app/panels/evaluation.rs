@@ -13,14 +13,14 @@ use eframe::egui::{Grid, Ui};
 use std::collections::BTreeMap;
 
 /// The printed columns with their headings.
-const PRINTED: [(&str, [Printed; 3]); 3] = [
+const PRINTED_COLUMNS: [(&str, [Printed; 3]); 3] = [
     ("thesis: baseline", PRINTED_BASELINE),
     ("thesis: exp. 1", PRINTED_EXPERIMENT_1),
     ("thesis: exp. 2", PRINTED_EXPERIMENT_2),
 ];
 
 /// Contents of the test sets.
-const SETS: [&str; 3] = ["one point", "3 to 6 points", "points and lines"];
+const SET_CONTENTS: [&str; 3] = ["one point", "3 to 6 points", "points and lines"];
 
 /// The summarised rows, and the state of the current run.
 pub struct Input<'a> {
@@ -50,7 +50,7 @@ pub struct Line {
 }
 
 /// Scenes of each set that the button tries.
-const SCENES_A_SET: u32 = 10;
+const SCENES_PER_SET: u32 = 10;
 
 /// Remembers figures of the rows of this version.
 pub const PANEL: Content<Memo<u64, Vec<Line>>> = Content::drawn(draw);
@@ -103,7 +103,7 @@ fn buttons(ui: &mut Ui, input: &Input<'_>, asked: &mut Vec<Command>) {
         let (button, is_ready) = (("Evaluate", RowsCommand::CancelTrying), input.method.is_some());
         if start_or_cancel(ui, button, input.progress.is_some(), is_ready, tips, asked) {
             let (methods, kinds) = (input.method.into_iter().collect(), Kind::TEST_SETS.to_vec());
-            let choice = FailureChoice { methods, kinds, own: false, count: SCENES_A_SET, seed: 0 };
+            let choice = FailureChoice { methods, kinds, own: false, count: SCENES_PER_SET, seed: 0 };
             asked.push(RowsCommand::Try(choice).into());
         }
         bar(ui, input.progress, 180.0);
@@ -145,7 +145,7 @@ fn line(set: usize, method: &Text, rows: Vec<&Row>) -> Line {
 }
 
 fn tables(ui: &mut Ui, lines: &[Line]) {
-    for (set, name) in SETS.iter().enumerate() {
+    for (set, name) in SET_CONTENTS.iter().enumerate() {
         let lines: Vec<&Line> = lines.iter().filter(|line| line.set == set).collect();
         if lines.is_empty() {
             continue;
@@ -169,7 +169,7 @@ fn tables(ui: &mut Ui, lines: &[Line]) {
             }
             ui.weak("ms");
             ui.end_row();
-            for (name, columns) in PRINTED {
+            for (name, columns) in PRINTED_COLUMNS {
                 let printed = columns[set];
                 ui.weak(name);
                 ui.monospace(format!("{:.0}", printed.squared_error));

@@ -11,12 +11,12 @@ use crate::scene::Object;
 use eframe::egui::{CollapsingHeader, Grid, ScrollArea, Ui};
 
 /// Most lines that are shown.
-const LINES: usize = 200;
+const MAX_LISTED_LINES: usize = 200;
 
 /// Opacity of a list that belongs to an earlier scene.
-const OLD_OPACITY: f32 = 0.45;
+const OLD_LIST_OPACITY: f32 = 0.45;
 
-const NEEDED: &str = "How far the samples need this echo: of the energy around its range that the other echoes leave unexplained, the part \
+const CONFIDENCE_TOOLTIP: &str = "How far the samples need this echo: of the energy around its range that the other echoes leave unexplained, the part \
     that it explains. Low: the other echoes, noise or side lobes would do without it. – where the method does not say";
 
 /// The list of echoes, and the state of the method.
@@ -72,9 +72,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         };
         if input.stale {
             ui.weak("out of date; updating…");
-            ui.set_opacity(OLD_OPACITY);
+            ui.set_opacity(OLD_LIST_OPACITY);
         }
-        let more = found.len().saturating_sub(LINES);
+        let more = found.len().saturating_sub(MAX_LISTED_LINES);
         ui.weak(match found.len() {
             0 => format!("{method} found nothing."),
             1 => format!("{method} found one echo"),
@@ -87,9 +87,9 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
                     let power = "Power of the echo, relative to the strongest";
                     let range = ("range", "From the centre of the array");
                     let measured = [("angle", CONVENTION), ("cos θ", cosine), range, ("dB", power)];
-                    headings(ui, [("", "")].into_iter().chain(measured).chain([("needed", NEEDED)]));
+                    headings(ui, [("", "")].into_iter().chain(measured).chain([("needed", CONFIDENCE_TOOLTIP)]));
                 }
-                found.iter().take(LINES).enumerate().for_each(|(i, d)| line(ui, i + 1, d, input.has_ranges));
+                found.iter().take(MAX_LISTED_LINES).enumerate().for_each(|(i, d)| line(ui, i + 1, d, input.has_ranges));
             });
             if more > 0 {
                 ui.weak(format!("and {more} weaker ones"));

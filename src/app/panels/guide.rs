@@ -12,7 +12,7 @@ use crate::signal::Floor;
 use eframe::egui::{self, ScrollArea, Ui};
 
 /// The text: chapters that begin with a heading, in the order of [`CHAPTERS`].
-const TEXT: &str = include_str!("../../../assets/guide.md");
+const GUIDE_TEXT: &str = include_str!("../../../assets/guide.md");
 
 type Step = (&'static str, fn() -> Vec<Command>);
 
@@ -130,7 +130,7 @@ fn floor(floor: Floor, normalisation: Normalisation) -> Vec<Command> {
 }
 
 fn chapters() -> impl Iterator<Item = &'static str> {
-    TEXT.split("\n## ")
+    GUIDE_TEXT.split("\n## ")
 }
 
 fn heading(chapter: &str) -> &str {

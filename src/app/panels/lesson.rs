@@ -74,7 +74,7 @@ fn pinned_question(
     asked: &mut Vec<Command>,
 ) {
     let Some(step) = run.current() else { return };
-    let most = MOST_OF_HEIGHT * ui.available_height();
+    let most = MAX_QUESTION_HEIGHT_PART * ui.available_height();
     let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(12, 6));
     egui::Panel::bottom("question").frame(frame).show(ui, |ui| {
         // The height is that of the question, so that the rest is left for the text above.
@@ -92,7 +92,7 @@ fn pinned_question(
 }
 
 /// Largest part of the panel's height that the pinned question takes.
-const MOST_OF_HEIGHT: f32 = 0.7;
+const MAX_QUESTION_HEIGHT_PART: f32 = 0.7;
 
 /// Height of the panel on the whole screen for which text has its usual size, points; text grows with the height.
 const PROJECTED_HEIGHT: f32 = 380.0;

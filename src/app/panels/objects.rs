@@ -20,7 +20,7 @@ pub struct ObjectsMemory {
 const ROW_HEIGHT: f32 = 20.0;
 
 /// Rows that Page Up and Page Down pass.
-const ROWS_A_PAGE: usize = 10;
+const ROWS_PER_PAGE: usize = 10;
 
 pub const PANEL: Content<ObjectsMemory> = Content::drawn(|ui, cx| show(ui, cx.state, cx.memory));
 
@@ -49,14 +49,14 @@ fn keys(list: &Response, state: &State) -> Option<Command> {
     let (now, count) = (state.editor.selection().latest(), state.editor.scene().objects.len());
     let modes = [(Modifiers::SHIFT, SelectionMode::Range), (Modifiers::NONE, SelectionMode::Replace)];
     let asked = modes.map(|(modifiers, mode)| {
-        let to = list_keys(list, modifiers, now, count, ROWS_A_PAGE)?;
+        let to = list_keys(list, modifiers, now, count, ROWS_PER_PAGE)?;
         Some(Command::Edit(EditCommand::Select(vec![to], mode)))
     });
     asked.into_iter().flatten().last()
 }
 
 /// Right ends of the columns, as parts of the width.
-const COLUMNS: [f32; 4] = [0.34, 0.56, 0.78, 1.0];
+const COLUMN_ENDS: [f32; 4] = [0.34, 0.56, 0.78, 1.0];
 
 fn place_fields(coordinates: Coordinates) -> [(Field, &'static str); 2] {
     match coordinates {
@@ -78,7 +78,7 @@ fn cells(ui: &Ui, rect: Rect, texts: [String; 4], ink: egui::Color32) {
     for (column, text) in texts.into_iter().enumerate() {
         let (at, align) = match column {
             0 => (pos2(rect.left() + 6.0, rect.center().y), Align2::LEFT_CENTER),
-            _ => (pos2(rect.left() + COLUMNS[column] * rect.width() - 8.0, rect.center().y), Align2::RIGHT_CENTER),
+            _ => (pos2(rect.left() + COLUMN_ENDS[column] * rect.width() - 8.0, rect.center().y), Align2::RIGHT_CENTER),
         };
         ui.painter().text(at, align, text, FontId::proportional(12.5), ink);
     }

@@ -18,7 +18,7 @@ use num_complex::Complex64;
 const PLAY_SECONDS: f32 = 4.0;
 
 /// Length of the arrow's head, points.
-const HEAD: f32 = 12.0;
+const ARROW_HEAD_POINTS: f32 = 12.0;
 
 /// Progress of playing the chain.
 #[derive(Default)]
@@ -196,7 +196,7 @@ fn ends(ui: &Ui, chart: &mut Chart<'_>, radar: &Radar, chain: &[[f64; 2]], first
 
 fn arrow(drawn: &Drawn, end: [f64; 2]) {
     let (from, to) = (drawn.at([0.0, 0.0]), drawn.at(end));
-    let back = HEAD * (from - to).normalized();
+    let back = ARROW_HEAD_POINTS * (from - to).normalized();
     let ends = [from, to + Rot2::from_angle(0.4) * back, to + Rot2::from_angle(-0.4) * back];
     edged([4.0, 1.8], MARK, |stroke| ends.map(|end| drawn.painter.line_segment([end, to], stroke)));
 }

@@ -117,20 +117,20 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
         labelled(ui, "Start from", "Radars that are built, and radars that show what a constant does", menu);
     });
     // As many lines for every radar, so that the table below stays in place. The tooltip has the rest of a longer text.
-    let about = chosen.map_or(OF_YOUR_OWN, |preset| preset.about);
+    let about = chosen.map_or(OWN_RADAR_TEXT, |preset| preset.about);
     let (font, ink) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
     let mut lines = LayoutJob::simple(about.to_owned(), font, ink, f32::INFINITY);
-    lines.wrap.max_rows = ABOUT_LINES;
+    lines.wrap.max_rows = DESCRIPTION_LINES;
     ui.scope(|ui| {
-        ui.set_min_height(ABOUT_LINES as f32 * ui.text_style_height(&TextStyle::Body) + 2.0);
+        ui.set_min_height(DESCRIPTION_LINES as f32 * ui.text_style_height(&TextStyle::Body) + 2.0);
         ui.add(Label::new(lines).wrap());
     });
 }
 
 /// Lines of the text about a radar.
-const ABOUT_LINES: usize = 2;
+const DESCRIPTION_LINES: usize = 2;
 
-const OF_YOUR_OWN: &str = "Its constants are those of no radar in the list.";
+const OWN_RADAR_TEXT: &str = "Its constants are those of no radar in the list.";
 
 const CARRIER: Quantity = Quantity::metres(
     "carrier",
@@ -181,7 +181,7 @@ const NAMES: [&str; 14] = [
     "range migration",
 ];
 
-const NO_RANGES: &str = "one sample has no range resolution";
+const NO_RANGE_TEXT: &str = "one sample has no range resolution";
 
 fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, free: Free) {
     let is_free = free.constants;
@@ -190,10 +190,10 @@ fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, fr
     number(ui, table, &CARRIER, (&mut radar.carrier_hz, 1e9), &text, is_free);
     let is_snapshot = radar.samples == 1;
     if is_snapshot && !is_free {
-        table.row(ui, (BANDWIDTH.name, BANDWIDTH.tooltip), NO_RANGES, |ui, _| ui.weak("not known"));
+        table.row(ui, (BANDWIDTH.name, BANDWIDTH.tooltip), NO_RANGE_TEXT, |ui, _| ui.weak("not known"));
     } else {
         let bin = format!("range bin {}", metres(follows.range_bin_metres));
-        let text = if is_snapshot { NO_RANGES } else { &bin };
+        let text = if is_snapshot { NO_RANGE_TEXT } else { &bin };
         number(ui, table, &BANDWIDTH, (&mut radar.bandwidth_hz, 1e6), text, is_free);
     }
     let text = match is_snapshot {
@@ -218,7 +218,7 @@ fn rows(ui: &mut Ui, table: Table, radar: &mut Radar, follows: &Consequences, fr
     }
     let text = format!("an echo from 10 m has amplitude {:.3}", radar.transmit_power_watts / 100.0);
     number(ui, table, &POWER, (&mut radar.transmit_power_watts, 1.0), &text, is_free);
-    table.row(ui, (antennas::NAME, antennas::TOOLTIP), &antennas::follows(radar), |ui, label| {
+    table.row(ui, (antennas::NAME, antennas::ANTENNAS_TOOLTIP), &antennas::follows(radar), |ui, label| {
         ui.add_enabled_ui(is_free, |ui| ui.vertical(|ui| antennas::choices(ui, radar, label)));
     });
     choices(ui, table, radar, follows, is_free);

@@ -11,7 +11,7 @@ use eframe::egui::{self, Sense, Slider, Ui, vec2};
 use egui_plot::{Line, Plot, PlotPoints};
 
 /// Size of a small range profile, points, and the decibels below its peak that it shows.
-const PROFILE: egui::Vec2 = vec2(180.0, 44.0);
+const PROFILE_SIZE_POINTS: egui::Vec2 = vec2(180.0, 44.0);
 const SHOWN_DB: f64 = 80.0;
 
 /// Remembers the UDP port in the field of a capture card.
@@ -131,7 +131,10 @@ fn profile(ui: &mut Ui, number: usize, offer: &ReadingOption, is_taken: bool) ->
     let decibels = |power: &f64| (10.0 * (power / peak).max(f64::MIN_POSITIVE).log10()).max(-SHOWN_DB);
     let points = offer.power.iter().enumerate().map(|(bin, power)| [bin as f64, decibels(power)]);
     let line = Line::new("", points.collect::<PlotPoints<'static>>()).color(colour).width(1.2);
-    let plot = Plot::new(("profile", number)).width(PROFILE.x).height(PROFILE.y).min_size(PROFILE);
+    let plot = Plot::new(("profile", number))
+        .width(PROFILE_SIZE_POINTS.x)
+        .height(PROFILE_SIZE_POINTS.y)
+        .min_size(PROFILE_SIZE_POINTS);
     let plot = plot.show_axes(false).show_grid(false).show_x(false).show_y(false).sense(Sense::click());
     let plot = plot.allow_zoom(false).allow_drag(false).allow_scroll(false).allow_boxed_zoom(false);
     let response = plot.include_y(0.0).include_y(-SHOWN_DB).show(ui, |plot| plot.line(line)).response;

@@ -14,7 +14,7 @@ use egui_plot::LineStyle;
 const MIN_DRAWN_P_FA: f64 = 1e-5;
 
 /// Marks of P_FA: powers of ten.
-const POWERS: [(f64, &str); 6] =
+const FALSE_ALARM_MARKS: [(f64, &str); 6] =
     [(-5.0, "≤0.001"), (-4.0, "0.01"), (-3.0, "0.1"), (-2.0, "1"), (-1.0, "10"), (0.0, "100")];
 
 /// The characteristic, and the threshold in use.
@@ -70,7 +70,7 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
         }
         legend::row(ui, &entries);
     });
-    let ticks = POWERS.map(|(value, text)| Tick { value, text: text.to_owned() });
+    let ticks = FALSE_ALARM_MARKS.map(|(value, text)| Tick { value, text: text.to_owned() });
     let x = Axis { ticks: Some(&ticks), ..Axis::new(MIN_DRAWN_P_FA.log10(), 0.0, "P_FA, %") };
     let mut chart = Chart::new("Receiver operating characteristic", x, Axis::new(0.0, 102.0, "P_D, %"));
     chart.line(roc.iter().map(place), Stroke::new(1.8, line), LineStyle::Solid);

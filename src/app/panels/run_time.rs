@@ -12,7 +12,7 @@ use egui_plot::{HLine, LineStyle, MarkerShape, Points};
 use std::collections::BTreeSet;
 
 /// Least error of the logarithmic axis; smaller ones are drawn there.
-const SMALLEST_ERROR: f64 = 1e-16;
+const MIN_DRAWN_ERROR: f64 = 1e-16;
 
 /// The measurements, and the state of the current one.
 pub struct Input<'a> {
@@ -120,7 +120,7 @@ fn series(rows: &[FrontRow], memory: &RunTimeMemory, dark: bool) -> Vec<Series> 
     let task = if memory.drags { FrontTask::Drag } else { FrontTask::Scratch };
     let drawn = |r: &&FrontRow| r.task == task && memory.reflectors.is_none_or(|count| count == r.reflectors);
     let shown: Vec<&FrontRow> = rows.iter().filter(drawn).collect();
-    let place = |r: &&&FrontRow| [r.signal_error.max(SMALLEST_ERROR).log10(), r.median_ms.log10()];
+    let place = |r: &&&FrontRow| [r.signal_error.max(MIN_DRAWN_ERROR).log10(), r.median_ms.log10()];
     let entrants = std::iter::once(Entrant::Planned).chain(Algorithm::ALL.map(Entrant::Forced));
     let each = entrants.flat_map(|entrant| [Precision::F32, Precision::F64].map(|precision| (entrant, precision)));
     let of = |(entrant, precision): (Entrant, Precision)| {
@@ -149,7 +149,7 @@ fn plot(ui: &mut Ui, input: &Input<'_>, memory: &RunTimeMemory) {
         let within = (low.ceil() as i32..=high.floor() as i32).filter(|power| power.rem_euclid(step as i32) == 0);
         within.map(|power| Tick { value: f64::from(power), text: power_of_ten(power) }).collect()
     };
-    let (x, y) = (span(0, SMALLEST_ERROR.log10(), -2.0), span(1, 0.0, 2.0));
+    let (x, y) = (span(0, MIN_DRAWN_ERROR.log10(), -2.0), span(1, 0.0, 2.0));
     let (x_marks, y_marks) = (powers(x, 4), powers(y, 1));
     let x = Axis { ticks: Some(&x_marks), ..Axis::new(x[0], x[1], "largest error of a sample") };
     let y = Axis { ticks: Some(&y_marks), ..Axis::new(y[0], y[1], "three maps, ms") };

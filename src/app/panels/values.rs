@@ -8,13 +8,13 @@ use crate::app::widgets::{CONVENTION, direction, headings, padded, right_aligned
 use eframe::egui::{Grid, RichText, ScrollArea, Ui};
 
 /// The maps that are listed, from the inputs to the differences.
-pub const LISTED: [MapKind; 9] = {
+pub const LISTED_MAPS: [MapKind; 9] = {
     use MapKind::*;
     [Input0, Input1, Target, Output, Second, Difference, Doubt, SecondDifference, Unexplained]
 };
 
 /// Headings of the table, with their tooltips.
-const COLUMNS: [(&str, &str); 3] = [
+const COLUMN_HEADINGS: [(&str, &str); 3] = [
     ("map", "Every map there is; those of the second method while the panel Compare is in sight"),
     ("Λ", "Normalised magnitude, 0 to 1; of a difference with its sign"),
     (
@@ -47,7 +47,7 @@ fn draw(ui: &mut Ui, cx: Cx<'_>) -> Vec<Command> {
         let cells = cells(jobs, kind)?;
         Some(Row { kind, method, cells, updating: is_updating(jobs, kind) })
     };
-    let rows: Vec<Row<'_>> = LISTED.into_iter().filter(listed).filter_map(row).collect();
+    let rows: Vec<Row<'_>> = LISTED_MAPS.into_iter().filter(listed).filter_map(row).collect();
     show(ui, state, &rows)
 }
 
@@ -61,7 +61,7 @@ pub fn show(ui: &mut Ui, state: &State, rows: &[Row<'_>]) -> Vec<Command> {
         ui.weak(format!("range bin {bin}, column {column}"));
         ScrollArea::both().auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("values").num_columns(3).striped(true).spacing([18.0, 3.0]).show(ui, |ui| {
-                headings(ui, COLUMNS);
+                headings(ui, COLUMN_HEADINGS);
                 rows.iter().for_each(|row| line(ui, row, bin, column));
             });
         });

@@ -7,7 +7,7 @@ use crate::radar::Radar;
 use std::sync::Arc;
 
 /// Most pinned cuts; a new one replaces the oldest. Each keeps its maps in memory.
-const PINS: usize = 3;
+const MAX_PINNED_CUTS: usize = 3;
 
 #[derive(Debug, Clone)]
 pub struct CutMap {
@@ -29,7 +29,7 @@ pub struct PinnedCut {
 /// Adds a cut to the pinned ones, the oldest first.
 pub fn pin_cut(pins: &mut Vec<PinnedCut>, pin: PinnedCut) {
     pins.push(pin);
-    pins.drain(..pins.len().saturating_sub(PINS));
+    pins.drain(..pins.len().saturating_sub(MAX_PINNED_CUTS));
 }
 
 #[cfg(test)]

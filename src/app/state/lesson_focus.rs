@@ -10,11 +10,11 @@ use crate::scene::{Object, Scene};
 use eframe::egui::{pos2, vec2};
 
 /// Least part shown to either side of two blobs: a ratio of all columns, and metres of range.
-const LEAST_ACROSS: f32 = 0.15;
-const LEAST_RANGE_METRES: f64 = 4.0;
+const MIN_SIDE_PART: f32 = 0.15;
+const MIN_SIDE_RANGE_METRES: f64 = 4.0;
 
 /// Part shown to either side of the middle of two blobs, as a multiple of their distance.
-const TIMES_APART: f32 = 2.0;
+const SIDE_DISTANCE_RATIO: f32 = 2.0;
 
 /// The map that a lesson's file names.
 pub fn kind_of(map: MapName) -> MapKind {
@@ -81,10 +81,10 @@ pub fn part_of(challenge: &Challenge, radar: &Radar, scene: &Scene) -> Option<Ma
         pos2(across as f32, ((bin + 0.5) / radar.samples as f64) as f32)
     };
     let (a, b) = (at(object(0)?), at(object(1)?));
-    let apart = TIMES_APART * (a - b).abs();
-    let least_range = (LEAST_RANGE_METRES / radar.max_range_metres()) as f32;
+    let apart = SIDE_DISTANCE_RATIO * (a - b).abs();
+    let least_range = (MIN_SIDE_RANGE_METRES / radar.max_range_metres()) as f32;
     // An end's beam is as wide as part of the map, so all directions stay in sight.
-    let across = if matches!(map, MapName::Target | MapName::Output) { apart.x.max(LEAST_ACROSS) } else { 1.0 };
+    let across = if matches!(map, MapName::Target | MapName::Output) { apart.x.max(MIN_SIDE_PART) } else { 1.0 };
     Some(MapView::around((a + b.to_vec2()) / 2.0, vec2(across, apart.y.max(least_range))))
 }
 

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
 /// Number of the latest times kept of a method.
-const KEPT_TIMES: usize = 5;
+const TIMES_PER_METHOD: usize = 5;
 
 /// Elements and samples, which decide most of a method's time.
 type Shape = (usize, usize);
@@ -33,7 +33,7 @@ impl MethodTimes {
         });
         let times = &mut of_method[index].1;
         times.push_back(took.as_secs_f64() * 1e3);
-        while times.len() > KEPT_TIMES {
+        while times.len() > TIMES_PER_METHOD {
             times.pop_front();
         }
     }

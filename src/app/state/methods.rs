@@ -5,7 +5,7 @@ use crate::reconstruct::Reconstructor;
 use std::sync::Arc;
 
 /// Methods for any radar and scene, in place of one that refuses the radar.
-const ROBUST: [&str; 2] = ["capon", "baseline"];
+const FALLBACK_METHODS: [&str; 2] = ["capon", "baseline"];
 
 /// Every method, and the preferred one.
 #[derive(Default)]
@@ -39,7 +39,7 @@ impl Methods {
     pub fn instead_of(&self, name: &str, radar: &Radar) -> Option<&'static str> {
         let preferred = crate::methods::preferred_for(radar).name();
         let works = |other: &&str| *other != name && self.called(other).is_some_and(|m| m.check_array(radar).is_ok());
-        [preferred].into_iter().chain(ROBUST).find(|other| works(other))
+        [preferred].into_iter().chain(FALLBACK_METHODS).find(|other| works(other))
     }
 
     /// A method that makes maps from the elements of `layout`, if there is one.
@@ -53,7 +53,7 @@ impl Methods {
     /// The method to compare with the one called `first`: the one called `name`, else a robust one, else any other.
     pub fn second_to(&self, first: Option<&str>, name: &str) -> Option<&Arc<dyn Reconstructor>> {
         let other = |m: &&Arc<dyn Reconstructor>| Some(m.name()) != first;
-        let plain = || ROBUST.iter().rev().find_map(|name| self.called(name).filter(other));
+        let plain = || FALLBACK_METHODS.iter().rev().find_map(|name| self.called(name).filter(other));
         self.called(name).or_else(plain).or_else(|| self.all.iter().find(other)).or_else(|| self.all.first())
     }
 

@@ -68,7 +68,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Most recent files in the list.
-const RECENT: usize = 10;
+const MAX_RECENT_FILES: usize = 10;
 
 /// All state that commands change.
 #[derive(Default)]
@@ -288,7 +288,7 @@ impl State {
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         self.recent.retain(|p| *p != path);
         self.recent.insert(0, path);
-        self.recent.truncate(RECENT);
+        self.recent.truncate(MAX_RECENT_FILES);
     }
 
     pub fn title(&self) -> String {

@@ -6,11 +6,11 @@ use egui_tiles::{Container, LinearDir, Shares, Tile, TileId, Tiles};
 use serde::{Deserialize, Serialize};
 
 /// Neighbours keep at least this much, points; a lesson more, so that its text is still read.
-const LEAST_OF_NEIGHBOURS: f32 = 120.0;
-const LEAST_OF_LESSON: f32 = 230.0;
+const MIN_NEIGHBOUR_POINTS: f32 = 120.0;
+const MIN_LESSON_POINTS: f32 = 230.0;
 
 /// Height of the tabs above a panel, points.
-const TABS: f32 = 24.0;
+const TABS_HEIGHT_POINTS: f32 = 24.0;
 
 /// Shares of a container before a panel took room in it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -43,7 +43,7 @@ pub fn least_size(panel: Panel) -> Vec2 {
 pub fn make(tiles: &mut Tiles<Panel>, panel: Panel) -> Vec<Taken> {
     let least = least_size(panel);
     let across = grow(tiles, panel, LinearDir::Horizontal, least.x);
-    let down = grow(tiles, panel, LinearDir::Vertical, least.y + TABS);
+    let down = grow(tiles, panel, LinearDir::Vertical, least.y + TABS_HEIGHT_POINTS);
     across.into_iter().chain(down).collect()
 }
 
@@ -86,7 +86,7 @@ fn aligned(tiles: &Tiles<Panel>, column: TileId) -> Vec<TileId> {
 fn kept_of(tiles: &Tiles<Panel>, neighbour: TileId) -> f32 {
     let lesson = tiles.find_pane(&Panel::Lesson);
     let has_lesson = std::iter::successors(lesson, |id| tiles.parent_of(*id)).any(|id| id == neighbour);
-    if has_lesson { LEAST_OF_LESSON } else { LEAST_OF_NEIGHBOURS }
+    if has_lesson { MIN_LESSON_POINTS } else { MIN_NEIGHBOUR_POINTS }
 }
 
 /// Enlarges the panel along one direction, from the innermost container outwards, until it has `need` points.

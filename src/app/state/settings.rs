@@ -190,7 +190,7 @@ impl Default for Compare {
 }
 
 impl Compare {
-    pub const OFFERED: [MapKind; 9] = {
+    pub const OFFERED_MAPS: [MapKind; 9] = {
         use MapKind::*;
         [Input0, Input1, Target, Output, Second, OutputAbove, SecondAbove, Difference, SecondDifference]
     };

@@ -9,13 +9,13 @@ use eframe::egui::{
 use ndarray::ArrayView2;
 use std::sync::Arc;
 
-const COLOURS: f32 = 9.0;
+const BAR_WIDTH_POINTS: f32 = 9.0;
 
 /// Gaps between map and colours, and between colours and labels, points.
-const GAPS: [f32; 2] = [7.0, 5.0];
+const BAR_GAPS_POINTS: [f32; 2] = [7.0, 5.0];
 
 /// Margin right of labels and title, points.
-const END: f32 = 4.0;
+const RIGHT_MARGIN_POINTS: f32 = 4.0;
 
 /// Width of the shortest title of a map's axis, points.
 const AXIS_TITLE: f32 = 60.0;
@@ -49,8 +49,8 @@ impl Bar {
     }
 
     pub fn draw(&self, ui: &Ui, painter: &Painter, map: Rect) {
-        let left = map.right() + GAPS[0];
-        let rect = Rect::from_x_y_ranges(left..=left + COLOURS, map.y_range());
+        let left = map.right() + BAR_GAPS_POINTS[0];
+        let rect = Rect::from_x_y_ranges(left..=left + BAR_WIDTH_POINTS, map.y_range());
         let mut mesh = Mesh::default();
         let steps = 64;
         for i in 0..=steps {
@@ -70,21 +70,23 @@ impl Bar {
         for tick in self.labels(rect.height()) {
             let y = rect.bottom() - axis.part(tick.value) * rect.height();
             painter.hline(rect.right()..=rect.right() + 3.0, y, Stroke::new(1.0, ink));
-            axes::text(painter, pos2(rect.right() + GAPS[1], y), Align2::LEFT_CENTER, &tick.text, ink);
+            axes::text(painter, pos2(rect.right() + BAR_GAPS_POINTS[1], y), Align2::LEFT_CENTER, &tick.text, ink);
         }
-        let at = pos2(map.right() + axes::RIGHT - END, rect.bottom() + 18.0);
+        let at = pos2(map.right() + axes::RIGHT - RIGHT_MARGIN_POINTS, rect.bottom() + 18.0);
         axes::text(painter, at, Align2::RIGHT_TOP, self.title_for(painter, map.width()), ink);
     }
 
     /// The title, or its first part where a map of `width` points has no room for more beside its axis' title.
     fn title_for(&self, painter: &Painter, width: f32) -> &'static str {
         let short = self.title.split(',').next().unwrap_or_default();
-        axes::fitting(painter, axes::RIGHT - END + (width - AXIS_TITLE) / 2.0, &[self.title, short])
+        axes::fitting(painter, axes::RIGHT - RIGHT_MARGIN_POINTS + (width - AXIS_TITLE) / 2.0, &[self.title, short])
     }
 
     /// Width of the title's part beneath a map of `width` points.
     pub fn overhang(&self, painter: &Painter, width: f32) -> f32 {
-        (axes::width(painter, self.title_for(painter, width)) + GAPS[0] - (axes::RIGHT - END)).max(0.0)
+        (axes::width(painter, self.title_for(painter, width)) + BAR_GAPS_POINTS[0]
+            - (axes::RIGHT - RIGHT_MARGIN_POINTS))
+            .max(0.0)
     }
 }
 

@@ -28,14 +28,15 @@ fn with_key<'a>(ui: &Ui, button: Button<'a>, listed: &Entry) -> Button<'a> {
 }
 
 /// Side of the place for a tick, points.
-const TICK: f32 = 12.0;
+const TICK_SIDE_POINTS: f32 = 12.0;
 
 /// A menu entry of a switch, with a tick while it is `on`.
 pub fn ticked(ui: &mut Ui, name: &str, command: impl Into<Command>, on: bool, asked: &mut Vec<Command>) {
     let command = command.into();
     let Some(listed) = command.entry() else { return };
     let place = IdSalt::new("tick");
-    let button = with_key(ui, Button::new((Atom::custom(place, vec2(TICK, TICK)), name)), listed);
+    let button =
+        with_key(ui, Button::new((Atom::custom(place, vec2(TICK_SIDE_POINTS, TICK_SIDE_POINTS)), name)), listed);
     let drawn = button.atom_ui(ui);
     if let Some(rect) = drawn.rect(place).filter(|_| on) {
         let [left, low, right] = [vec2(1.0, 6.0), vec2(4.5, 9.5), vec2(11.0, 2.0)].map(|at| rect.min + at);

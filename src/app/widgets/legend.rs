@@ -3,8 +3,8 @@
 use eframe::egui::{Color32, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
 /// Width of a sign, and its gap to the name, points.
-const SIGN: f32 = 14.0;
-const GAP: f32 = 4.0;
+const SIGN_WIDTH_POINTS: f32 = 14.0;
+const SIGN_GAP_POINTS: f32 = 4.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
@@ -30,11 +30,11 @@ pub fn row(ui: &mut Ui, entries: &[Entry]) {
             // Sign and name are one piece, so that no row ends between them.
             let (font, ink) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
             let galley = ui.painter().layout_no_wrap(name.clone(), font, ink);
-            let size = galley.size() + vec2(SIGN + GAP, 0.0);
+            let size = galley.size() + vec2(SIGN_WIDTH_POINTS + SIGN_GAP_POINTS, 0.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
-            sign(ui, rect.with_max_x(rect.left() + SIGN), *drawn, *colour);
-            ui.painter().galley(rect.min + vec2(SIGN + GAP, 0.0), galley, ink);
+            sign(ui, rect.with_max_x(rect.left() + SIGN_WIDTH_POINTS), *drawn, *colour);
+            ui.painter().galley(rect.min + vec2(SIGN_WIDTH_POINTS + SIGN_GAP_POINTS, 0.0), galley, ink);
         }
     });
 }

@@ -22,7 +22,7 @@ const DESCRIPTION_SIZE: f32 = 12.0;
 const TIME_WIDTH: f32 = 56.0;
 
 /// Most methods that the menu's title names; more are counted.
-const MOST_NAMED: usize = 2;
+const MAX_NAMED_METHODS: usize = 2;
 
 /// Refusals of methods that can't use the layout in use, by the method's name.
 fn refusals(state: &State) -> BTreeMap<&'static str, String> {
@@ -38,7 +38,7 @@ fn refusals(state: &State) -> BTreeMap<&'static str, String> {
 /// Draws a menu of methods with a box for each; its title names those of `chosen`.
 pub fn method_menu(ui: &mut Ui, state: &State, chosen: &mut Vec<&'static str>, tip: &str) {
     let title = match chosen.len() {
-        count if count > MOST_NAMED => format!("{count} methods"),
+        count if count > MAX_NAMED_METHODS => format!("{count} methods"),
         _ => chosen.join(", "),
     };
     let mut ticked: BTreeSet<&str> = chosen.iter().copied().collect();

@@ -8,10 +8,10 @@ use eframe::egui::{RichText, Ui};
 use std::sync::Arc;
 
 /// Number of maps in the training time that is shown. With so many the second edition of `live` was near its end (training/README.md).
-const TOLD_MAPS: f64 = 50_000.0;
+const ESTIMATED_MAPS: f64 = 50_000.0;
 
 /// Number of cores in the training time that is shown.
-const CORES: f64 = 2.0;
+const ESTIMATED_CORES: f64 = 2.0;
 
 /// Names the networks that take the radar, or shows the commands that train one.
 pub fn networks(ui: &mut Ui, all: &[Arc<dyn Reconstructor>], radar: &Radar, asked: &mut Vec<Command>) {
@@ -40,14 +40,14 @@ fn training(ui: &mut Ui, radar: &Radar) {
             return;
         }
     };
-    let hours = TOLD_MAPS * size.training_seconds_a_map() / CORES / 3600.0;
+    let hours = ESTIMATED_MAPS * size.training_seconds_a_map() / ESTIMATED_CORES / 3600.0;
     let time = match hours {
         hours if hours < 2.0 => counted((60.0 * hours).ceil() as u32, "minute", "minutes"),
         hours => counted(hours.round() as u32, "hour", "hours"),
     };
     let minutes = (60.0 * hours).ceil();
     ui.weak(format!(
-        "Save the scene as radar.toml, then train one: {TOLD_MAPS} maps in about {time} on two processor cores."
+        "Save the scene as radar.toml, then train one: {ESTIMATED_MAPS} maps in about {time} on two processor cores."
     ));
     let commands = format!(
         "python3 training/train_live.py --radar radar.toml --out own --minutes {minutes} --threads 2\n\

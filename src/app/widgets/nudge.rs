@@ -4,7 +4,7 @@ use crate::app::state::{Command, EditCommand};
 use eframe::egui::{Context, EventFilter, Key, Modifiers, Response, Vec2, vec2};
 
 /// Ratio of a view that an arrow key pans by.
-const PAN: f32 = 0.1;
+const PAN_RATIO: f32 = 0.1;
 
 /// Steps to the right and upwards by arrow keys; with Shift ten times as far, with Alt a tenth.
 fn steps(ctx: &Context) -> Option<(f64, f64)> {
@@ -47,7 +47,7 @@ pub fn pan_keys(response: &Response, free: bool) -> Option<Vec2> {
             by.x += pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
             by.y += pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
         }
-        PAN * by
+        PAN_RATIO * by
     });
     (by != vec2(0.0, 0.0)).then_some(by)
 }

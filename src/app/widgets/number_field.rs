@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 use std::rc::Rc;
 
 /// A bound of a range beyond this is not shown in messages.
-const LARGEST_TOLD: f64 = 1e15;
+const MAX_PRINTED_BOUND: f64 = 1e15;
 
 /// The numbers that a field accepts.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +60,7 @@ impl Wanted {
     fn told(&self) -> String {
         let number = if self.is_whole { "a whole number" } else { "a number" };
         let bound =
-            |value: f64| Some(value).filter(|v| v.abs() < LARGEST_TOLD).map(|v| format!("{v}").replace('-', "−"));
+            |value: f64| Some(value).filter(|v| v.abs() < MAX_PRINTED_BOUND).map(|v| format!("{v}").replace('-', "−"));
         let unit = self.unit.trim();
         let unit = if unit.is_empty() || unit == "°" { unit.to_owned() } else { format!(" {unit}") };
         match (bound(*self.range.start()), bound(*self.range.end())) {

@@ -72,10 +72,10 @@ fn within(ui: &mut Ui, margin: Margin, content: impl FnOnce(&mut Ui, &mut Vec<Co
 }
 
 /// Width of the names, points.
-const NAMES: f32 = 78.0;
+const NAME_WIDTH_POINTS: f32 = 78.0;
 
 /// Gap between a name and its widgets, points.
-const GAP: f32 = 8.0;
+const NAME_GAP_POINTS: f32 = 8.0;
 
 /// A row: its name, then its widget. The name labels the widget for screen readers.
 pub fn row(ui: &mut Ui, name: &str, tooltip: &str, widget: impl FnOnce(&mut Ui) -> Response) {
@@ -93,11 +93,11 @@ fn named(ui: &mut Ui, name: &str, tooltip: &str, widgets: impl FnOnce(&mut Ui, &
     let height = ui.spacing().interact_size.y;
     ui.horizontal_top(|ui| {
         let line = Layout::left_to_right(Align::Center);
-        let label = ui.allocate_ui_with_layout(vec2(NAMES, height), line, |ui| {
-            ui.set_min_size(vec2(NAMES, height));
+        let label = ui.allocate_ui_with_layout(vec2(NAME_WIDTH_POINTS, height), line, |ui| {
+            ui.set_min_size(vec2(NAME_WIDTH_POINTS, height));
             ui.label(name).on_hover_text(tooltip)
         });
-        ui.add_space(GAP - ui.spacing().item_spacing.x);
+        ui.add_space(NAME_GAP_POINTS - ui.spacing().item_spacing.x);
         let room = vec2(ui.available_width(), height);
         ui.allocate_ui_with_layout(room, line.with_main_wrap(true), |ui| widgets(ui, &label.inner));
     });

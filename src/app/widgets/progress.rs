@@ -7,7 +7,7 @@ use eframe::egui::{Button, ProgressBar, Ui, vec2};
 const MAX_PART: f32 = 0.99;
 
 /// Least width of a button that changes its name, points, so that its neighbours don't move.
-const BUTTON: f32 = 64.0;
+const MIN_BUTTON_WIDTH_POINTS: f32 = 64.0;
 
 /// A button that starts work, or sends `cancel` while the work `runs`; `tips` are its two tooltips. Returns whether to start the work.
 pub fn start_or_cancel(
@@ -19,7 +19,7 @@ pub fn start_or_cancel(
     asked: &mut Vec<Command>,
 ) -> bool {
     let (name, tip) = if runs { ("Cancel", tips[1]) } else { (start, tips[0]) };
-    let size = vec2(BUTTON, ui.spacing().interact_size.y);
+    let size = vec2(MIN_BUTTON_WIDTH_POINTS, ui.spacing().interact_size.y);
     let button = ui.add_enabled(runs || is_ready, Button::new(name).min_size(size));
     let is_pressed = button.on_hover_text(tip).on_disabled_hover_text(tip).clicked();
     asked.extend((is_pressed && runs).then(|| cancel.into()));

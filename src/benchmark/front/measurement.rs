@@ -14,7 +14,7 @@ use crate::signal::simd::Simd;
 use crate::signal::{Precision, SynthesisPlan, beat_signal};
 
 /// Updates before the timed ones: the first two moves of a drag let the dragged reflector leave the sum at rest.
-const WARM_UP: usize = 3;
+const WARM_UP_UPDATES: usize = 3;
 /// Most repeats of the slow algorithms: for small scenes, for large ones.
 const SLOW_REPEATS: [usize; 2] = [3, 1];
 
@@ -147,7 +147,7 @@ fn fast_row(
     }
     let mut times = Vec::new();
     let mut frame = engine.update(scene, &wanted(convention))?;
-    for left in (0..repeats + WARM_UP).rev() {
+    for left in (0..repeats + WARM_UP_UPDATES).rev() {
         let next = match job.task {
             // The last move returns to the scene of the reference.
             FrontTask::Drag if left % 2 == 1 => &moved,

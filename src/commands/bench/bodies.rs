@@ -9,12 +9,15 @@ use crate::radar::{Radar, counted};
 use plotters::prelude::{RGBColor, SeriesLabelPosition};
 use std::path::Path;
 
-const COUNTS: [usize; 6] = [3, 10, 30, 100, 300, 1000];
+const BODY_COUNTS: [usize; 6] = [3, 10, 30, 100, 300, 1000];
 
 /// Measures, prints, and draws `bodies.svg`, the same as PNG, and `bodies.json` into `output`.
 pub fn run(repeats: usize, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
-    let cases: Vec<BodyCase> =
-        BodyCase::street().into_iter().chain(COUNTS.map(BodyCase::crowd)).chain(COUNTS.map(BodyCase::points)).collect();
+    let cases: Vec<BodyCase> = BodyCase::street()
+        .into_iter()
+        .chain(BODY_COUNTS.map(BodyCase::crowd))
+        .chain(BODY_COUNTS.map(BodyCase::points))
+        .collect();
     let bar = indicatif::ProgressBar::new(cases.len() as u64 * MapConvention::BOTH.len() as u64);
     let times = bodies::measure(&Radar::default(), &cases, repeats, |_| bar.inc(1))?;
     bar.finish_and_clear();
@@ -63,7 +66,7 @@ fn chart(times: &BodyTimes) -> LineChart {
     LineChart {
         caption: "Three Lambda maps of a crowd of bodies: time over their number".to_owned(),
         size: (1000, 640),
-        x: ChartAxis::new("objects", widened(COUNTS[0] as f64..COUNTS[COUNTS.len() - 1] as f64, 1.3)),
+        x: ChartAxis::new("objects", widened(BODY_COUNTS[0] as f64..BODY_COUNTS[BODY_COUNTS.len() - 1] as f64, 1.3)),
         is_x_log: true,
         y: ChartAxis::new("median time, bare transforms", widened(span(all), 1.5)),
         legend: SeriesLabelPosition::UpperLeft,

@@ -11,7 +11,7 @@ const MIN_ERROR: f64 = 1e-16;
 const MAX_ERROR: f64 = 1e-2;
 /// Radius of the dot of the fewest reflectors, pixels.
 const MIN_DOT_PIXELS: i32 = 4;
-const RING: i32 = 3;
+const RING_PIXELS: i32 = 3;
 
 fn colour(entrant: Entrant) -> RGBColor {
     match entrant {
@@ -68,7 +68,7 @@ pub fn front(measured: &Front) -> LineChart {
                 style: ShapeStyle { color: colour(entrant).to_rgba(), filled: !is_plan, stroke_width: 2 },
                 points,
                 is_joined: false,
-                dot: MIN_DOT_PIXELS + 2 * rank as i32 + if is_plan { RING } else { 0 },
+                dot: MIN_DOT_PIXELS + 2 * rank as i32 + if is_plan { RING_PIXELS } else { 0 },
             });
         }
     }

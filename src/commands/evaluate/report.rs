@@ -120,16 +120,16 @@ struct AtPrinted {
     median: f64,
 }
 
-const OF_A_FOLDER: &str = "scenes of a folder";
+const FOLDER_HEADING: &str = "scenes of a folder";
 
-const LABEL: usize = 26;
+const LABEL_WIDTH: usize = 26;
 
 /// Widths of the columns behind a label.
-const WIDTHS: [usize; 8] = [20, 16, 16, 22, 7, 7, 11, 9];
+const COLUMN_WIDTHS: [usize; 8] = [20, 16, 16, 22, 7, 7, 11, 9];
 
 fn line<const N: usize>(text: &mut String, width: usize, label: &str, cells: [impl fmt::Display; N]) {
     let _ = write!(text, "{label:<width$}");
-    for (cell, width) in cells.iter().zip(WIDTHS) {
+    for (cell, width) in cells.iter().zip(COLUMN_WIDTHS) {
         let _ = write!(text, " {cell:>width$}");
     }
     text.push('\n');
@@ -208,7 +208,7 @@ impl EvaluationReport {
 impl SetReport {
     fn of(set: &str, rows: &[&Row]) -> SetReport {
         let kind = set.parse::<Kind>().ok();
-        let (test_set, description) = (kind.and_then(Kind::test_set), kind.map_or(OF_A_FOLDER, Kind::description));
+        let (test_set, description) = (kind.and_then(Kind::test_set), kind.map_or(FOLDER_HEADING, Kind::description));
         let is_of_table = rows.iter().all(|row| row.radar.is_empty());
         let printed = test_set.filter(|_| is_of_table).map(|number| PrintedColumns {
             baseline: PRINTED_BASELINE[number - 1],
@@ -237,7 +237,7 @@ impl SetReport {
             }
             None => writeln!(text, "\n{}: {what}", self.set),
         };
-        let width = self.methods.iter().map(|m| m.label(count).chars().count()).fold(LABEL, usize::max);
+        let width = self.methods.iter().map(|m| m.label(count).chars().count()).fold(LABEL_WIDTH, usize::max);
         let rate = format!("P_D % at P_FA {:.2} %", 100.0 * self.false_alarm);
         let (fixed, own) = ("at the method's threshold", "at each scene's own");
         let _ = writeln!(text, "{:<width$} {:>20} {fixed:>33} {own:>22}", "", "");

@@ -4,14 +4,17 @@ use super::expression::{Predicate, Term};
 use super::tokens::{FilterError, OPERAND, Token, error, tokens};
 use crate::evaluate::rows::Column;
 
-const DEEPEST_NESTING: usize = 50;
+const MAX_NESTING: usize = 50;
 /// Longest expression, characters.
-const LONGEST_EXPRESSION: usize = 2000;
+const MAX_EXPRESSION_CHARACTERS: usize = 2000;
 
 pub(super) fn parse(text: &str, methods: &[&str]) -> Result<Predicate, FilterError> {
     let characters: Vec<char> = text.chars().collect();
-    if characters.len() > LONGEST_EXPRESSION {
-        return error(LONGEST_EXPRESSION, format!("an expression may have {LONGEST_EXPRESSION} characters"));
+    if characters.len() > MAX_EXPRESSION_CHARACTERS {
+        return error(
+            MAX_EXPRESSION_CHARACTERS,
+            format!("an expression may have {MAX_EXPRESSION_CHARACTERS} characters"),
+        );
     }
     let tokens = tokens(&characters)?;
     let mut parser = Parser { tokens: &tokens, methods, next: 0, depth: 0 };
@@ -181,8 +184,8 @@ impl Parser<'_> {
     }
 
     fn deeper(&mut self, inner: fn(&mut Self) -> Result<Part, FilterError>) -> Result<Part, FilterError> {
-        if self.depth == DEEPEST_NESTING {
-            return error(self.at(), format!("brackets and signs are nested more than {DEEPEST_NESTING} deep"));
+        if self.depth == MAX_NESTING {
+            return error(self.at(), format!("brackets and signs are nested more than {MAX_NESTING} deep"));
         }
         self.depth += 1;
         let found = inner(self);

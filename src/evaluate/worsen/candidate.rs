@@ -8,7 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 use std::f64::consts::TAU;
 
 /// Candidates between two changes of the step.
-pub(super) const BATCH: u32 = 8;
+pub(super) const BATCH_CANDIDATES: u32 = 8;
 /// Part of the candidates that are drawn anywhere within reach, not around the worst scene so far.
 const ANYWHERE_PART: f64 = 1.0 / 3.0;
 /// Initial scale of steps, as a part of the reach.
@@ -90,7 +90,7 @@ impl WorseningSearch {
             return scene;
         }
         // Small moves first; never farther than the smallest shift known to repair.
-        let growing = f64::from(state.tries + BATCH) / f64::from(self.tries.clamp(1, GROWTH_STEPS)) * 2.0;
+        let growing = f64::from(state.tries + BATCH_CANDIDATES) / f64::from(self.tries.clamp(1, GROWTH_STEPS)) * 2.0;
         let reach = best.map_or(self.within_metres * growing.min(1.0), |b| b.moved_metres);
         let alone = (rng.random::<f64>() < 0.5).then(|| rng.random_range(0..scene.objects.len()));
         for (i, object) in scene.objects.iter_mut().enumerate() {

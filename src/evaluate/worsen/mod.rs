@@ -16,7 +16,7 @@ use super::verdict::OutputVerdicts;
 use crate::reconstruct::{Reconstructor, Request};
 use crate::scene::{Scene, SceneError};
 use crate::task::Task;
-use candidate::{BATCH, FIRST_STEP_PART, MIN_STEP_PART, WorseningState, distance};
+use candidate::{BATCH_CANDIDATES, FIRST_STEP_PART, MIN_STEP_PART, WorseningState, distance};
 use rayon::prelude::*;
 
 /// A repaired squared error is at most this part of the one at the start.
@@ -51,7 +51,7 @@ impl WorseningSearch {
         let start = self.finding(scene, scene, &trial, method, &request, 0)?;
         let mut state = WorseningState { step: FIRST_STEP_PART, path: vec![start], tries: 0 };
         while state.tries < self.tries && !self.is_reached(&state) && on_try(state.tries, &state.path) {
-            let batch = state.tries..(state.tries + BATCH).min(self.tries);
+            let batch = state.tries..(state.tries + BATCH_CANDIDATES).min(self.tries);
             state.tries = batch.end;
             let trials: Vec<(u32, Scene, Trial)> = batch
                 .into_par_iter()

@@ -17,15 +17,15 @@ pub use source::Hdf5Error;
 use super::{NumberKind, Numbers};
 use ndarray::ArrayD;
 use num_complex::Complex64;
-use object::{Hdf5Object, MOST_OBJECTS};
+use object::{Hdf5Object, MAX_OBJECTS};
 use source::{Hdf5Bytes, HeaderBytes};
 use std::io::{Read, Seek};
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 /// Possible places of a superblock: at the beginning, or behind a block of the writer's own.
-const PLACES: [u64; 6] = [0, 512, 1024, 2048, 4096, 8192];
+const SUPERBLOCK_OFFSETS: [u64; 6] = [0, 512, 1024, 2048, 4096, 8192];
 /// Depth to which groups are read.
-const MOST_DEPTH: usize = 8;
+const MAX_GROUP_DEPTH: usize = 8;
 
 /// An HDF5 file.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ impl<R: Read + Seek> Hdf5<R> {
     /// [`Hdf5Error`] where there is none.
     pub fn open(file: R) -> Result<Self, Hdf5Error> {
         let mut source = Hdf5Bytes::new(file)?;
-        for place in PLACES {
+        for place in SUPERBLOCK_OFFSETS {
             if place + 8 <= source.bytes && source.read(place, 8)? == SIGNATURE {
                 let root = superblock(&mut source, place)?;
                 return Ok(Hdf5 { source, root });
@@ -96,13 +96,13 @@ impl<R: Read + Seek> Hdf5<R> {
         let mut seen = Vec::new();
         let mut all = Vec::new();
         while let Some((name, address, depth)) = waiting.pop() {
-            if seen.contains(&address) || seen.len() > MOST_OBJECTS {
+            if seen.contains(&address) || seen.len() > MAX_OBJECTS {
                 continue;
             }
             seen.push(address);
             let mut object = self.source.object(address)?;
             let named = |child: &str| if name.is_empty() { child.to_owned() } else { format!("{name}.{child}") };
-            if depth < MOST_DEPTH {
+            if depth < MAX_GROUP_DEPTH {
                 // MATLAB keeps the contents of cells in a group of its own.
                 let children = std::mem::take(&mut object.children);
                 let told = children.into_iter().filter(|(child, _)| child != "#refs#" && child != "#subsystem#");

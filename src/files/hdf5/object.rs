@@ -5,13 +5,13 @@ use crate::files::NumberKind;
 use std::io::{Read, Seek};
 
 /// Most objects that are looked at.
-pub(super) const MOST_OBJECTS: usize = 1 << 14;
+pub(super) const MAX_OBJECTS: usize = 1 << 14;
 /// Most bytes of one part of a header.
-const MOST_PART_BYTES: u64 = 1 << 20;
+const MAX_PART_BYTES: u64 = 1 << 20;
 /// Most parts of a header.
-const MOST_PARTS: usize = 256;
+const MAX_HEADER_PARTS: usize = 256;
 /// Most axes of an array.
-const MOST_AXES: usize = 32;
+const MAX_AXES: usize = 32;
 
 /// A filter that a chunk's bytes passed through.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +80,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         let mut next = 0;
         while let Some((at, length)) = blocks.get(next).copied() {
             next += 1;
-            if length > MOST_PART_BYTES || next > MOST_PARTS {
+            if length > MAX_PART_BYTES || next > MAX_HEADER_PARTS {
                 return Err(Hdf5Error::Damaged("a header is too long"));
             }
             let block = self.at(at, length)?;
@@ -141,7 +141,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         let version = message.byte()?;
         let axes = usize::from(message.byte()?);
         message.skip(if version == 1 { 6 } else { 2 })?;
-        if axes > MOST_AXES {
+        if axes > MAX_AXES {
             return Err(Hdf5Error::Damaged("an array has too many axes"));
         }
         (0..axes).map(|_| Ok(message.number(self.length_bytes)? as usize)).collect()
@@ -193,7 +193,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         let size = part.number(length)?;
         part.skip(length)?;
         let place = part.number(offset)?;
-        if size > MOST_PART_BYTES {
+        if size > MAX_PART_BYTES {
             return Err(Hdf5Error::Damaged("the names of a group are too long"));
         }
         let names = self.at(place, size)?;
@@ -211,7 +211,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
                 let name = names.get(name..).ok_or(Hdf5Error::Damaged("a member of a group has no name"))?;
                 members.push((HeaderBytes::new(name).text()?, address));
             }
-            if members.len() > MOST_OBJECTS {
+            if members.len() > MAX_OBJECTS {
                 return Err(Hdf5Error::Damaged("a group has too many members"));
             }
         }
@@ -230,7 +230,7 @@ impl<R: Read + Seek> Hdf5Bytes<R> {
         let mut seen = 0;
         while let Some(address) = waiting.pop() {
             let head = self.at(address, (8 + 2 * self.offset_bytes) as u64)?;
-            if !head.starts_with(b"TREE") || head[4] != kind || seen > MOST_OBJECTS {
+            if !head.starts_with(b"TREE") || head[4] != kind || seen > MAX_OBJECTS {
                 return Err(Hdf5Error::Damaged("a tree leads nowhere"));
             }
             seen += 1;

@@ -22,7 +22,7 @@ use store::{AutosaveStore, StartPlan};
 const MIN_COPY_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Most windows that keep copies at once.
-const SLOTS: u32 = 64;
+const MAX_WINDOWS: u32 = 64;
 
 /// The copies of one window.
 pub struct Autosave {
@@ -134,7 +134,7 @@ fn claim_slot(folder: &Path) -> (String, Option<fs::Lock>) {
     let name = |slot: u32| if slot == 1 { "autosave".to_owned() } else { format!("autosave-{slot}") };
     let lock_path = |slot: u32| -> PathBuf { folder.join(format!("{}.lock", name(slot))) };
     let mut free = None;
-    for slot in 1..=SLOTS {
+    for slot in 1..=MAX_WINDOWS {
         match fs::claim(&lock_path(slot)) {
             Claim::Ours(lock) if AutosaveStore::new(folder, name(slot)).has_copies() => {
                 return (name(slot), Some(lock));

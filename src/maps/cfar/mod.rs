@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 pub const MAX_CELLS: usize = 1000;
 
 /// The threshold between the two values of a map of detected cells ([`Mask::as_map`]).
-pub const DETECTED: f32 = 0.5;
+pub const DETECTION_THRESHOLD: f32 = 0.5;
 
 const RANK_PART: f64 = 0.75;
 

@@ -2,14 +2,14 @@
 //!
 //! The loop is written once over [`Vector`] and compiled for AVX-512, for AVX2 with FMA, and without either. [`Simd::chosen`] selects the one that runs.
 
-use super::vector::{LANES, Loop, Vector, run};
+use super::vector::{Loop, VECTOR_LANES, Vector, run};
 use crate::signal::simd::Simd;
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Channels rounded up to whole vectors.
 pub const fn padded(channels: usize) -> usize {
-    channels.div_ceil(LANES) * LANES
+    channels.div_ceil(VECTOR_LANES) * VECTOR_LANES
 }
 
 /// Weights of a convolution in the order in which the kernel reads them: by blocks of one or two vectors of output channels, then by kernel row, kernel
@@ -91,7 +91,7 @@ impl Packed {
 }
 
 /// Columns of a [`product`].
-pub const PRODUCT_COLUMNS: usize = 2 * LANES;
+pub const PRODUCT_COLUMNS: usize = 2 * VECTOR_LANES;
 
 /// The matrix product `out` `[rows, 32]` of `left` `[rows, inner]` and `right` `[inner, 32]`, on this thread, summed over the inner indices in `runs`
 /// alone.
@@ -122,7 +122,7 @@ fn convolve_with(simd: Simd, weights: &Packed, input: &[f32], row_cells: usize, 
 }
 
 fn blocks(lanes: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..lanes).step_by(2 * LANES).map(move |start| (start, (lanes - start).min(2 * LANES)))
+    (0..lanes).step_by(2 * VECTOR_LANES).map(move |start| (start, (lanes - start).min(2 * VECTOR_LANES)))
 }
 
 /// One line of a convolution.
@@ -183,7 +183,7 @@ impl LineJob<'_> {
     /// Checks the lengths and offsets that the unchecked loops rely on.
     fn check(&self, block: &Block, out: &[f32]) {
         let lanes = block.bias.len();
-        assert!(lanes == LANES || lanes == 2 * LANES, "a block is one or two vectors");
+        assert!(lanes == VECTOR_LANES || lanes == 2 * VECTOR_LANES, "a block is one or two vectors");
         for Run { value, row, count } in self.runs {
             let last = (self.width - 1) * self.step + value + count;
             assert!(self.width > 0 && self.input.len() >= last, "the input ends inside the line");
@@ -198,7 +198,7 @@ impl LineJob<'_> {
 /// [`LineJob::check`] must have passed, and the CPU must have the vector's features.
 #[inline(always)]
 unsafe fn line<V: Vector, const CELLS: usize, const VECTORS: usize>(job: &LineJob, block: Block, out: &mut [f32]) {
-    let vectors = block.bias.len() / LANES;
+    let vectors = block.bias.len() / VECTOR_LANES;
     let whole = job.width >= CELLS;
     let cells = if whole { CELLS } else { 1 };
     for x in (0..job.width).step_by(cells) {
@@ -234,14 +234,14 @@ unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
 ) {
     // SAFETY: all offsets lie within the slices that `LineJob::check` has checked.
     unsafe {
-        let from = first * LANES;
-        let bias: [V; VECTORS] = std::array::from_fn(|v| V::load(block.bias.as_ptr().add(from + v * LANES)));
+        let from = first * VECTOR_LANES;
+        let bias: [V; VECTORS] = std::array::from_fn(|v| V::load(block.bias.as_ptr().add(from + v * VECTOR_LANES)));
         let mut sums = [bias; CELLS];
         for run in job.runs {
             let mut w = block.weights.as_ptr().add(run.row * block.bias.len() + from);
             let mut value = job.input.as_ptr().add(run.value + x * job.step);
             for _ in 0..run.count {
-                let weight: [V; VECTORS] = std::array::from_fn(|v| V::load(w.add(v * LANES)));
+                let weight: [V; VECTORS] = std::array::from_fn(|v| V::load(w.add(v * VECTOR_LANES)));
                 for (p, sums) in sums.iter_mut().enumerate() {
                     let value = *value.add(p * job.step);
                     for (sum, weight) in sums.iter_mut().zip(weight) {
@@ -255,7 +255,7 @@ unsafe fn tile<V: Vector, const CELLS: usize, const VECTORS: usize>(
         for (p, sums) in sums.into_iter().enumerate() {
             let to = out.as_mut_ptr().add((x + p) * block.lanes + block.start + from);
             for (v, sum) in sums.into_iter().enumerate() {
-                sum.store(to.add(v * LANES));
+                sum.store(to.add(v * VECTOR_LANES));
             }
         }
     }

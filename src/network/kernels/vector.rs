@@ -3,7 +3,7 @@
 use crate::signal::simd::Simd;
 
 /// Numbers in a vector. The channels of every tensor are padded to a multiple of it.
-pub const LANES: usize = 16;
+pub const VECTOR_LANES: usize = 16;
 
 /// Sixteen numbers in registers. Every method must be inlined into a function that has the vector's CPU features.
 pub trait Vector: Copy {
@@ -58,19 +58,19 @@ pub fn run<L: Loop>(simd: Simd, of: L) {
 
 /// Vectors without special instructions, and without fused multiplication and addition.
 #[derive(Clone, Copy)]
-pub struct Portable([f32; LANES]);
+pub struct Portable([f32; VECTOR_LANES]);
 
 impl Vector for Portable {
     const TILE: [usize; 2] = [2, 1];
     #[inline(always)]
     unsafe fn load(from: *const f32) -> Self {
         // SAFETY: the caller's promise.
-        Portable(unsafe { from.cast::<[f32; LANES]>().read() })
+        Portable(unsafe { from.cast::<[f32; VECTOR_LANES]>().read() })
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut f32) {
         // SAFETY: the caller's promise.
-        unsafe { to.cast::<[f32; LANES]>().write(self.0) }
+        unsafe { to.cast::<[f32; VECTOR_LANES]>().write(self.0) }
     }
     #[inline(always)]
     unsafe fn add_product(self, value: f32, weight: Self) -> Self {

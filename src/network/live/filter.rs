@@ -1,7 +1,7 @@
 //! The transforms of Winograd's minimal filtering F(4, 3) (Lavin and Gray 2016): four neighbouring outputs of a filter with three taps from six
 //! products.
 
-use crate::network::kernels::vector::{LANES, Loop, Vector};
+use crate::network::kernels::vector::{Loop, VECTOR_LANES, Vector};
 
 /// Neighbouring outputs that are computed together.
 pub(super) const OUTPUTS: usize = 4;
@@ -33,7 +33,7 @@ pub(super) struct Groups {
 impl Groups {
     /// Least lengths of source and destination, values.
     fn lengths(&self) -> [usize; 2] {
-        self.steps.map(|step| if self.count == 0 { 0 } else { (self.count - 1) * step + self.vectors * LANES })
+        self.steps.map(|step| if self.count == 0 { 0 } else { (self.count - 1) * step + self.vectors * VECTOR_LANES })
     }
 
     /// Calls `of` with the offsets of each vector in source and destination.
@@ -41,7 +41,7 @@ impl Groups {
     fn each(&self, mut of: impl FnMut([usize; 2])) {
         for group in 0..self.count {
             for at in 0..self.vectors {
-                of(self.steps.map(|step| group * step + at * LANES));
+                of(self.steps.map(|step| group * step + at * VECTOR_LANES));
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::winograd::{Conv3x3, ConvResults};
 use crate::network::kernels::convolution::{Packed, convolve};
-use crate::network::kernels::vector::LANES;
+use crate::network::kernels::vector::VECTOR_LANES;
 use crate::signal::simd::{Kernel, Lanes, Simd};
 use rayon::prelude::*;
 
@@ -92,7 +92,7 @@ impl PlaneContext {
     }
 }
 
-type Vector = Lanes<f32, LANES>;
+type Vector = Lanes<f32, VECTOR_LANES>;
 
 /// Kernel of the means and maxima over rows and over columns, `[h, 2 c]` and `[w, 2 c]`: the means of all channels, then the maxima.
 struct Pool<'a> {
@@ -108,7 +108,7 @@ impl Kernel for Pool<'_> {
     fn run<const FMA: bool>(self) {
         let &Plane { h, w, c, ref data } = self.x;
         let pool = |pooled: &mut [f32], first: usize, step: usize, count: usize| {
-            for channel in (0..c).step_by(LANES) {
+            for channel in (0..c).step_by(VECTOR_LANES) {
                 let (mut sum, mut max) = (Vector::splat(0.0), Vector::splat(f32::NEG_INFINITY));
                 for cell in 0..count {
                     let v = Vector::load(&data[(first + cell * step) * c + channel..]);

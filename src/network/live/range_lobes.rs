@@ -7,7 +7,7 @@ use super::grid::COLUMNS;
 use super::reading::circulant;
 use super::size::{MAX_ROWS, ROWS_STEP};
 use crate::network::kernels::convolution::{PRODUCT_COLUMNS as BLOCK, product};
-use crate::network::kernels::vector::LANES;
+use crate::network::kernels::vector::VECTOR_LANES;
 use crate::signal::simd::{Kernel, LANES_F32, Lanes, Simd};
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -121,7 +121,7 @@ impl Kernel for SourceSums<'_> {
     fn run<const FMA: bool>(self) {
         self.sums.resize(self.sources.len() / TILE_SOURCE_ROWS, 0.0);
         for (rows, sums) in self.sources.chunks_exact(TILE_SOURCE_ROWS * BLOCK).zip(self.sums.chunks_exact_mut(BLOCK)) {
-            for at in (0..BLOCK).step_by(LANES) {
+            for at in (0..BLOCK).step_by(VECTOR_LANES) {
                 let row = |row: usize| Vector::load(&rows[row * BLOCK + at..]);
                 (1..TILE_SOURCE_ROWS).fold(row(0), |sum, i| sum + row(i)).store(&mut sums[at..]);
             }
@@ -143,7 +143,7 @@ impl Kernel for VisibleTiles<'_> {
     #[inline(always)]
     fn run<const FMA: bool>(self) -> [u64; MASK_WORDS] {
         let mut visible = [0; MASK_WORDS];
-        for at in (0..BLOCK).step_by(LANES) {
+        for at in (0..BLOCK).step_by(VECTOR_LANES) {
             let sum = |tile: usize| Vector::load(&self.sums[tile * BLOCK + at..]);
             let mut lower_bound = Vector::splat(self.floor);
             for (tile, &[minimum, _]) in self.extremes.iter().enumerate() {

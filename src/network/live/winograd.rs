@@ -6,7 +6,7 @@
 
 use super::filter::{BIAS_PRODUCT, Groups, InputTransform, OUTPUTS, OutputTransform, PRODUCTS, TAP_TRANSFORM};
 use crate::network::kernels::convolution::{Packed, padded};
-use crate::network::kernels::vector::{LANES, run};
+use crate::network::kernels::vector::{VECTOR_LANES, run};
 use crate::signal::simd::Simd;
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -114,11 +114,12 @@ impl Band {
         let cells = groups * OUTPUTS * channels;
         let size = groups * channels;
         // Where channels are no whole vectors, the last vector of a cell overlaps the next cell, which is written later.
-        self.line.resize(cells + 2 * channels + LANES, 0.0);
-        self.transformed_lines.iter_mut().flatten().for_each(|line| line.resize(size + LANES, 0.0));
-        self.pictures.iter_mut().flatten().for_each(|picture| picture.resize(strips * size + LANES, 0.0));
-        let along = Groups { count: groups, vectors: channels.div_ceil(LANES), steps: [OUTPUTS * channels, channels] };
-        let across = Groups { count: 1, vectors: size.div_ceil(LANES), steps: [0; 2] };
+        self.line.resize(cells + 2 * channels + VECTOR_LANES, 0.0);
+        self.transformed_lines.iter_mut().flatten().for_each(|line| line.resize(size + VECTOR_LANES, 0.0));
+        self.pictures.iter_mut().flatten().for_each(|picture| picture.resize(strips * size + VECTOR_LANES, 0.0));
+        let along =
+            Groups { count: groups, vectors: channels.div_ceil(VECTOR_LANES), steps: [OUTPUTS * channels, channels] };
+        let across = Groups { count: 1, vectors: size.div_ceil(VECTOR_LANES), steps: [0; 2] };
         for strip in 0..strips {
             // The last two lines of a strip are the first two of the next.
             self.transformed_lines.rotate_left(OUTPUTS);
@@ -147,7 +148,7 @@ impl Band {
     }
 
     fn transform_outputs(&mut self, simd: Simd, size: usize, strip: usize) {
-        let groups = Groups { count: 1, vectors: size / LANES, steps: [0; 2] };
+        let groups = Groups { count: 1, vectors: size / VECTOR_LANES, steps: [0; 2] };
         for (from, to) in self.products.iter().zip(&mut self.outputs) {
             to.resize(OUTPUTS * size, 0.0);
             let from = from.each_ref().map(|products| &products[strip * size..(strip + 1) * size]);
@@ -182,7 +183,7 @@ impl<'a> ConvResults<'a> {
 fn write_outputs(simd: Simd, [channels, groups, line]: [usize; 3], outputs: &[Vec<f32>; PRODUCTS], to: &mut [f32]) {
     let size = groups * channels;
     let from = outputs.each_ref().map(|outputs| &outputs[line * size..(line + 1) * size]);
-    let groups = Groups { count: groups, vectors: channels / LANES, steps: [channels, OUTPUTS * channels] };
+    let groups = Groups { count: groups, vectors: channels / VECTOR_LANES, steps: [channels, OUTPUTS * channels] };
     run(simd, OutputTransform { groups, from, output_step: channels, to });
 }
 

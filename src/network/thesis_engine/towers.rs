@@ -3,7 +3,7 @@
 use super::layers::ThesisLayers;
 use super::pictures::{Bordered, Parted};
 use crate::network::kernels::convolution::Packed;
-use crate::network::kernels::vector::{LANES, Loop, Vector, run};
+use crate::network::kernels::vector::{Loop, VECTOR_LANES, Vector, run};
 use crate::network::weights::WeightsError;
 use crate::signal::simd::Simd;
 
@@ -81,13 +81,13 @@ impl Loop for Largest<'_> {
     unsafe fn run<V: Vector>(self) {
         let size = self.first.len();
         assert!(
-            size.is_multiple_of(LANES) && self.others.len() == (POOLED_OUTPUTS - 1) * size,
+            size.is_multiple_of(VECTOR_LANES) && self.others.len() == (POOLED_OUTPUTS - 1) * size,
             "parts of another size"
         );
         // SAFETY: a vector stays inside its part; the caller promises the features.
         unsafe {
-            let zero = V::load([0.0; LANES].as_ptr());
-            for at in (0..size).step_by(LANES) {
+            let zero = V::load([0.0; VECTOR_LANES].as_ptr());
+            for at in (0..size).step_by(VECTOR_LANES) {
                 let to = self.first.as_mut_ptr().add(at);
                 let other = |part: usize| V::load(self.others.as_ptr().add(part * size + at));
                 V::load(to).larger(other(0)).larger(other(1).larger(other(2))).larger(zero).store(to);

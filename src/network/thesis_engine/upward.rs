@@ -6,7 +6,7 @@
 use super::layers::ThesisLayers;
 use super::pictures::Bordered;
 use crate::network::kernels::convolution::{Packed, padded};
-use crate::network::kernels::vector::{LANES, Loop, Vector, run};
+use crate::network::kernels::vector::{Loop, VECTOR_LANES, Vector, run};
 use crate::network::weights::WeightsError;
 use crate::signal::simd::Simd;
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 const SIZE: usize = 4;
 /// Rows of the kernel for the two input rows of an even output row, and of an odd one.
 const ROWS: [[usize; 2]; 2] = [[3, 1], [2, 0]];
-const _: () = assert!(SIZE * SIZE == LANES, "the last kernel's products of a cell are one vector");
+const _: () = assert!(SIZE * SIZE == VECTOR_LANES, "the last kernel's products of a cell are one vector");
 
 #[derive(Debug)]
 pub(super) struct UpwardLevel {
@@ -68,8 +68,8 @@ impl Loop for Rectify<'_> {
     unsafe fn run<V: Vector>(self) {
         // SAFETY: a vector stays inside its chunk; the caller promises the features.
         unsafe {
-            let zero = V::load([0.0; LANES].as_ptr());
-            for vector in self.0.as_chunks_mut::<LANES>().0 {
+            let zero = V::load([0.0; VECTOR_LANES].as_ptr());
+            for vector in self.0.as_chunks_mut::<VECTOR_LANES>().0 {
                 V::load(vector.as_ptr()).larger(zero).store(vector.as_mut_ptr());
             }
         }
@@ -87,15 +87,16 @@ pub(super) struct Last {
 impl Last {
     pub(super) fn new(layers: ThesisLayers<'_>, level: usize, input: usize) -> Result<Last, WeightsError> {
         let [weights, bias] = layers.conv(&format!("up.upconv.{level}"), [input, 1, SIZE, SIZE], 1)?;
-        let taps: Vec<f32> = (0..LANES).flat_map(|tap| weights.iter().skip(tap).step_by(LANES)).copied().collect();
-        let products = Packed::new(&taps, &[0.0; LANES], [input, padded(input)], [1, 1], 1);
+        let taps: Vec<f32> =
+            (0..VECTOR_LANES).flat_map(|tap| weights.iter().skip(tap).step_by(VECTOR_LANES)).copied().collect();
+        let products = Packed::new(&taps, &[0.0; VECTOR_LANES], [input, padded(input)], [1, 1], 1);
         Ok(Last { products, bias: bias.iter().sum() })
     }
 
     pub(super) fn multiply(&self, before: Option<&UpwardLevel>, from: &Bordered, products: &mut Bordered) {
         let simd = Simd::chosen();
         let twice = if before.is_some() { 2 } else { 1 };
-        products.reset(twice * from.h, twice * from.w, LANES);
+        products.reset(twice * from.h, twice * from.w, VECTOR_LANES);
         let width = products.w;
         products.fill(|y, line, buffer| match before {
             Some(stage) => {
@@ -110,7 +111,7 @@ impl Last {
     pub(super) fn add_up(&self, products: &Bordered) -> Vec<f32> {
         let mut map = vec![0.0; 4 * products.h * products.w];
         map.par_chunks_mut(2 * products.w).enumerate().for_each(|(y, line)| {
-            let lines = [0, 1].map(|below| products.seen(y / 2 + y % 2 + below, 0).as_chunks::<LANES>().0);
+            let lines = [0, 1].map(|below| products.seen(y / 2 + y % 2 + below, 0).as_chunks::<VECTOR_LANES>().0);
             let rows = ROWS[y % 2].map(|row| row * SIZE);
             for (x, cells) in line.as_chunks_mut::<2>().0.iter_mut().enumerate() {
                 for (odd, cell) in cells.iter_mut().enumerate() {

@@ -3,9 +3,9 @@
 use super::{TensorHeader, WeightFile, WeightsError};
 use half::f16;
 
-const SINGLE: &str = "F32";
+const SINGLE_NAME: &str = "F32";
 /// safetensors' name of 16-bit floats. The shipped weights of `live` are of this type, so that a page loads faster.
-const HALF: &str = "F16";
+const HALF_NAME: &str = "F16";
 
 impl WeightFile<'_> {
     /// The values of one tensor.
@@ -33,9 +33,9 @@ impl WeightFile<'_> {
         let [start, end] = tensor.data_offsets;
         let bytes = self.data.get(start..end).ok_or("lies outside the file")?;
         let values: Vec<f32> = match tensor.dtype.as_str() {
-            SINGLE => bytes.as_chunks().0.iter().map(|v| f32::from_le_bytes(*v)).collect(),
-            HALF => bytes.as_chunks().0.iter().map(|v| f16::from_le_bytes(*v).to_f32()).collect(),
-            other => return Err(format!("is of type {other}; expected {SINGLE} or {HALF}")),
+            SINGLE_NAME => bytes.as_chunks().0.iter().map(|v| f32::from_le_bytes(*v)).collect(),
+            HALF_NAME => bytes.as_chunks().0.iter().map(|v| f16::from_le_bytes(*v).to_f32()).collect(),
+            other => return Err(format!("is of type {other}; expected {SINGLE_NAME} or {HALF_NAME}")),
         };
         match tensor.shape.iter().try_fold(1, |product: usize, n| product.checked_mul(*n)) {
             Some(count) if count == values.len() => Ok(values),
@@ -54,9 +54,9 @@ impl WeightFile<'_> {
         for (name, tensor) in &self.tensors {
             let bad = |problem: String| self.bad_tensor(name, problem);
             let (start, [from, to]) = (data.len(), tensor.data_offsets);
-            let dtype = if tensor.dtype == HALF {
+            let dtype = if tensor.dtype == HALF_NAME {
                 data.extend(self.values(tensor).map_err(bad)?.iter().flat_map(|v| v.to_le_bytes()));
-                SINGLE
+                SINGLE_NAME
             } else {
                 data.extend(self.data.get(from..to).ok_or_else(|| bad("lies outside the file".into()))?);
                 &tensor.dtype
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn tensors_of_16_bit_floats_are_read_and_widened() {
         let data: Vec<u8> = VALUES.iter().flat_map(|v| f16::from_f32(*v).to_le_bytes()).collect();
-        let bytes = file(HALF, &data);
+        let bytes = file(HALF_NAME, &data);
         let read = WeightFile::parse("test", &bytes).unwrap();
         assert_eq!(read.tensor("w", &[2, 2]).unwrap(), VALUES);
         assert_eq!(read.all_values(), VALUES);
@@ -98,7 +98,7 @@ mod tests {
             let wide = WeightFile::parse("test", &wide).unwrap();
             assert_eq!(
                 (wide.tensors["w"].dtype.as_str(), wide.tensor("w", &[2, 2]).unwrap()),
-                (SINGLE, VALUES.to_vec())
+                (SINGLE_NAME, VALUES.to_vec())
             );
         }
     }

@@ -4,7 +4,7 @@ use super::error::Composed;
 use super::{DetectedCells, Drawing, InputMap, Panels, PictureError, encode_png, render, render_svg};
 use crate::evaluate::TARGET_ETA;
 use crate::evaluate::verdict::Footprints;
-use crate::maps::cfar::{Cfar, DETECTED};
+use crate::maps::cfar::{Cfar, DETECTION_THRESHOLD};
 use crate::maps::{LogMaps, Normalisation};
 use crate::picture::ColourMap;
 use crate::radar::{Carrier, LayoutKind, Radar, counted};
@@ -95,7 +95,8 @@ pub fn compose(
     let detect = |cfar| DetectedCells::of(cfar, scale, [&target, &output.lambda]);
     let detected = style.cfar.map(detect).transpose()?;
     let eta = style.eta.unwrap_or_else(|| method.eta_of(&output));
-    let above = detected.as_ref().map_or_else(|| output.lambda.above(eta), |cells| cells.output.above(DETECTED));
+    let above =
+        detected.as_ref().map_or_else(|| output.lambda.above(eta), |cells| cells.output.above(DETECTION_THRESHOLD));
     let verdicts = Footprints::new(radar, scene, &target, scale).judge_cells(&target, &output.lambda, &above);
     let panels = Panels {
         scene,

@@ -4,7 +4,7 @@ use super::canvas::{FAINT_INK, HAIRLINE, INK, Painted, PanelArea, PictureError, 
 use super::text::{self, Weight};
 use crate::picture::colour::{ColourMap, Rgb};
 use crate::picture::detections::CellVerdict;
-use crate::radar::{FEW_COLUMNS, Radar};
+use crate::radar::{MIN_FINE_COLUMNS, Radar};
 use ndarray::{Array2, CowArray, Ix2};
 use plotters::prelude::*;
 
@@ -44,7 +44,7 @@ pub(super) struct MapAxes {
 impl MapPanel<'_> {
     pub(super) fn draw<B: DrawingBackend>(&self, area: &PanelArea<B>, radar: &Radar) -> Painted {
         // A column stands for the direction in its middle; half of one counts where there are few.
-        let half = if radar.elements < FEW_COLUMNS { 0.0 } else { 0.5 };
+        let half = if radar.elements < MIN_FINE_COLUMNS { 0.0 } else { 0.5 };
         let x = [0.0, 1.0].map(|across| radar.cos_of_column(radar.column_across(across) + half));
         let axes = MapAxes { x, y: [0.0, radar.max_range_metres()], x_title: "cos \u{3b8}", x_digits: 1 };
         self.draw_over(area, &axes)
@@ -135,7 +135,7 @@ fn legend<B: DrawingBackend>(area: &PanelArea<B>) -> Painted {
     // The legend takes the space of the colour bar in other panels: the title stands left of it.
     let (width, _) = area.dim_in_pixel();
     let mut x = width as i32 - LEGEND_MARGIN;
-    for detection in CellVerdict::SEEN.into_iter().rev() {
+    for detection in CellVerdict::VISIBLE_VERDICTS.into_iter().rev() {
         let name = detection.name();
         let style = text::style(15, Weight::Normal, &FAINT_INK);
         let (name_width, _) = area.estimate_text_size(name, &style)?;

@@ -7,7 +7,7 @@ use super::scene_panel::{self, SceneContent};
 use super::{Drawing, InputMap, PictureError, text};
 use crate::evaluate::verdict::OutputVerdicts;
 use crate::evaluate::{Metrics, eta_text, squared_error};
-use crate::maps::cfar::{Cfar, CfarError, DETECTED};
+use crate::maps::cfar::{Cfar, CfarError, DETECTION_THRESHOLD};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::picture::{CellVerdict, ColourMap, finer, in_place, told_apart};
 use crate::radar::Radar;
@@ -178,7 +178,9 @@ impl<'a> Panels<'a> {
     /// The maps and thresholds by which hits and misses are counted.
     fn judged(&self) -> Judged<'a> {
         match self.detected {
-            Some(cells) => Judged { target: Some(&cells.target), output: &cells.output, etas: [DETECTED; 2] },
+            Some(cells) => {
+                Judged { target: Some(&cells.target), output: &cells.output, etas: [DETECTION_THRESHOLD; 2] }
+            }
             None => Judged { target: self.target, output: self.output, etas: self.etas },
         }
     }

@@ -25,7 +25,7 @@ const MAX_ELEMENTS: usize = 96;
 const MAX_SEARCHES: usize = 4;
 
 /// Distance of peaks, in range bins and in periods of the ends' fringes, within which they are one reflector.
-const SAME_PEAK: [f64; 2] = [1.0, 0.75];
+const MAX_PEAK_DISTANCE: [f64; 2] = [1.0, 0.75];
 
 /// Largest length of the array, range bins: it has as many sectors.
 const MAX_SECTORS: f64 = 1000.0;
@@ -122,7 +122,7 @@ impl CoherentMethod {
                 Ok(peaks(&sectors, place, &powers, self.min_peak_part))
             })
             .collect::<Result<_, ReconstructError>>()?;
-        let [bins, fringes] = SAME_PEAK;
+        let [bins, fringes] = MAX_PEAK_DISTANCE;
         Ok(distinct(radar, found.concat(), [bins, fringes * sectors.fringe_cos]))
     }
 }

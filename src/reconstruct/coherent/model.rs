@@ -16,7 +16,7 @@ use num_complex::Complex64;
 const WAVES_PER_BEAM_WIDTH: f64 = 2.0;
 
 /// Beam widths beside the sector without such waves: its steering vectors are similar there.
-const CLEAR_WIDTHS: f64 = 0.2;
+const GUARD_BEAM_WIDTHS: f64 = 0.2;
 
 /// Largest change of a power over the largest power at which the iteration ends.
 const MAX_CONVERGED_CHANGE: f32 = 1e-3;
@@ -179,7 +179,7 @@ fn waves_outside(radar: &Radar, place: &Place) -> Vec<f64> {
     let turns_per_metre = radar.carrier_turns_per_metre().abs();
     let period_cos = 1.0 / (turns_per_metre * radar.element_spacing_metres);
     let width_cos = period_cos / radar.end_elements as f64;
-    let clear_cos = place.sector.half_width_cos + CLEAR_WIDTHS * width_cos;
+    let clear_cos = place.sector.half_width_cos + GUARD_BEAM_WIDTHS * width_cos;
     let reach_cos = period_cos.min(2.0);
     let count = (WAVES_PER_BEAM_WIDTH * reach_cos / width_cos).round() as usize;
     let cosines = (0..count).map(|i| reach_cos * ((i as f64 + 0.5) / count as f64 - 0.5));

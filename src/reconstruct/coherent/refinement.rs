@@ -38,7 +38,7 @@ const MAX_SEARCH_RESIDUAL_PART: f64 = 0.9;
 const COMPLETE_PART: f64 = 1e-13;
 
 /// Distance within which echoes are one: range bins, and parts of an end's beam width.
-const SAME_PLACE: [f64; 2] = [1e-2, 1e-3];
+const MAX_SAME_PLACE_DISTANCE: [f64; 2] = [1e-2, 1e-3];
 
 /// Budget of work, in units of about ten microseconds.
 const MAX_WORK: usize = 30_000;
@@ -155,7 +155,7 @@ impl<'a> Refinement<'a> {
             (is_certain || is_heard_at_the_ends(radar, x, y)).then_some(peak)
         };
         let peaks = fit.atoms.iter().zip(&fit.gains).filter_map(peak).collect();
-        let [bins, beam_widths] = SAME_PLACE;
+        let [bins, beam_widths] = MAX_SAME_PLACE_DISTANCE;
         gains(radar, &distinct(radar, peaks, [bins, beam_widths * end_beam_cos(radar)]), ends, task)
     }
 }

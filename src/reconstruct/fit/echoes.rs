@@ -4,7 +4,7 @@ use super::sensor::{Sensor, W, with_min_distance};
 use crate::scene::Reflector;
 use crate::signal::path::PairBlocks;
 use crate::signal::simd::{ComplexLanes, Kernel, Lanes, Simd};
-use crate::signal::split::{Product, STRIDE, add_products, fill_factors, rows_of};
+use crate::signal::split::{Product, ROW_SAMPLES, add_products, fill_factors, rows_of};
 use num_complex::Complex64;
 use rayon::prelude::*;
 
@@ -37,7 +37,7 @@ pub struct Remainder {
 impl Samples {
     /// From samples channel by channel, `[channels * samples]`.
     pub fn new(sensor: &Sensor, flat: &[Complex64]) -> Self {
-        let padded = rows_of(sensor.samples) * STRIDE;
+        let padded = rows_of(sensor.samples) * ROW_SAMPLES;
         let channels: Vec<&[Complex64]> = flat.chunks_exact(sensor.samples).collect();
         let block = |channels: &[&[Complex64]]| {
             let mut out = vec![ComplexLanes::zero(); padded];
@@ -159,14 +159,14 @@ struct Sum<'a> {
 struct Phasors {
     /// `[reflector * rows + row]`.
     rows: Vec<ComplexLanes<f64, W>>,
-    columns: Vec<[ComplexLanes<f64, W>; STRIDE]>,
+    columns: Vec<[ComplexLanes<f64, W>; ROW_SAMPLES]>,
 }
 
 impl Phasors {
     #[inline(always)]
     fn zero(reflectors: usize, rows: usize) -> Self {
         let zero = ComplexLanes::zero();
-        Phasors { rows: vec![zero; reflectors * rows], columns: vec![[zero; STRIDE]; reflectors] }
+        Phasors { rows: vec![zero; reflectors * rows], columns: vec![[zero; ROW_SAMPLES]; reflectors] }
     }
 }
 
@@ -190,7 +190,7 @@ impl Kernel for Sum<'_> {
         let mut echoes =
             Phasors::zero(if keeps_echoes { reflectors.len() } else { reflectors.len().min(BATCH_REFLECTORS) }, many);
         let mut scaled = vec![ComplexLanes::zero(); BATCH_REFLECTORS * many];
-        let mut sum = self.start.map_or_else(|| vec![ComplexLanes::zero(); many * STRIDE], <[_]>::to_vec);
+        let mut sum = self.start.map_or_else(|| vec![ComplexLanes::zero(); many * ROW_SAMPLES], <[_]>::to_vec);
         // The gains of a fit begin at 0.
         let is_silent = reflectors.iter().all(|(_, gains)| *gains == [Complex64::default(); 2]);
         for (at, reflectors) in reflectors.chunks(BATCH_REFLECTORS).enumerate() {
@@ -288,7 +288,7 @@ impl Kernel for Multiply<'_> {
         let Phasors { rows, columns } = self.echoes;
         for (rows, columns) in rows.chunks_exact(rows_of(self.samples)).zip(columns) {
             let mut sums = [ComplexLanes::zero(); 2];
-            for (a, (row, part)) in rows.iter().zip(self.weighted.chunks_exact(STRIDE)).enumerate() {
+            for (a, (row, part)) in rows.iter().zip(self.weighted.chunks_exact(ROW_SAMPLES)).enumerate() {
                 let row = row.conj();
                 if self.kind == ProductKind::Values {
                     let mut plain = ComplexLanes::zero();
@@ -305,7 +305,7 @@ impl Kernel for Multiply<'_> {
                     timed = timed + plain;
                 }
                 plain = plain.plus_product::<FMA>(columns[0].conj(), part[0]);
-                let start = ((a * STRIDE) as f64 - middle) / samples;
+                let start = ((a * ROW_SAMPLES) as f64 - middle) / samples;
                 sums[0] = sums[0].plus_product::<FMA>(row, plain);
                 let timed = timed.scaled(Lanes::splat(samples.recip())) + plain.scaled(Lanes::splat(start));
                 sums[1] = sums[1].plus_product::<FMA>(row, timed);

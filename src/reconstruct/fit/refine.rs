@@ -40,7 +40,7 @@ pub struct Limits {
 
 impl Limits {
     /// For a refinement that others follow.
-    pub const ROUGH: Limits = Limits { max_steps: 12, min_decrease: 1e-2, ridge: 0.0 };
+    pub const ROUGH_FIT: Limits = Limits { max_steps: 12, min_decrease: 1e-2, ridge: 0.0 };
 
     /// For the last refinement of a list of atoms.
     pub const FINAL_FIT: Limits = Limits { max_steps: 60, min_decrease: 1e-4, ridge: 0.0 };

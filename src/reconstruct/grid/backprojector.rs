@@ -22,10 +22,10 @@ const ROWS_PER_BIN: usize = 4;
 /// Least spectrum columns for each element.
 const COLUMNS_PER_ELEMENT: usize = 20;
 
-const BLOCK: usize = 16;
+const BLOCK_ELEMENTS: usize = 16;
 
 /// A block's far field begins at most at this part of the maximum range.
-const NEAR_PART: f64 = 1.0 / 64.0;
+const MAX_FAR_FIELD_PART: f64 = 1.0 / 64.0;
 
 /// Bytes of tables for each cell of the grid: larger tables are made anew each time, block by block.
 const MAX_TABLE_BYTES_PER_CELL: usize = 64;
@@ -73,8 +73,9 @@ fn blocks(radar: &Radar) -> Vec<Range<usize>> {
         // Neighbouring elements may have different antennas, which share no plane wave.
         return (0..radar.end_elements).map(|n| n..n + 1).collect();
     }
-    let plane = |elements: &usize| radar.samples == 1 || far_metres(*elements) <= radar.max_range_metres() * NEAR_PART;
-    let longest = (1..=BLOCK).rev().find(plane).unwrap_or(1);
+    let plane =
+        |elements: &usize| radar.samples == 1 || far_metres(*elements) <= radar.max_range_metres() * MAX_FAR_FIELD_PART;
+    let longest = (1..=BLOCK_ELEMENTS).rev().find(plane).unwrap_or(1);
     let count = radar.end_elements.div_ceil(longest);
     let edge = |i: usize| i * radar.end_elements / count;
     (0..count).map(|i| edge(i)..edge(i + 1)).collect()

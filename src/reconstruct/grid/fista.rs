@@ -40,17 +40,17 @@ impl Default for Fista {
 }
 
 /// Most candidates: memory and time grow with their square.
-const MOST_CANDIDATES: usize = 4096;
+const MAX_CANDIDATES: usize = 4096;
 
 /// Most rounds of adding cells, and most cells added in a round.
 const ADDING_ROUNDS: usize = 2;
-const MOST_ADDED: usize = 512;
+const MAX_ADDED_CELLS: usize = 512;
 
 /// Ratio of a cell's residual to the penalty above which the cell is added: the margin covers the error of a look-up.
-const WRONGLY_ZERO: f64 = 1.1;
+const MIN_ADDED_RESIDUAL_RATIO: f64 = 1.1;
 
 /// Most reflectors in the map; the strongest that the penalty left.
-const MOST_REFLECTORS_DRAWN: usize = 200;
+const MAX_DRAWN_REFLECTORS: usize = 200;
 
 #[derive(Clone)]
 struct Problem {
@@ -236,7 +236,7 @@ impl Reconstructor for Fista {
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, request: &Request) -> Result<Reconstruction> {
         let cells = GridCells::with_measured_elements(radar, ends);
         let backprojector = Backprojector::new(&cells, RangeWindow::None);
-        let count = self.candidates.min(MOST_CANDIDATES);
+        let count = self.candidates.min(MAX_CANDIDATES);
         let mut chosen = candidates(radar, &cells, backprojector.amplitudes(ends), count, &[], 0.0);
         let noise_variance = ends_noise_variance(radar, ends, request.noise);
         // At least the level that noise alone exceeds in no cell: the universal threshold of D. L. Donoho and I. M. Johnstone, "Ideal spatial
@@ -248,8 +248,8 @@ impl Reconstructor for Fista {
         let mut x = problem.solve(self.iterations, request, |_| {})?;
         for _ in 0..ADDING_ROUNDS {
             let left = backprojector.amplitudes(&problem.left(radar, ends, &x));
-            let (penalty, room) = (problem.penalty, MOST_ADDED.min(MOST_CANDIDATES.saturating_sub(chosen.len())));
-            let more = candidates(radar, &cells, left, room, &chosen, WRONGLY_ZERO * penalty);
+            let (penalty, room) = (problem.penalty, MAX_ADDED_CELLS.min(MAX_CANDIDATES.saturating_sub(chosen.len())));
+            let more = candidates(radar, &cells, left, room, &chosen, MIN_ADDED_RESIDUAL_RATIO * penalty);
             if more.is_empty() {
                 break;
             }
@@ -261,7 +261,7 @@ impl Reconstructor for Fista {
         let kept = problem.atoms.iter().zip(&x).filter(|(_, x)| x.norm_sqr() > 0.0);
         let mut found: Vec<Gained> = kept.map(gained).collect();
         found.sort_by(|a, b| b.gain.norm().total_cmp(&a.gain.norm()));
-        found.truncate(MOST_REFLECTORS_DRAWN);
+        found.truncate(MAX_DRAWN_REFLECTORS);
         Ok(of_echoes(radar, ends, &found, noise_variance, request))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::backprojector::{Backprojector, RangeWindow};
 use super::cells::GridCells;
-use super::pursuit::{MOST_RELAXED, Pick, Pursuit, energy, unit_gains};
+use super::pursuit::{MAX_RELAXED_PICKS, Pick, Pursuit, energy, unit_gains};
 use crate::radar::Radar;
 use crate::reconstruct::echoes::{Gained, of_echoes};
 use crate::reconstruct::error::Result;
@@ -34,18 +34,18 @@ impl Default for Omp {
 const PICKS_APART_BINS: usize = 40;
 
 /// Least power of a pick as a part of the strongest's of its look; weaker picks wait for another look.
-const LEAST_PICK: f64 = 0.1;
+const MIN_PICK_POWER_PART: f64 = 0.1;
 
 /// Most picks that are all moved again, which happens each time the residual has fallen to this part of its energy.
-const MOST_MOVED: usize = 64;
-const MOVED_AT: f64 = 0.1;
+const MAX_MOVED_PICKS: usize = 64;
+const MOVE_RESIDUAL_PART: f64 = 0.1;
 
 /// Part of the energy that rounding leaves unexplained where phases of 6e4 rad were evaluated in f64: about 1e-11 of each sample's
 /// amplitude. It is not white, so that the measured noise understates it.
-const ROUNDING_ENERGY: f64 = 1e-22;
+const ROUNDING_ENERGY_PART: f64 = 1e-22;
 
 /// Least part of all energy that a pick must explain: 100 dB down. Weaker residuals are errors of a pick's place, not echoes.
-const LEAST_OF_ALL: f64 = 1e-10;
+const MIN_PICK_ENERGY_PART: f64 = 1e-10;
 
 impl Omp {
     fn pursue(&self, radar: &Radar, ends: &TwoEnds, noise_variance: f64, request: &Request) -> Result<Vec<Gained>> {
@@ -53,7 +53,7 @@ impl Omp {
         let heard = ends.measured_elements().into_iter().filter(|is_measured| *is_measured).count() * radar.samples;
         let noise = noise_variance * heard as f64 * 1.1;
         let all = energy(&samples);
-        let enough = noise.max(all * ROUNDING_ENERGY);
+        let enough = noise.max(all * ROUNDING_ENERGY_PART);
         let mut cells = GridCells::with_measured_elements(radar, ends);
         // No reflector stands at the centre: an echo in bin 0 is one range period away.
         if radar.samples > 1 {
@@ -62,7 +62,7 @@ impl Omp {
         let backprojector = Backprojector::new(&cells, RangeWindow::None);
         let (bins, directions) = cells.dim();
         let noise_level = 100f64.powf(decades_above_cells(noise_variance, bins * directions));
-        let worth = noise_level.max(all * LEAST_OF_ALL);
+        let worth = noise_level.max(all * MIN_PICK_ENERGY_PART);
         let mut settled = all;
         let mut pursuit = Pursuit::new(radar, &cells, &samples);
         while pursuit.picks.len() < self.max_atoms && energy(&pursuit.residual) > enough {
@@ -75,7 +75,7 @@ impl Omp {
                 break; // nothing on the grid explains what is left
             }
             let count = pursuit.picks.len();
-            if (2..=MOST_MOVED).contains(&count) && energy(&pursuit.residual) < MOVED_AT * settled {
+            if (2..=MAX_MOVED_PICKS).contains(&count) && energy(&pursuit.residual) < MOVE_RESIDUAL_PART * settled {
                 pursuit.settle(&samples, enough, request)?;
                 settled = energy(&pursuit.residual);
             }
@@ -107,10 +107,10 @@ impl Omp {
             if !pursuit.take(Pick { atom, ..pick }) {
                 return least > 0.0;
             }
-            if (2..=MOST_RELAXED).contains(&pursuit.picks.len()) {
+            if (2..=MAX_RELAXED_PICKS).contains(&pursuit.picks.len()) {
                 pursuit.relax(samples, true);
             }
-            least = f64::max(least, LEAST_PICK * power);
+            least = f64::max(least, MIN_PICK_POWER_PART * power);
             let bins = heard.nrows();
             let near = bin.saturating_sub(PICKS_APART_BINS)..(bin + PICKS_APART_BINS).min(bins);
             heard.slice_mut(s![near, ..]).fill(0.0);

@@ -18,27 +18,27 @@ const CLIMBING_STEPS: usize = 32;
 const TOOTH_STEPS: usize = 12;
 
 /// Directions to each side of a pick's that are compared: the phase between the ends is the same for all of them.
-const TEETH_BESIDE: i32 = 6;
+const SIDE_TEETH: i32 = 6;
 
 /// Most comparisons, each around the outermost direction of the last where that was the best.
-const WALKS: usize = 8;
+const MAX_COMPARISONS: usize = 8;
 
 /// Most picks that are all moved again after each new one, with their directions compared.
-pub(super) const MOST_RELAXED: usize = 6;
+pub(super) const MAX_RELAXED_PICKS: usize = 6;
 
 /// All picks are moved until a round leaves more than this part of the energy before it, in at most so many rounds; their directions are
 /// compared every other round.
-const STILL_MOVING: f64 = 0.5;
-const MOST_ROUNDS: usize = 8;
+const MAX_ROUND_ENERGY_PART: f64 = 0.5;
+const MAX_RELAX_ROUNDS: usize = 8;
 
 /// Steps of each pick in a round.
 const MOVING_STEPS: usize = 24;
 
 /// Least part of an atom outside the span of the picked atoms; an atom with less is not new.
-const LEAST_NEW: f64 = 1e-7;
+const MIN_NEW_ATOM_PART: f64 = 1e-7;
 
 /// Part of the residual's energy that a pick must at least explain.
-const LEAST_GAIN: f64 = 1e-3;
+const MIN_PICK_GAIN_PART: f64 = 1e-3;
 
 pub(super) struct Pick {
     pub cell: GridCell,
@@ -78,9 +78,9 @@ impl<'a> Pursuit<'a> {
         let (radar, cells) = (self.radar, self.cells);
         let apart_metres = (radar.elements - radar.end_elements) as f64 * radar.element_spacing_metres;
         let tooth_cos = 1.0 / (apart_metres * radar.carrier_turns_per_metre().abs());
-        for _ in 0..WALKS {
+        for _ in 0..MAX_COMPARISONS {
             let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);
-            let best = (-TEETH_BESIDE..=TEETH_BESIDE)
+            let best = (-SIDE_TEETH..=SIDE_TEETH)
                 .into_par_iter()
                 .filter_map(|tooth| {
                     let cos = place.cos_theta + f64::from(tooth) * tooth_cos;
@@ -90,7 +90,7 @@ impl<'a> Pursuit<'a> {
                 .reduce_with(|a, b| if b.0 > a.0 { b } else { a });
             let Some((_, tooth, better)) = best else { break };
             atom = better;
-            if tooth.abs() < TEETH_BESIDE {
+            if tooth.abs() < SIDE_TEETH {
                 break;
             }
         }
@@ -121,14 +121,14 @@ impl<'a> Pursuit<'a> {
 
     /// Moves all picks until they stay where they are, or the residual's energy is at most `enough`.
     pub fn settle(&mut self, samples: &[Complex64], enough: f64, request: &Request) -> Result<()> {
-        for round in 0..MOST_ROUNDS {
+        for round in 0..MAX_RELAX_ROUNDS {
             request.task.check()?;
             let before = energy(&self.residual);
             if before <= enough {
                 break;
             }
-            self.relax(samples, round % 2 == 0 || self.picks.len() <= MOST_RELAXED);
-            if energy(&self.residual) > STILL_MOVING * before {
+            self.relax(samples, round % 2 == 0 || self.picks.len() <= MAX_RELAXED_PICKS);
+            if energy(&self.residual) > MAX_ROUND_ENERGY_PART * before {
                 break;
             }
         }
@@ -146,7 +146,7 @@ impl<'a> Pursuit<'a> {
             }
         }
         let length = energy(&direction).sqrt();
-        if length < LEAST_NEW {
+        if length < MIN_NEW_ATOM_PART {
             return false;
         }
         direction.iter_mut().for_each(|v| *v /= length);
@@ -155,7 +155,7 @@ impl<'a> Pursuit<'a> {
         subtract(&mut self.residual, &direction, along);
         self.basis.push(direction);
         self.picks.push(pick);
-        energy(&self.residual) <= before * (1.0 - LEAST_GAIN)
+        energy(&self.residual) <= before * (1.0 - MIN_PICK_GAIN_PART)
     }
 }
 

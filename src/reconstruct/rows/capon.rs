@@ -29,13 +29,13 @@ pub const CAPON_PEAKS: RowMethod = RowMethod {
 };
 
 /// Added to the covariance's diagonal beside the noise, as a part of its mean, for the elements' small departures from a plane wave.
-const LOADING: f64 = 1e-6;
+const LOADING_PART: f64 = 1e-6;
 
 fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
     let n = subarray_len(row.own().len());
     let covariance = smoothed(&row.snapshots, n);
     let mean = (0..n).map(|i| covariance[(i, i)].re).sum::<f64>() / n as f64;
-    let loading = mean * LOADING + row.noise_variance;
+    let loading = mean * LOADING_PART + row.noise_variance;
     let loaded = Mat::from_fn(n, n, |i, j| covariance[(i, j)] + Complex64::from(if i == j { loading } else { 0.0 }));
     let inverse = Llt::new(loaded.as_ref(), Side::Lower).ok()?.inverse();
     Some(quadratic_form(&inverse, row.spectrum).into_iter().map(|v| 1.0 / v.max(f64::MIN_POSITIVE)).collect())

@@ -8,11 +8,11 @@ use super::row::RowSnapshot;
 use crate::maps::Spectrum;
 
 /// Longest sub-array: work grows with the cube of its elements.
-const LONGEST_SUBARRAY: usize = 64;
+const MAX_SUBARRAY_ELEMENTS: usize = 64;
 
 /// Elements of the sub-arrays over which a line of `elements` is smoothed: two thirds are a compromise of aperture and averages.
 pub(super) fn subarray_len(elements: usize) -> usize {
-    (2 * elements / 3).clamp(2, LONGEST_SUBARRAY)
+    (2 * elements / 3).clamp(2, MAX_SUBARRAY_ELEMENTS)
 }
 
 /// Covariance over sub-arrays of `subarray` neighbouring elements, forward and backward, averaged over all their places and over
@@ -48,7 +48,7 @@ pub(super) struct Subspaces {
 }
 
 /// Least ratio of a signal's eigenvalue to the noise.
-const OVER_NOISE: f64 = 10.0;
+const MIN_SIGNAL_OVER_NOISE: f64 = 10.0;
 
 /// Splits `covariance` of `row` by its eigenvalues: signals are those above the measured noise, and above the power of one echo outside its own
 /// direction ([`RowSnapshot::not_plane`]). `None` where the decomposition fails.
@@ -58,7 +58,7 @@ pub(super) fn subspaces(covariance: &Mat<Complex64>, row: &RowSnapshot<'_>) -> O
     let values: Vec<f64> = eigen.S().column_vector().iter().map(|v| v.re).collect();
     let vectors = eigen.U();
     let largest = values.iter().copied().fold(0.0, f64::max);
-    let threshold = (largest * row.not_plane).max(OVER_NOISE * row.noise_variance);
+    let threshold = (largest * row.not_plane).max(MIN_SIGNAL_OVER_NOISE * row.noise_variance);
     let count = values.iter().filter(|v| **v > threshold).count().clamp(1, n - 1);
     // Eigenvalues rise, so that the noise subspace comes first.
     let noise = vectors.subcols(0, n - count);

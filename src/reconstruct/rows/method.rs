@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Power of a row relative to the strongest below which the row has only side lobes: plain beamforming draws it.
-const ACTIVE_ROW: f64 = 1e-12;
+const MIN_ACTIVE_ROW_PART: f64 = 1e-12;
 
 /// [`MethodInfo::prior_knowledge`] of the methods that draw a spectrum.
 const ASSUMPTIONS: &str = "that what an end hears is plane waves; nothing about the scene or the floor, it measures the noise itself. \
@@ -43,13 +43,13 @@ pub(super) enum Render {
 const SPAN_DECADES: f64 = 4.0;
 
 /// Most peaks of one look.
-const MOST_PEAKS: usize = 256;
+const MAX_PEAKS: usize = 256;
 
 /// Least part of an echo that counts as not plane: the rounding of a covariance.
-const LEAST_NOT_PLANE: f64 = 1e-12;
+const MIN_CURVED_PART: f64 = 1e-12;
 
 /// Power by which a peak must stand above the noise of one beam.
-const LEAST_PEAK_OVER_NOISE: f64 = 10.0;
+const MIN_PEAK_OVER_NOISE: f64 = 10.0;
 
 /// A method that estimates power over angle of one end and one range row at a time.
 #[derive(Debug, Clone, Copy)]
@@ -116,7 +116,7 @@ pub const BARTLETT: RowMethod = RowMethod {
 fn not_plane(radar: &Radar) -> f64 {
     let half_metres = 0.5 * (subarray_len(radar.end_elements) - 1) as f64 * radar.element_spacing_metres;
     let bins = if radar.samples == 1 { 0.0 } else { half_metres / radar.range_resolution_metres() };
-    bins.min(1.0).powi(4).max(LEAST_NOT_PLANE)
+    bins.min(1.0).powi(4).max(MIN_CURVED_PART)
 }
 
 impl RowMethod {
@@ -130,10 +130,10 @@ impl RowMethod {
         let square_mean = |n: usize| radar.window.weights(n).iter().map(|w| w * w).sum::<f64>() / n as f64;
         let angle_gain = (radar.window.weights(radar.elements).iter().sum::<f64>()).powi(2) / radar.elements as f64;
         let of_beam = noise_variance * square_mean(radar.samples) * angle_gain / radar.end_elements as f64;
-        let least = LEAST_PEAK_OVER_NOISE * of_beam;
+        let least = MIN_PEAK_OVER_NOISE * of_beam;
         let decades = power.mapv(|p| p.max(f64::MIN_POSITIVE).log10());
         let found =
-            map_peaks(decades.view(), SPAN_DECADES, MOST_PEAKS).into_iter().filter(|p| 10f64.powf(p.value) > least);
+            map_peaks(decades.view(), SPAN_DECADES, MAX_PEAKS).into_iter().filter(|p| 10f64.powf(p.value) > least);
         let (directions, ranges) = (directions(radar), row_ranges_metres(radar));
         let place = |p: MapPeak| {
             let column = (p.column.round() as usize) % radar.elements;
@@ -170,7 +170,7 @@ impl RowMethod {
         let strongest = (0..bins).map(row_power).fold(0.0, f64::max);
         let window_power = radar.window.weights(bins).iter().map(|w| w * w).sum::<f64>() / bins as f64;
         let noise_variance = sample_noise_variance * window_power;
-        let quiet = (strongest * ACTIVE_ROW).max(2.0 * elements as f64 * noise_variance);
+        let quiet = (strongest * MIN_ACTIVE_ROW_PART).max(2.0 * elements as f64 * noise_variance);
 
         let (spectrum, not_plane) = (Spectrum::new(columns), not_plane(radar));
         let angle_gain = (radar.window.weights(columns).iter().sum::<f64>()).powi(2) / columns as f64;

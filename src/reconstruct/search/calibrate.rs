@@ -172,7 +172,9 @@ fn turned(radar: &Radar, fitter: &Fitter, ends: &TwoEnds, atoms: &[Atom], gains:
     let samples = Samples::new(&fitter.sensor, &corrected);
     let fit = match moves {
         false => fitter.solve(&samples, atoms.to_vec(), Tie::Both, OBJECT_RIDGE),
-        true => fitter.refine(&samples, atoms.to_vec(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH),
+        true => {
+            fitter.refine(&samples, atoms.to_vec(), vec![Gains::default(); atoms.len()], Tie::Both, Limits::ROUGH_FIT)
+        }
     };
     let residual = fit.residual.flat(&fitter.sensor);
     let drawn: Vec<Complex64> = corrected.iter().zip(&residual).map(|(c, r)| c - r).collect();

@@ -160,7 +160,7 @@ impl Search<'_> {
         let max_range = self.radar.max_range_metres();
         let is_near = x_metres.hypot(y_metres) <= max_range;
         let alone = |atom: Atom| {
-            self.fitter.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, Limits::ROUGH)
+            self.fitter.refine(&fit.residual, vec![atom], vec![Gains::default()], Tie::PerEnd, Limits::ROUGH_FIT)
         };
         let (own, other) = rayon::join(|| alone(own), || alone(at_other_wrap([x_metres, y_metres], max_range)));
         let (near, far) = if is_near { (own, other) } else { (other, own) };

@@ -47,7 +47,7 @@ impl Search<'_> {
             let kept = (0..spans.len()).filter(|i| !removed.contains(i));
             let beside = |i: usize| removed.iter().any(|&j| distance(i, j) < 2.0 * MIN_DISTANCE_BINS);
             let marked: Vec<bool> = kept.map(beside).collect();
-            fit = self.refined(fit, &marked, MIN_DISTANCE_BINS, Limits::ROUGH)?;
+            fit = self.refined(fit, &marked, MIN_DISTANCE_BINS, Limits::ROUGH_FIT)?;
         }
     }
 }

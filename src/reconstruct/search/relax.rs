@@ -115,6 +115,6 @@ impl Search<'_> {
         let (mut atoms, mut all) = (fit.atoms.clone(), fit.gains.clone());
         atoms.push(atom);
         all.push(gains);
-        Some(self.fitter.refine(base, atoms, all, Tie::PerEnd, Limits::ROUGH))
+        Some(self.fitter.refine(base, atoms, all, Tie::PerEnd, Limits::ROUGH_FIT))
     }
 }

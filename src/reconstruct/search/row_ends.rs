@@ -43,7 +43,7 @@ impl Search<'_> {
                 row = trial;
             }
         }
-        self.fitter.refine(spectra.samples, row.atoms, row.gains, Tie::PerEnd, Limits::ROUGH)
+        self.fitter.refine(spectra.samples, row.atoms, row.gains, Tie::PerEnd, Limits::ROUGH_FIT)
     }
 
     fn gate<'a>(&self, spectra: &Spectra<'a>, row: &Atom) -> RangeGate<'a> {
@@ -67,7 +67,7 @@ impl Search<'_> {
 impl RangeGate<'_> {
     /// The row refined in the gate, with `gains` to begin with.
     fn refined(&self, row: Atom, gains: Gains) -> Fit {
-        self.fitter.refine(&self.samples, vec![row], vec![gains], Tie::PerEnd, Limits::ROUGH)
+        self.fitter.refine(&self.samples, vec![row], vec![gains], Tie::PerEnd, Limits::ROUGH_FIT)
     }
 }
 

@@ -20,6 +20,6 @@ impl Search<'_> {
         if fit.atoms.len() == known {
             return Ok(fit);
         }
-        Ok(self.fitter.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH))
+        Ok(self.fitter.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH_FIT))
     }
 }

@@ -42,7 +42,7 @@ impl Search<'_> {
             if fit.atoms.len() == before {
                 break;
             }
-            fit = self.fitter.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH);
+            fit = self.fitter.refine(self.samples, fit.atoms, fit.gains, Tie::PerEnd, Limits::ROUGH_FIT);
             if self.is_explained(&fit) {
                 break;
             }

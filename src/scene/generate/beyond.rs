@@ -60,7 +60,7 @@ const MIN_AXIS_SINE: f64 = 0.1;
 const MAX_JITTER: f64 = 0.4;
 const MAX_TURN_RADIANS: f64 = 1.2;
 /// Places that are tried for a wall or a cluster before one that leaves the field in part is taken.
-const TRIES: usize = 40;
+const MAX_PLACE_TRIES: usize = 40;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BeyondField {
@@ -95,7 +95,7 @@ impl BeyondField {
     fn groups(&self, rng: &mut ChaCha8Rng, draw: fn(&Self, &mut ChaCha8Rng) -> Vec<Point>) -> Vec<Point> {
         let of_field = |rng: &mut ChaCha8Rng| {
             let mut points = Vec::new();
-            for _ in 0..TRIES {
+            for _ in 0..MAX_PLACE_TRIES {
                 points = draw(self, rng);
                 let drawn = points.len();
                 points.retain(|p| self.holds([p.x_metres, p.y_metres]));

@@ -20,7 +20,7 @@ pub(super) struct PlacementField {
 }
 
 impl PlacementField {
-    /// The objects of a scene of `kind`, one of [`Kind::VARIED`] or [`Kind::IRREGULAR`]; none for the others.
+    /// The objects of a scene of `kind`, one of [`Kind::VARIED_KINDS`] or [`Kind::IRREGULAR_KINDS`]; none for the others.
     pub fn objects(&self, kind: Kind, rng: &mut ChaCha8Rng) -> Vec<Object> {
         let mut objects: Vec<Object> = match kind {
             Kind::Clusters => (0..rng.random_range(1..=3)).map(|_| self.cluster(rng)).collect(),

@@ -65,18 +65,18 @@ impl Kind {
     pub const TEST_SETS: [Kind; 3] = [Kind::Set1, Kind::Set2, Kind::Set3];
 
     /// The kinds beside the test sets.
-    pub const VARIED: [Kind; 7] =
+    pub const VARIED_KINDS: [Kind; 7] =
         [Kind::Clusters, Kind::Walls, Kind::Spacings, Kind::Corner, Kind::Crowd, Kind::Dynamic, Kind::Near];
 
     /// Points in numbers or at steps that no other kind has.
-    pub const IRREGULAR: [Kind; 2] = [Kind::Fences, Kind::Rain];
+    pub const IRREGULAR_KINDS: [Kind; 2] = [Kind::Fences, Kind::Rain];
 
     /// The kinds of bodies: they shine where they face the array, and hide what stands behind them.
-    pub const THINGS: [Kind; 5] = [Kind::Bodies, Kind::Street, Kind::Rails, Kind::Occlusion, Kind::Rough];
+    pub const BODY_KINDS: [Kind; 5] = [Kind::Bodies, Kind::Street, Kind::Rails, Kind::Occlusion, Kind::Rough];
 
     /// Every kind that has a name of its own: the test sets, varied and irregular points, bodies, and noise alone.
     pub fn all() -> impl Iterator<Item = Kind> {
-        Kind::with_echoes().chain(Kind::IRREGULAR).chain(Kind::THINGS).chain([Kind::Noise])
+        Kind::with_echoes().chain(Kind::IRREGULAR_KINDS).chain(Kind::BODY_KINDS).chain([Kind::Noise])
     }
 
     /// Names of [`Kind::all`], separated by commas, for help and messages.
@@ -86,7 +86,7 @@ impl Kind {
 
     /// The test sets and the varied kinds: scenes of points with echoes to detect.
     pub fn with_echoes() -> impl Iterator<Item = Kind> {
-        Kind::TEST_SETS.into_iter().chain(Kind::VARIED)
+        Kind::TEST_SETS.into_iter().chain(Kind::VARIED_KINDS)
     }
 
     /// The kind called `name`, where test scenes are not wanted: [`Kind::World`] is one of them, [`Kind::Beyond`] is not.

@@ -10,9 +10,9 @@ const NEAREST_METRES: f64 = 5.0;
 const MAX_RANGE_PART: f64 = 0.85;
 /// Smallest distance between bodies, and from the array's axis, metres.
 const APART_METRES: f64 = 0.5;
-const TRIES: usize = 100;
+const MAX_PLACE_TRIES: usize = 100;
 
-/// The objects of a scene of `kind`, one of [`Kind::THINGS`], before a radar of this maximum range; none for the others.
+/// The objects of a scene of `kind`, one of [`Kind::BODY_KINDS`], before a radar of this maximum range; none for the others.
 pub(super) fn objects(kind: Kind, max_range_metres: f64, rng: &mut ChaCha8Rng) -> Vec<Object> {
     let mut things = Things { far: MAX_RANGE_PART * max_range_metres, objects: Vec::new() };
     match kind {
@@ -116,7 +116,7 @@ impl Things {
     }
 
     fn add(&mut self, rng: &mut ChaCha8Rng, make: impl Fn([f64; 2], &mut ChaCha8Rng) -> Object) {
-        for _ in 0..TRIES {
+        for _ in 0..MAX_PLACE_TRIES {
             let range = rng.random_range(NEAREST_METRES..self.far);
             let [cos, sin] = crate::scene::shape::direction(rng.random_range(15.0..165.0));
             let object = make([range * cos, range * sin], rng);
@@ -178,7 +178,7 @@ impl Things {
             false => Object::Post(Post::new(near * cos, near * sin, rng.random_range(0.5..1.2))),
         });
         for _ in 0..2 {
-            for _ in 0..TRIES {
+            for _ in 0..MAX_PLACE_TRIES {
                 let place = at(rng.random_range(near + 4.0..self.far), rng.random_range(-2.5..2.5));
                 let behind = any_body(place, rng);
                 if self.has_room(&behind) {

@@ -23,9 +23,9 @@ const NEAREST_METRES: f64 = 0.3;
 /// Smallest distance of points from the array.
 const CLEAR_METRES: f64 = 0.08;
 /// Farthest place, and farthest point of a curve or a cloud, as parts of the maximum range: farther points wrap around.
-const FARTHEST_PLACE: f64 = 0.95;
-const FARTHEST_POINT: f64 = 1.25;
-const TRIES: usize = 20;
+const MAX_PLACE_RANGE_PART: f64 = 0.95;
+const MAX_POINT_RANGE_PART: f64 = 1.25;
+const MAX_PLACE_TRIES: usize = 20;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct World {
@@ -88,7 +88,7 @@ impl World {
         draw: fn(&World, usize, &mut ChaCha8Rng) -> Vec<GroundPlace>,
     ) -> Vec<GroundPlace> {
         let mut places = Vec::new();
-        for _ in 0..TRIES {
+        for _ in 0..MAX_PLACE_TRIES {
             places = draw(self, count, rng);
             places.retain(|place| self.holds(*place));
             if 2 * places.len() >= count {
@@ -151,7 +151,7 @@ impl World {
         for _ in 0..count {
             let rough = bodies.iter().filter(|o| o.body().is_some_and(|b| b.roughness_millimetres > 0.0));
             let may_be_rough = rough.count() < MAX_ROUGH_BODIES;
-            let made = (0..TRIES).map(|_| self.body(may_be_rough, rng));
+            let made = (0..MAX_PLACE_TRIES).map(|_| self.body(may_be_rough, rng));
             bodies.extend(made.into_iter().find(|body| has_room(body, bodies, self.max_range_metres)));
         }
     }
@@ -183,7 +183,7 @@ impl World {
 
     /// A place in the field, whose range follows one of five laws.
     fn place(&self, law: u32, rng: &mut ChaCha8Rng) -> GroundPlace {
-        let far = FARTHEST_PLACE * self.max_range_metres;
+        let far = MAX_PLACE_RANGE_PART * self.max_range_metres;
         loop {
             let range = match law {
                 0 => log_uniform(NEAREST_METRES..far, rng),
@@ -200,7 +200,7 @@ impl World {
 
     fn holds(&self, [x, y]: GroundPlace) -> bool {
         let beside = (x.abs() - self.half_aperture_metres).max(0.0);
-        y >= 0.0 && beside.hypot(y) >= CLEAR_METRES && x.hypot(y) <= FARTHEST_POINT * self.max_range_metres
+        y >= 0.0 && beside.hypot(y) >= CLEAR_METRES && x.hypot(y) <= MAX_POINT_RANGE_PART * self.max_range_metres
     }
 }
 
@@ -240,7 +240,7 @@ mod tests {
         let wide = Radar { bandwidth_hz: 6e9, ..Radar::default() };
         let physical = RadarPreset::by_id("table-3.1-physical").unwrap().radar.clone();
         for (radar, count) in [(Radar::default(), 1000), (narrow, 200), (wide, 200), (physical, 100)] {
-            let far = FARTHEST_POINT * radar.max_range_metres() * (1.0 + 1e-9);
+            let far = MAX_POINT_RANGE_PART * radar.max_range_metres() * (1.0 + 1e-9);
             for (number, scene) in scenes(&radar, count).iter().enumerate() {
                 scene.validate(&radar).unwrap_or_else(|e| panic!("{number}: {e}"));
                 assert!(!scene.is_silent() && scene.reflector_count() <= MAX_POINTS, "{number}");

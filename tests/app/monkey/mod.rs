@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use witness::Witness;
 
 /// Most memory that the process may hold beyond what it held after the start: maps and history of a full-size radar, twice.
-const MOST_MORE_BYTES: u64 = 1 << 30;
+const MAX_GROWTH_BYTES: u64 = 1 << 30;
 
 /// Objects beyond which the monkey begins anew: it duplicates everything now and then.
 const MANY_OBJECTS: usize = 300;
@@ -88,7 +88,7 @@ impl Monkey {
 
     fn inspect(&mut self, memory_at_first: u64) {
         let held = resident_bytes().unwrap_or(0);
-        assert!(held < memory_at_first + MOST_MORE_BYTES, "{held} bytes are held after {} steps", self.steps);
+        assert!(held < memory_at_first + MAX_GROWTH_BYTES, "{held} bytes are held after {} steps", self.steps);
         for said in ["failed (", "failed:"] {
             let told = self.s.app.query_all_by_label_contains(said).next().map(|n| format!("{:?}", n));
             assert!(told.is_none(), "step {}: {told:?}", self.steps);

@@ -12,7 +12,7 @@ pub use table::RowTable;
 #[cfg(test)]
 pub use table::tests::some_row;
 use thumbnails::Album;
-pub use thumbnails::{HEIGHT as THUMBNAIL_HEIGHT, Thumbnail, WIDTH as THUMBNAIL_WIDTH};
+pub use thumbnails::{THUMBNAIL_COLUMNS as THUMBNAIL_WIDTH, THUMBNAIL_ROWS as THUMBNAIL_HEIGHT, Thumbnail};
 
 use super::background::Background;
 use super::derived::Failure;
@@ -37,7 +37,7 @@ use thumbnails::Thumbnails;
 const SAVE_INTERVAL: Duration = Duration::from_secs(10);
 
 /// Name of the file that keeps rows between starts.
-const FILE: &str = "failures.csv";
+const ROWS_FILE: &str = "failures.csv";
 
 /// Methods and scenes to be tried.
 pub struct FailuresPlan {
@@ -109,7 +109,7 @@ impl Failures {
         let thumbnails = Thumbnails::start(wake.clone());
         let run = RowJob::start(wake.clone());
         let files = Background::new(ctx.clone());
-        let file = folder.map(|folder| folder.join(FILE));
+        let file = folder.map(|folder| folder.join(ROWS_FILE));
         if let Some(file) = file.clone().filter(|file| fs::exists(file)) {
             begin(&files, move || Done::Read { kept: store::read(&file), path: file, own: true });
         }

@@ -18,13 +18,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 
 /// Columns of a thumbnail.
-pub const WIDTH: usize = 96;
+pub const THUMBNAIL_COLUMNS: usize = 96;
 /// Rows of a thumbnail.
-pub const HEIGHT: usize = 48;
+pub const THUMBNAIL_ROWS: usize = 48;
 /// Most thumbnails that are kept, some 5 MB.
 const MAX_THUMBNAILS: usize = 512;
 
-/// Lambda of a map scaled to 0 to 255, `[HEIGHT, WIDTH]` row by row from the smallest range and from left to right. Each cell has the largest value of the
+/// Lambda of a map scaled to 0 to 255, `[THUMBNAIL_ROWS, THUMBNAIL_COLUMNS]` row by row from the smallest range and from left to right. Each cell has the largest value of the
 /// cells it covers.
 pub type Bytes = Box<[u8]>;
 
@@ -48,17 +48,17 @@ fn shrunk(radar: &Radar, map: &RangeAngleMap) -> Bytes {
     let cells = placed.as_ref().map_or(drawn, |placed| placed.view());
     let (rows, columns) = cells.dim();
     // The largest value of the covered cells, so that no point is lost.
-    let mut small = vec![0.0f32; WIDTH * HEIGHT];
+    let mut small = vec![0.0f32; THUMBNAIL_COLUMNS * THUMBNAIL_ROWS];
     for ((row, column), lambda) in cells.indexed_iter() {
-        let cell = &mut small[row * HEIGHT / rows * WIDTH + column * WIDTH / columns];
+        let cell = &mut small[row * THUMBNAIL_ROWS / rows * THUMBNAIL_COLUMNS + column * THUMBNAIL_COLUMNS / columns];
         *cell = cell.max(*lambda);
     }
     // A map of fewer cells repeats some of them.
-    let at = |y: usize, x: usize| (y * rows / HEIGHT, x * columns / WIDTH);
+    let at = |y: usize, x: usize| (y * rows / THUMBNAIL_ROWS, x * columns / THUMBNAIL_COLUMNS);
     let few = |i: usize| {
-        let (y, x) = (i / WIDTH, i % WIDTH);
+        let (y, x) = (i / THUMBNAIL_COLUMNS, i % THUMBNAIL_COLUMNS);
         let large = small[i];
-        if rows < HEIGHT || columns < WIDTH { large.max(cells[at(y, x)]) } else { large }
+        if rows < THUMBNAIL_ROWS || columns < THUMBNAIL_COLUMNS { large.max(cells[at(y, x)]) } else { large }
     };
     (0..small.len()).map(|i| (few(i) * 255.0 + 0.5) as u8).collect()
 }
@@ -214,11 +214,15 @@ mod tests {
             let mut lambda = Array2::zeros((rows, columns));
             lambda[[rows - 1, columns / 3]] = 1.0;
             let small = shrunk(&Radar::default(), &RangeAngleMap { lambda });
-            assert_eq!(small.len(), WIDTH * HEIGHT);
+            assert_eq!(small.len(), THUMBNAIL_COLUMNS * THUMBNAIL_ROWS);
             let bright: Vec<usize> = (0..small.len()).filter(|i| small[*i] == 255).collect();
-            let far = |i: &usize| i / WIDTH + HEIGHT / rows.min(HEIGHT) + 1 >= HEIGHT;
+            let far =
+                |i: &usize| i / THUMBNAIL_COLUMNS + THUMBNAIL_ROWS / rows.min(THUMBNAIL_ROWS) + 1 >= THUMBNAIL_ROWS;
             assert!(!bright.is_empty() && bright.iter().all(far), "{rows}, {columns}: {bright:?}");
-            assert!(bright.iter().any(|i| (i % WIDTH).abs_diff(WIDTH / 3) <= 1), "{rows}, {columns}: {bright:?}");
+            assert!(
+                bright.iter().any(|i| (i % THUMBNAIL_COLUMNS).abs_diff(THUMBNAIL_COLUMNS / 3) <= 1),
+                "{rows}, {columns}: {bright:?}"
+            );
         }
     }
 
@@ -229,8 +233,8 @@ mod tests {
             let mut lambda = Array2::zeros((64, 128));
             lambda[[20, radar.column_of_cos(-0.5) as usize]] = 1.0;
             let small = shrunk(&radar, &RangeAngleMap { lambda });
-            let bright = small.iter().position(|v| *v == 255).unwrap() % WIDTH;
-            assert!(bright.abs_diff(WIDTH / 4) <= 1, "{convention:?}: column {bright}");
+            let bright = small.iter().position(|v| *v == 255).unwrap() % THUMBNAIL_COLUMNS;
+            assert!(bright.abs_diff(THUMBNAIL_COLUMNS / 4) <= 1, "{convention:?}: column {bright}");
         }
     }
 

@@ -58,10 +58,10 @@ fn normalisation(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     });
 }
 
-const LEVEL: &str = "Thermal noise of this level in every sample, for any scene: an empty scene is noise alone. A reflector of σ 1 at \
+const LEVEL_TOOLTIP: &str = "Thermal noise of this level in every sample, for any scene: an empty scene is noise alone. A reflector of σ 1 at \
     20 m has +18 dBm; with a link budget, what the radar equation says";
 
-const RECEIVER: &str = "The noise of the radar's receivers, kTBF, by its link budget in the panel Radar; by the usual one where it has none";
+const RECEIVER_TOOLTIP: &str = "The noise of the radar's receivers, kTBF, by its link budget in the panel Radar; by the usual one where it has none";
 
 fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     row_of(ui, "Floor", "Noise beneath the echoes", |ui| {
@@ -73,8 +73,8 @@ fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
                 "SNR",
                 "Thermal noise at a signal-to-noise ratio: it is louder where the scene is",
             ),
-            (Floor::Level(settings.level), "dBm", LEVEL),
-            (Floor::Thermal, "Receiver", RECEIVER),
+            (Floor::Level(settings.level), "dBm", LEVEL_TOOLTIP),
+            (Floor::Thermal, "Receiver", RECEIVER_TOOLTIP),
         ];
         choices(ui, settings.floor, of, ViewCommand::SetFloor, asked);
         if let Floor::Snr(Decibels(mut snr)) = settings.floor {
@@ -84,9 +84,8 @@ fn floor(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
             }
         }
         if let Floor::Level(DecibelMilliwatts(mut level)) = settings.floor {
-            let drag =
-                NumberField::new(&mut level).range(signal::floor::LEVEL_DECIBEL_MILLIWATTS).speed(0.5).suffix(" dBm");
-            if ui.add(drag).on_hover_text(LEVEL).changed() {
+            let drag = NumberField::new(&mut level).range(signal::floor::LEVEL_RANGE_DBM).speed(0.5).suffix(" dBm");
+            if ui.add(drag).on_hover_text(LEVEL_TOOLTIP).changed() {
                 asked.push(ViewCommand::SetFloor(Floor::Level(DecibelMilliwatts(level))).into());
             }
         }

@@ -5,7 +5,7 @@ use crate::app::widgets::{choice, entry_problem, text_entry};
 use crate::radar::{LayoutKind, Radar};
 use eframe::egui::Ui;
 
-const TIP: &str = "The elements that methods hear. The target stays the map of the whole array. Not every method hears other elements than those of the two ends";
+const HEARD_TOOLTIP: &str = "The elements that methods hear. The target stays the map of the whole array. Not every method hears other elements than those of the two ends";
 
 pub(super) fn show(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     // No other layout can be used on the samples of the two ends alone.
@@ -16,7 +16,9 @@ pub(super) fn show(ui: &mut Ui, state: &State, asked: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let mut chosen = layout.cloned();
         let offered = std::iter::once(None).chain(suggested(radar).map(Some));
-        choice(ui, "heard", TIP, &mut chosen, offered, |layout| (name(layout.as_ref()), tip(layout.as_ref())));
+        choice(ui, "heard", HEARD_TOOLTIP, &mut chosen, offered, |layout| {
+            (name(layout.as_ref()), tip(layout.as_ref()))
+        });
         let shown = (layout.unwrap_or(&LayoutKind::TwoEnds).to_string(), 180.0);
         let typed = text_entry(ui, id, ("as text", LayoutKind::NAMES), shown, true, |text| layout_of(text, radar));
         let new = typed.or_else(|| (chosen.as_ref() != layout).then_some(chosen));

@@ -8,16 +8,16 @@ use eframe::egui::{
 };
 
 /// Least phase that is drawn as a dot; rounding leaves less after a calibration.
-const LEAST_DRAWN_DEGREES: f64 = 0.05;
+const MIN_DRAWN_PHASE_DEGREES: f64 = 0.05;
 
 /// Displacement of an element per point of a drag, millimetres.
-const MILLIMETRES_A_POINT: f64 = 0.05;
+const MILLIMETRES_PER_POINT: f64 = 0.05;
 
 /// Most points by which an element is drawn above or below the line.
-const MOST_UP: f32 = 16.0;
+const MAX_OFFSET_POINTS: f32 = 16.0;
 
 /// Largest distance from an element's place, millimetres.
-pub(super) const MOST_MILLIMETRES: f64 = 1000.0;
+pub(super) const MAX_DISPLACEMENT_MILLIMETRES: f64 = 1000.0;
 
 struct Strip<'a> {
     radar: &'a Radar,
@@ -96,15 +96,15 @@ impl Strip<'_> {
     fn place(&self, n: usize) -> Pos2 {
         let error = self.elements.element(n);
         let along = (error.position_millimetres * 1e-3 / self.radar.element_spacing_metres) as f32 * self.width();
-        let up = (error.forward_millimetres / MILLIMETRES_A_POINT) as f32;
-        pos2(self.at(n) + along, self.rect.center().y - up.clamp(-MOST_UP, MOST_UP))
+        let up = (error.forward_millimetres / MILLIMETRES_PER_POINT) as f32;
+        pos2(self.at(n) + along, self.rect.center().y - up.clamp(-MAX_OFFSET_POINTS, MAX_OFFSET_POINTS))
     }
 
     fn bar(&self, painter: &Painter, n: usize, error: ElementError, ink: Color32, dot: Color32) {
         let place = self.place(n);
         let half = (9.0 + error.gain.0 as f32 * 2.0).clamp(2.0, 24.0);
         painter.rect_filled(Rect::from_center_size(place, vec2(self.width(), 2.0 * half)), 1.0, ink);
-        if error.phase_degrees.abs() >= LEAST_DRAWN_DEGREES {
+        if error.phase_degrees.abs() >= MIN_DRAWN_PHASE_DEGREES {
             let up = (error.phase_degrees / 180.0) as f32 * 24.0;
             painter.circle_filled(place - vec2(0.0, up), 2.0, dot);
         }
@@ -133,7 +133,8 @@ impl Strip<'_> {
             return None;
         }
         let by = |from: f64, points: f32| {
-            (from + f64::from(points) * MILLIMETRES_A_POINT).clamp(-MOST_MILLIMETRES, MOST_MILLIMETRES)
+            (from + f64::from(points) * MILLIMETRES_PER_POINT)
+                .clamp(-MAX_DISPLACEMENT_MILLIMETRES, MAX_DISPLACEMENT_MILLIMETRES)
         };
         let error = self.elements.element(*chosen);
         let position_millimetres = by(error.position_millimetres, moved.x);

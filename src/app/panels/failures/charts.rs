@@ -3,7 +3,7 @@
 use super::cells::heading;
 use super::input::Input;
 use super::order::{Boxed, Order};
-use super::points::{Dot, GROUPINGS, Points, Subject};
+use super::points::{Dot, GROUP_COLUMNS, Points, Subject};
 use crate::app::jobs::{Memo, RowTable};
 use crate::app::shared::Shared;
 use crate::app::widgets::legend::{self, Entry, Sign};
@@ -56,7 +56,7 @@ impl Default for ChartsMemory {
 type PointsKey = (u64, Subject, Column);
 
 /// Number of dots below which they are drawn larger.
-const FEW_DOTS: usize = 500;
+const MAX_LARGE_DOTS: usize = 500;
 
 /// Largest distance of a click from a dot, points.
 const DOT_REACH_POINTS: f32 = 10.0;
@@ -70,7 +70,7 @@ pub fn choices(ui: &mut Ui, table: &RowTable, memory: &mut ChartsMemory) {
         choice(ui, name, "", column, Column::FIGURES.iter().copied(), |column| (heading(*column), ""));
     };
     if matches!(memory.view, View::Histogram | View::Columns) {
-        choice(ui, "Colour", "", &mut memory.grouping, GROUPINGS, |column| (heading(*column), ""));
+        choice(ui, "Colour", "", &mut memory.grouping, GROUP_COLUMNS, |column| (heading(*column), ""));
     }
     match memory.view {
         View::None => {}
@@ -172,12 +172,12 @@ fn subject(memory: &ChartsMemory) -> Option<(Subject, [String; 2])> {
 }
 
 /// Colours of groups: those of Okabe and Ito, which differ for the colour-blind, too.
-const GROUPS: [[u8; 3]; 7] =
+const GROUP_COLOURS: [[u8; 3]; 7] =
     [[86, 180, 233], [230, 159, 0], [0, 158, 115], [204, 121, 167], [213, 94, 0], [0, 114, 178], [240, 228, 66]];
 
 /// The colour of a group; a single group has the usual colour of charts.
 fn colour_of(ui: &Ui, group: usize, groups: usize) -> Color32 {
-    let [r, g, b] = GROUPS[group % GROUPS.len()];
+    let [r, g, b] = GROUP_COLOURS[group % GROUP_COLOURS.len()];
     if groups > 1 { Color32::from_rgb(r, g, b) } else { Inks::of(ui.visuals()).ends[0] }
 }
 
@@ -211,7 +211,7 @@ fn bars(ui: &Ui, chart: &mut Chart<'_>, points: &Points, boxed: Option<&Boxed>) 
 
 fn dots(ui: &Ui, drawn: &Drawn, points: &Points, boxed: Option<&Boxed>) {
     let mut mesh = Mesh::default();
-    let size = Vec2::splat(if points.dots.len() < FEW_DOTS { 5.0 } else { 3.0 });
+    let size = Vec2::splat(if points.dots.len() < MAX_LARGE_DOTS { 5.0 } else { 3.0 });
     for dot in &points.dots {
         let is_chosen = boxed.is_some_and(|b| dot.rows.iter().any(|row| b.rows.contains(row)));
         let colour = match is_chosen {

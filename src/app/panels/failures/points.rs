@@ -5,7 +5,7 @@ use crate::evaluate::rows::{Column, Histogram, Row};
 use crate::evaluate::statistics::Paired;
 use std::collections::{BTreeSet, HashMap};
 
-const BARS: usize = 40;
+const MAX_BARS: usize = 40;
 
 /// Columns and methods that a chart shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum Subject {
 }
 
 /// Columns whose text may decide a row's colour.
-pub const GROUPINGS: [Column; 2] = [Column::Method, Column::Set];
+pub const GROUP_COLUMNS: [Column; 2] = [Column::Method, Column::Set];
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
@@ -61,7 +61,7 @@ impl Points {
             Subject::Histogram(column) => {
                 let at = |row: &Row| Some([number(row, *column)?, 0.0]);
                 let dots = listed().filter_map(|listed| dot(listed, at(listed.1)?)).collect();
-                let bars = Histogram::of(listed().map(|(_, row)| row), *column, BARS);
+                let bars = Histogram::of(listed().map(|(_, row)| row), *column, MAX_BARS);
                 let most = bars.as_ref().and_then(|b| b.counts.iter().max()).map_or(1, |most| *most);
                 let x = bars.as_ref().map_or([0.0, 1.0], |b| padded(b.low, b.high, 0.0));
                 Points { dots, bars, groups, spans: [x, [0.0, 1.05 * most as f64]], told: None }

@@ -38,10 +38,10 @@ pub struct TableMemory {
     room: [f32; 2],
 }
 
-const ROW: f32 = 40.0;
-const TITLE: f32 = 34.0;
+const ROW_HEIGHT_POINTS: f32 = 40.0;
+const TITLE_HEIGHT_POINTS: f32 = 34.0;
 /// Size of a small map on screen.
-const MAP: Vec2 = vec2(72.0, 36.0);
+const MAP_SIZE_POINTS: Vec2 = vec2(72.0, 36.0);
 
 /// Draws the rows whose indices are in `shown`. A click on a title sorts them. Returns the row to open.
 pub fn show(
@@ -59,7 +59,7 @@ pub fn show(
     focus_after_click(&list, &mut memory.was_clicked);
     if list.has_focus() {
         let now = opened.and_then(|row| shown.iter().position(|shown| *shown == row));
-        let page = ((memory.room[1] / ROW) as usize).max(1);
+        let page = ((memory.room[1] / ROW_HEIGHT_POINTS) as usize).max(1);
         open = list_keys(&list, Modifiers::NONE, now, shown.len(), page)
             .map(|to| shown[to])
             .filter(|row| opened != Some(*row));
@@ -74,7 +74,7 @@ pub fn show(
     memory.in_sight.clear();
     let output = ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
-        let of_maps = [MAP.x + 4.0; 2].into_iter();
+        let of_maps = [MAP_SIZE_POINTS.x + 4.0; 2].into_iter();
         let widths = of_maps.chain(Column::FIGURES.iter().map(|column| cells::width(*column)));
         let mut table = widths.fold(TableBuilder::new(ui), |t, width| t.column(TableColumn::exact(width).clip(true)));
         table = table.striped(true).sense(Sense::CLICK).auto_shrink(false).min_scrolled_height(0.0);
@@ -82,9 +82,9 @@ pub fn show(
         if let Some(row) = scroll_to {
             table = table.scroll_to_row(row, None);
         }
-        let table = table.header(TITLE, |mut row| titles(&mut row, sort));
+        let table = table.header(TITLE_HEIGHT_POINTS, |mut row| titles(&mut row, sort));
         table.body(|body| {
-            body.rows(ROW, shown.len(), |mut drawn| {
+            body.rows(ROW_HEIGHT_POINTS, shown.len(), |mut drawn| {
                 let index = shown[drawn.index()];
                 memory.in_sight.push(index);
                 if row(&mut drawn, input, index, memory) {
@@ -154,7 +154,7 @@ fn texture(
     // Row 0 of the picture is range 0, at the lower end.
     for low in [0.0, 0.5] {
         drawn.col(|ui| {
-            let place = Rect::from_center_size(ui.max_rect().center(), MAP);
+            let place = Rect::from_center_size(ui.max_rect().center(), MAP_SIZE_POINTS);
             match &mut picture {
                 Some(Picture { texture, image, .. }) => {
                     let texture = texture.of(ui.ctx(), "small maps", image, TextureOptions::LINEAR);

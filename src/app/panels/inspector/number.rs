@@ -65,16 +65,16 @@ fn rounded(value: f64, look: &Quantity, metres_per_point: f64) -> Option<String>
 }
 
 /// Largest radius on the slider, metres; larger ones are typed.
-const MOST_RADIUS_METRES: f64 = 5.0;
+const MAX_SLIDER_RADIUS_METRES: f64 = 5.0;
 
 /// Largest roughness on the slider, millimetres: 2 mm already lower a glint by 43 dB.
-const MOST_ROUGHNESS_MILLIMETRES: f64 = 2.0;
+const MAX_SLIDER_ROUGHNESS_MILLIMETRES: f64 = 2.0;
 
 /// Draws the slider beside a number of a body, whose effect on the maps is best seen while it changes, if the field has one. Returns the change of the number.
 fn slider(ui: &mut Ui, shared: &SharedField) -> Option<FieldChange> {
     let (name, range, is_logarithmic) = match shared.field {
-        Field::Radius => ("radius slider", 0.01..=MOST_RADIUS_METRES, true),
-        Field::Roughness => ("roughness slider", 0.0..=MOST_ROUGHNESS_MILLIMETRES, false),
+        Field::Radius => ("radius slider", 0.01..=MAX_SLIDER_RADIUS_METRES, true),
+        Field::Roughness => ("roughness slider", 0.0..=MAX_SLIDER_ROUGHNESS_MILLIMETRES, false),
         _ => return None,
     };
     let mut value = shared.first;

@@ -8,7 +8,7 @@ use crate::radar::counted;
 use eframe::egui::{self, Color32, ProgressBar, RichText, TextEdit, Ui};
 
 /// Width of a bar of progress, points.
-const BAR: f32 = 120.0;
+const PROGRESS_BAR_POINTS: f32 = 120.0;
 
 /// Room for "0 of 5 steps", points.
 const MIN_BAR: f32 = 84.0;
@@ -64,7 +64,7 @@ fn start_over(ui: &mut Ui, progress: &Progress, asked: &mut Vec<Command>) {
 fn listed(ui: &mut Ui, lesson: &Lesson, done: usize) -> bool {
     ui.separator();
     let (steps, room) = (lesson.steps.len(), ui.available_width());
-    let bar = BAR.min(0.3 * room).max(MIN_BAR);
+    let bar = PROGRESS_BAR_POINTS.min(0.3 * room).max(MIN_BAR);
     let clicked = ui.horizontal(|ui| {
         let title = egui::Button::new(RichText::new(&lesson.title).strong()).frame_when_inactive(false).wrap();
         let button = ui.scope(|ui| {

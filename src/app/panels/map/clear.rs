@@ -3,12 +3,12 @@
 use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// Distance from a blob that text keeps, points.
-const CLEAR: f32 = 8.0;
+const BLOB_DISTANCE_POINTS: f32 = 8.0;
 /// Largest part of the map that text covers.
-const MOST_PART: f32 = 0.25;
+const MAX_TEXT_PART: f32 = 0.25;
 
 /// Place of as many `lines` as fit, and their number: at least one, more in a larger map. All `places` stay in sight, the first (the blob's
-/// peak) before the others, and the text covers no more than [`MOST_PART`] of the map.
+/// peak) before the others, and the text covers no more than [`MAX_TEXT_PART`] of the map.
 pub fn clear_patch(rect: Rect, places: &[Pos2], lines: &[Vec2]) -> (Rect, usize) {
     let from = places.first().copied().unwrap_or(rect.center());
     let patches = |count: usize| {
@@ -16,7 +16,8 @@ pub fn clear_patch(rect: Rect, places: &[Pos2], lines: &[Vec2]) -> (Rect, usize)
         corners(rect, from, size + vec2(10.0, 6.0)).map(|patch| (patch, count))
     };
     let fits = |(patch, _): &(Rect, usize)| {
-        patch.area() <= MOST_PART * rect.area() && !places.iter().any(|p| patch.expand(CLEAR).contains(*p))
+        patch.area() <= MAX_TEXT_PART * rect.area()
+            && !places.iter().any(|p| patch.expand(BLOB_DISTANCE_POINTS).contains(*p))
     };
     let least = patches(lines.len().min(1))[0];
     (1..=lines.len()).rev().flat_map(patches).find(fits).unwrap_or(least)
@@ -44,8 +45,8 @@ mod tests {
         let small = Rect::from_min_size(Pos2::ZERO, vec2(300.0, 180.0));
         let lines = [vec2(290.0, 14.0); 7];
         let (patch, count) = clear_patch(small, &[small.center()], &lines);
-        assert!(count > 1 && patch.area() <= MOST_PART * small.area(), "{count} lines at {patch:?}");
-        assert!(!patch.expand(CLEAR).contains(small.center()));
+        assert!(count > 1 && patch.area() <= MAX_TEXT_PART * small.area(), "{count} lines at {patch:?}");
+        assert!(!patch.expand(BLOB_DISTANCE_POINTS).contains(small.center()));
         let (first, count) = clear_patch(RECT, &[RECT.center()], &lines);
         let (other, again) = clear_patch(RECT, &[RECT.center(), first.center()], &lines);
         assert!(

@@ -9,10 +9,10 @@ use crate::theory::MapPlace;
 use eframe::egui::{Align2, Pos2, Rect, Vec2, pos2, vec2};
 
 /// Distance from the top within which the pointer would be under a text in the right corner, points.
-const NEAR_TOP_POINTS: f32 = 40.0;
+const CORNER_TEXT_HEIGHT_POINTS: f32 = 40.0;
 
 /// Size of the button in a map's corner, points.
-pub const BUTTON: Vec2 = vec2(24.0, 20.0);
+pub const BUTTON_SIZE_POINTS: Vec2 = vec2(24.0, 20.0);
 
 /// Rectangle, visible part and projection of a map on screen.
 #[derive(Clone, Copy)]
@@ -83,13 +83,13 @@ impl<'a> Frame<'a> {
 
     /// Place of a text in the upper left corner, `below` points beneath the map's top and beside the button that a Cartesian map has there.
     pub fn upper_left(&self, below: f32) -> Pos2 {
-        let beside = if self.projection == Projection::Cartesian { BUTTON.x + 8.0 } else { 0.0 };
+        let beside = if self.projection == Projection::Cartesian { BUTTON_SIZE_POINTS.x + 8.0 } else { 0.0 };
         self.rect.left_top() + vec2(10.0 + beside, below)
     }
 
     /// The upper corner away from a place, `below` points beneath the map's top, and the alignment of a text there.
     pub fn far_corner(&self, at: Pos2, below: f32) -> (Pos2, Align2) {
-        match at.y < self.rect.top() + NEAR_TOP_POINTS && at.x > self.rect.center().x {
+        match at.y < self.rect.top() + CORNER_TEXT_HEIGHT_POINTS && at.x > self.rect.center().x {
             true => (self.upper_left(below), Align2::LEFT_TOP),
             false => (self.rect.right_top() + vec2(-10.0, below), Align2::RIGHT_TOP),
         }

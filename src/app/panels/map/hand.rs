@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use eframe::egui::{CursorIcon, PointerButton, Pos2, Response, Ui};
 
 /// Most reflectors among which the one under a resting pointer is looked for in every frame.
-const HOVERED: usize = 2000;
+const MAX_HOVERED_REFLECTORS: usize = 2000;
 
 /// State of the pointer, kept between frames.
 #[derive(Default)]
@@ -49,7 +49,7 @@ pub fn work(
         asked.push(EditCommand::DragTo(to).into());
         ui.set_cursor_icon(CursorIcon::Grabbing);
     } else if let Some(pos) = response.hover_pos()
-        && scene.reflector_count() <= HOVERED
+        && scene.reflector_count() <= MAX_HOVERED_REFLECTORS
         && under(scene, frame, pos).is_some()
     {
         ui.set_cursor_icon(CursorIcon::Grab);

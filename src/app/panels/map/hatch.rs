@@ -14,7 +14,7 @@ const MIN_CELL_POINTS: f32 = 4.0;
 const GHOST_MARGIN_POINTS: f32 = 0.75;
 
 /// Distance between two lines of a hatch, points.
-const STEP: f32 = 7.0;
+const LINE_DISTANCE_POINTS: f32 = 7.0;
 
 /// Maps and thresholds that separate hits, misses and false alarms.
 #[derive(Clone, Copy)]
@@ -76,11 +76,14 @@ impl ToldApart<'_> {
         if frame.cell_height() < MIN_CELL_POINTS {
             return;
         }
-        let [across, up] = [rect.width(), rect.height()].map(|side| (side / STEP).ceil() as usize);
+        let [across, up] = [rect.width(), rect.height()].map(|side| (side / LINE_DISTANCE_POINTS).ceil() as usize);
         // The grid stays in place on screen, so that lines of neighbouring cells meet.
         let squares = (0..up).flat_map(|row| (0..across).map(move |column| (row, column)));
         let lines = squares.filter_map(|(row, column)| {
-            let square = Rect::from_min_size(rect.min + STEP * vec2(column as f32, row as f32), vec2(STEP, STEP));
+            let square = Rect::from_min_size(
+                rect.min + LINE_DISTANCE_POINTS * vec2(column as f32, row as f32),
+                vec2(LINE_DISTANCE_POINTS, LINE_DISTANCE_POINTS),
+            );
             let kind = self.at(frame, square.center());
             let ends = match kind {
                 CellVerdict::Miss => [square.left_bottom(), square.right_top()],

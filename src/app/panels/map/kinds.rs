@@ -15,7 +15,7 @@ use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Vec2, vec2};
 const MARK_REACH_POINTS: f32 = 10.0;
 
 /// Most marks that are drawn.
-const MARKS: usize = 400;
+const MAX_KIND_MARKS: usize = 400;
 
 /// Verdicts on all objects that the map should show.
 #[derive(Clone, Copy)]
@@ -120,7 +120,7 @@ impl Kinds<'_> {
     /// Draws the marks. The one under the pointer shows its object, the verdict and the reason.
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, above: f32) {
         let mut nearest: Option<(&VerdictMark, f32)> = None;
-        for mark in self.judged.marks.iter().take(MARKS) {
+        for mark in self.judged.marks.iter().take(MAX_KIND_MARKS) {
             let Some(at) = self.place(frame, mark) else { continue };
             self.draw_one(painter, frame, mark, at);
             let distance = pointer.map_or(f32::INFINITY, |p| p.distance(at));

@@ -36,7 +36,7 @@ use crate::app::state::{
 };
 use crate::app::widgets::{CAPTION, CAPTION_INK, Inks, axes, entry, entry_called, item, nudge, with_minuses};
 use crate::maps::{Aperture, RangeAngleMap, beam_columns};
-use crate::radar::{End, FEW_COLUMNS, Radar};
+use crate::radar::{End, MIN_FINE_COLUMNS, Radar};
 use crate::reconstruct::untrained_noise;
 use crate::scattering::EchoSources;
 use crate::scene::Object;
@@ -48,7 +48,7 @@ use plot::{draw_axes, is_wide, navigate, rect_of};
 use std::sync::Arc;
 
 /// Text over a map of an earlier scene.
-pub const EARLIER_SCENE: &str = "Previous scene; updating…";
+pub const EARLIER_SCENE_TEXT: &str = "Previous scene; updating…";
 
 pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut HandMemory) -> Vec<Command> {
     let mut asked = Vec::new();
@@ -202,7 +202,7 @@ fn note(state: &State, kind: MapKind) -> Option<String> {
 
 /// Places that text must not cover: blobs of the scene's reflectors, and the text at the foot of the map.
 fn taken(state: &State, frame: Frame<'_>, has_foot: bool) -> Vec<Pos2> {
-    let reflectors = state.scene().objects.iter().flat_map(Object::marks).take(overlay::MARKS);
+    let reflectors = state.scene().objects.iter().flat_map(Object::marks).take(overlay::MAX_MARKED_REFLECTORS);
     let foot = has_foot.then(|| frame.rect.left_bottom() + vec2(12.0, -12.0));
     reflectors.map(|reflector| frame.blob(&reflector)).chain(foot).collect()
 }
@@ -289,7 +289,7 @@ fn line_of<'a>(input: &'a Input<'_>) -> Option<&'a RangeAngleMap> {
 
 /// The elements whose beam is drawn over a map of few of them.
 fn aperture(input: &Input<'_>) -> Option<Aperture> {
-    if input.state.radar().elements >= FEW_COLUMNS || input.state.settings.projection != Projection::RangeAngle {
+    if input.state.radar().elements >= MIN_FINE_COLUMNS || input.state.settings.projection != Projection::RangeAngle {
         return None;
     }
     match input.kind {

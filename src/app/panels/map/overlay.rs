@@ -11,14 +11,14 @@ use crate::scene::{Object, Reflector, Scene};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, pos2, vec2};
 
 /// Most reflectors that are marked.
-pub const MARKS: usize = 4000;
+pub const MAX_MARKED_REFLECTORS: usize = 4000;
 
 /// Radius of a ring, points.
-const RADIUS: f32 = 6.0;
+const RING_RADIUS_POINTS: f32 = 6.0;
 
 /// Shortest beam that is drawn, points, and half the height of the marks at its ends.
-const LEAST_BEAM_POINTS: f32 = 12.0;
-const TICK: Vec2 = vec2(0.0, 4.0);
+const MIN_BEAM_POINTS: f32 = 12.0;
+const HALF_TICK_POINTS: Vec2 = vec2(0.0, 4.0);
 
 /// Largest distance of the pointer from a ring to show the true direction, points.
 const RING_REACH_POINTS: f32 = 9.0;
@@ -26,7 +26,7 @@ const RING_REACH_POINTS: f32 = 9.0;
 /// Draws the reflectors that the method found, as crosses; paler where they are those of an `old` scene.
 pub fn found(painter: &Painter, frame: Frame<'_>, found: &[Reflector], old: bool) {
     let strength = if old { 0.35 } else { 1.0 };
-    for r in found.iter().take(MARKS) {
+    for r in found.iter().take(MAX_MARKED_REFLECTORS) {
         for (width, colour) in [(2.6, MARK_EDGE), (1.3, Color32::from_rgb(120, 255, 150))] {
             cross(painter, frame.blob(r), Vec2::splat(4.0), Stroke::new(width, colour.gamma_multiply(strength)));
         }
@@ -48,19 +48,20 @@ pub fn line(painter: &Painter, frame: Frame<'_>, map: &RangeAngleMap, ink: Color
 pub fn beam(painter: &Painter, frame: Frame<'_>, columns: f64) {
     let part = columns as f32 / frame.radar.elements as f32;
     let length = part * frame.rect.width() / (frame.view.high.x - frame.view.low.x);
-    if !(LEAST_BEAM_POINTS..frame.rect.width() - 80.0).contains(&length) {
+    if !(MIN_BEAM_POINTS..frame.rect.width() - 80.0).contains(&length) {
         return;
     }
     let from = frame.rect.left_top() + vec2(10.0, 14.0);
     let to = from + vec2(length, 0.0);
-    let ticks = [[from, to], [from, from], [to, to]].map(|[a, b]| if a == b { [a - TICK, b + TICK] } else { [a, b] });
+    let ticks = [[from, to], [from, from], [to, to]]
+        .map(|[a, b]| if a == b { [a - HALF_TICK_POINTS, b + HALF_TICK_POINTS] } else { [a, b] });
     edged([3.0, 1.4], MARK, |stroke| ticks.map(|ends| painter.line_segment(ends, stroke)));
     axes::text_on_patch(painter, to + vec2(8.0, 0.0), Align2::LEFT_CENTER, "beam");
 }
 
 /// Draws true reflectors at their places in the map, as rings or as outlines of lines. The ring under the `pointer` shows the true direction.
 pub fn marks(painter: &Painter, frame: Frame<'_>, objects: &[Marked], pointer: Option<Pos2>) {
-    let mut left = MARKS;
+    let mut left = MAX_MARKED_REFLECTORS;
     let mut nearest: Option<(&Reflector, f32)> = None;
     for object in objects {
         let reflectors = &object.reflectors[..object.reflectors.len().min(left)];
@@ -98,7 +99,7 @@ impl Ring {
 /// A ring around each reflector; around a line whose rings would run together, one outline. A line that wraps around the end of the ranges
 /// has two pieces: without wrapping, no neighbours are `height` apart. All shapes are `wider` than usual by so many points.
 fn rings(object: &Marked, blobs: &[Pos2], height: f32, wider: f32) -> Vec<Ring> {
-    let radius = wider + if object.reflectors.len() > 20 && !object.is_line { 2.5 } else { RADIUS };
+    let radius = wider + if object.reflectors.len() > 20 && !object.is_line { 2.5 } else { RING_RADIUS_POINTS };
     let fused = |pair: &[Pos2]| pair[0].distance(pair[1]) < 2.0 * radius;
     if !object.is_line || !blobs.windows(2).all(|pair| fused(pair) || pair[0].distance(pair[1]) > height / 2.0) {
         return blobs.iter().map(|at| Ring::Circle(*at, radius)).collect();
@@ -109,7 +110,7 @@ fn rings(object: &Marked, blobs: &[Pos2], height: f32, wider: f32) -> Vec<Ring> 
 
 /// Draws one outline around the blobs of each selected object, so that its echoes stay in sight, and a line as the curve on which its blobs lie.
 pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &Selection) {
-    let mut left = MARKS;
+    let mut left = MAX_MARKED_REFLECTORS;
     for object in selection.iter().filter_map(|i| scene.objects.get(i)) {
         let reflectors: Vec<Reflector> = object.marks().into_iter().take(left).collect();
         left -= reflectors.len();
@@ -130,22 +131,22 @@ pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &
 }
 
 /// Points of a line's curve.
-const CURVE: usize = 96;
+const CURVE_POINTS: usize = 96;
 
 /// Draws the straight line between two reflectors as the map shows it, with a dot at each end; in pieces where it wraps around the end of the ranges.
 fn curve(painter: &Painter, frame: Frame<'_>, first: &Reflector, last: &Reflector) {
     let along = |i: usize| {
-        let part = i as f64 / CURVE as f64;
+        let part = i as f64 / CURVE_POINTS as f64;
         let between = |a: f64, b: f64| a + part * (b - a);
         let [x_metres, y_metres] = [between(first.x_metres, last.x_metres), between(first.y_metres, last.y_metres)];
         frame.blob(&Reflector { x_metres, y_metres, ..*first })
     };
-    let path: Vec<Pos2> = (0..=CURVE).map(along).collect();
+    let path: Vec<Pos2> = (0..=CURVE_POINTS).map(along).collect();
     edged([4.0, 1.8], MARK_SELECTED, |stroke| {
         for piece in path.chunk_by(|a, b| a.distance(*b) <= frame.rect.height() / 2.0) {
             painter.add(Shape::line(piece.to_vec(), stroke));
         }
-        for end in [path[0], path[CURVE]] {
+        for end in [path[0], path[CURVE_POINTS]] {
             painter.circle_filled(end, 1.6 + stroke.width / 2.0, stroke.color);
         }
     });
@@ -155,7 +156,7 @@ fn curve(painter: &Painter, frame: Frame<'_>, first: &Reflector, last: &Reflecto
 fn around(mut blobs: Vec<Pos2>, height: f32) -> Vec<Ring> {
     blobs.sort_by(|a, b| a.y.total_cmp(&b.y));
     let pieces = blobs.chunk_by(|a, b| b.y - a.y <= height / 2.0);
-    pieces.map(|piece| Ring::Outline(hull(piece, RADIUS + 2.0))).collect()
+    pieces.map(|piece| Ring::Outline(hull(piece, RING_RADIUS_POINTS + 2.0))).collect()
 }
 
 /// Draws a line from a ring to its place without the beam's squint, with both directions.

@@ -1,14 +1,14 @@
 //! A map within its panel: its rectangle, its axes, zoom and pan.
 
-use super::frame::{BUTTON, Frame};
-use super::legend::LEAST_HEIGHT;
+use super::frame::{BUTTON_SIZE_POINTS, Frame};
+use super::legend::MIN_PANEL_HEIGHT_POINTS;
 use crate::app::state::{Command, Directions, MapKind, MapView, Projection, ViewCommand};
 use crate::app::widgets::{Axis, Icon, Tick, axes, icons, pan_keys, zoom_keys};
 use crate::radar::Radar;
 use eframe::egui::{Align2, Painter, Rect, Response, Ui, pos2, vec2};
 
 /// Height that is kept free above a Cartesian map, points, with the margin: that of a caption.
-const CAPTION_BAND: f32 = 20.0;
+const CAPTION_BAND_POINTS: f32 = 20.0;
 
 /// Rectangle of the picture within the panel, below a legend that is `above` points high. Every map has the same margins.
 pub fn rect_of(area: Rect, projection: Projection, above: f32) -> Rect {
@@ -20,7 +20,7 @@ pub fn rect_of(area: Rect, projection: Projection, above: f32) -> Rect {
         return rect;
     }
     // Equal aspect: the map is twice as wide as high. The half disc leaves no corner of it large enough for a caption, so the free room is above.
-    let band = if area.height() > LEAST_HEIGHT { CAPTION_BAND } else { 0.0 };
+    let band = if area.height() > MIN_PANEL_HEIGHT_POINTS { CAPTION_BAND_POINTS } else { 0.0 };
     let high = rect.height() - band;
     let size = vec2(rect.width().min(2.0 * high), high.min(rect.width() / 2.0));
     Align2::CENTER_BOTTOM.align_size_within_rect(size, rect)
@@ -64,11 +64,11 @@ const DEGREE_TITLES: &[&str] =
     &["degrees from straight ahead: − is left, + is right", "degrees from straight ahead", "degrees"];
 
 /// Least period of the folding, in cos(theta), with which nearly every direction has a column of its own.
-const LEAST_PERIOD_COS: f64 = 1.9;
+const MIN_FOLD_PERIOD_COS: f64 = 1.9;
 
 /// Titles of the axis of directions in cos(theta), the longest first.
 fn direction_titles(radar: &Radar) -> &'static [&'static str] {
-    if radar.fold_period_cos() < LEAST_PERIOD_COS {
+    if radar.fold_period_cos() < MIN_FOLD_PERIOD_COS {
         return &["cos θ, folded: each column stands for two directions", "cos θ, folded"];
     }
     &[
@@ -82,10 +82,10 @@ fn direction_titles(radar: &Radar) -> &'static [&'static str] {
 const MAX_COLUMN_OF_SLACK_COS: f64 = 0.05;
 
 /// Degrees between marks, the finest first.
-const DEGREES: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
+const DEGREE_STEPS: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
 
 /// Gap between the labels of two directions, points.
-const BETWEEN_DIRECTIONS: f32 = 8.0;
+const DIRECTION_GAP_POINTS: f32 = 8.0;
 
 /// Ticks at round angles from straight ahead, for an axis of cos θ from `low` to `high` over `length` points: the finest step whose labels
 /// have room. Labels crowd towards the sides, where those without room are left out.
@@ -98,14 +98,14 @@ fn degrees(painter: &Painter, low: f64, high: f64, length: f32) -> Vec<Tick> {
         angles.filter(|degrees| (-1e-4..=1.0 + 1e-4).contains(&part(*degrees))).collect()
     };
     // The room includes a minus, so that both sides have the same marks.
-    let room = |degrees: f64| axes::width(painter, &text(-degrees.abs())) + BETWEEN_DIRECTIONS;
+    let room = |degrees: f64| axes::width(painter, &text(-degrees.abs())) + DIRECTION_GAP_POINTS;
     // Directions are farthest apart straight ahead; the middle of the visible part decides.
     let fits = |step: &&f64| {
         let angles = of(**step);
         let apart = |pair: &[f64]| (part(pair[1]) - part(pair[0])).abs() * length >= room(pair[1]).max(room(pair[0]));
         angles.len() < 4 || angles.windows(2).filter(|pair| apart(pair)).count() * 2 > angles.len()
     };
-    let mut angles = of(DEGREES.iter().find(fits).copied().unwrap_or(30.0));
+    let mut angles = of(DEGREE_STEPS.iter().find(fits).copied().unwrap_or(30.0));
     // Sorted from straight ahead to both sides.
     angles.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
     let mut taken: Vec<[f32; 2]> = Vec::new();
@@ -176,10 +176,10 @@ pub fn projection_button(ui: &mut Ui, rect: Rect, kind: MapKind, projection: Pro
         Projection::Cartesian => (Icon::Grid, "straighten into cos θ and range"),
     };
     let corner = match projection {
-        Projection::RangeAngle => rect.right_bottom() - vec2(4.0, 4.0) - BUTTON,
+        Projection::RangeAngle => rect.right_bottom() - vec2(4.0, 4.0) - BUTTON_SIZE_POINTS,
         Projection::Cartesian => rect.left_top() + vec2(4.0, 4.0),
     };
-    let corner = Rect::from_min_size(corner, BUTTON);
+    let corner = Rect::from_min_size(corner, BUTTON_SIZE_POINTS);
     if icons::over_picture(ui, corner, icon, &format!("{}: {name}", kind.title())).clicked() {
         asked.push(ViewCommand::SetProjection(projection.other()).into());
     }

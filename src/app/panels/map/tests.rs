@@ -11,7 +11,7 @@ impl<'a> Input<'a> {
             end: 1.0,
             sentence: None,
             stale: false,
-            old: EARLIER_SCENE.to_owned(),
+            old: EARLIER_SCENE_TEXT.to_owned(),
             cells: None,
             objects: &[],
             found: &[],

@@ -5,7 +5,7 @@ use super::frame::Frame;
 use crate::app::widgets::{angle_degrees, edged, plain, signed};
 use crate::radar::Decibels;
 use crate::scene::Reflector;
-use crate::theory::overlay::STREAK;
+use crate::theory::overlay::STREAK_DEPTH;
 use crate::theory::{Ellipse, MapPlace, Overlay, blob_cell};
 use eframe::egui::{Color32, FontId, Painter, Pos2, Rect, Vec2, vec2};
 
@@ -26,23 +26,23 @@ pub struct Theory<'a> {
 }
 
 /// Colours of the drawn items and of their lines of text.
-const BIN: Color32 = Color32::WHITE;
+const BIN_COLOUR: Color32 = Color32::WHITE;
 const BEAM: Color32 = Color32::from_rgb(120, 220, 255);
-const LOBE: Color32 = Color32::from_rgb(255, 224, 100);
-const DRAWN_OUT: Color32 = Color32::from_rgb(255, 170, 90);
-const COMB: Color32 = Color32::from_rgb(255, 140, 220);
-const BOUND: Color32 = Color32::from_rgb(150, 255, 160);
-const ALIAS: Color32 = Color32::from_rgb(205, 190, 255);
+const LOBE_COLOUR: Color32 = Color32::from_rgb(255, 224, 100);
+const STREAK_COLOUR: Color32 = Color32::from_rgb(255, 170, 90);
+const COMB_COLOUR: Color32 = Color32::from_rgb(255, 140, 220);
+const BOUND_COLOUR: Color32 = Color32::from_rgb(150, 255, 160);
+const ALIAS_COLOUR: Color32 = Color32::from_rgb(205, 190, 255);
 
 /// Length of ticks, points.
-const TICK: f32 = 7.0;
+const TICK_LENGTH_POINTS: f32 = 7.0;
 /// Least size of the drawn ellipse, points.
-const ELLIPSE: f32 = 9.0;
+const MIN_ELLIPSE_POINTS: f32 = 9.0;
 /// Least size of a map that has room for the numbers, points.
-const ROOM: Vec2 = vec2(250.0, 130.0);
+const MIN_NUMBERS_MAP_POINTS: Vec2 = vec2(250.0, 130.0);
 
 /// Lines of numbers that are not crowded out by the marks of other reflectors.
-const ENOUGH_LINES: usize = 4;
+const MAX_PRIORITY_LINES: usize = 4;
 
 impl Theory<'_> {
     pub fn draw(&self, painter: &Painter, frame: Frame<'_>) {
@@ -51,23 +51,25 @@ impl Theory<'_> {
             frame.cell(MapPlace { bin: blob.peak.bin + bin, column: blob.peak.column + column })
         };
         let path: Vec<Pos2> = streak.path.iter().map(|cell| frame.cell(*cell)).collect();
-        line(painter, &path, frame.rect, DRAWN_OUT);
+        line(painter, &path, frame.rect, STREAK_COLOUR);
         let [low, high] = streak.columns.map(|columns| columns as f64);
         let across: Vec<Pos2> = (0..=24).map(|i| at(0.0, -low + (low + high) * f64::from(i) / 24.0)).collect();
-        let below: Vec<Pos2> = across.iter().map(|p| *p + vec2(0.0, 2.0 * TICK)).collect();
-        line(painter, &below, frame.rect, DRAWN_OUT);
+        let below: Vec<Pos2> = across.iter().map(|p| *p + vec2(0.0, 2.0 * TICK_LENGTH_POINTS)).collect();
+        line(painter, &below, frame.rect, STREAK_COLOUR);
         for end in [below.first(), below.last()].into_iter().flatten() {
-            tick(painter, *end, DRAWN_OUT);
+            tick(painter, *end, STREAK_COLOUR);
         }
         for (sign, lobe) in [-1.0, 1.0].into_iter().zip(blob.side_lobes) {
-            lobe.into_iter().for_each(|lobe| tick(painter, at(0.0, sign * lobe.columns), LOBE));
+            lobe.into_iter().for_each(|lobe| tick(painter, at(0.0, sign * lobe.columns), LOBE_COLOUR));
         }
         line(painter, &self.half_power(frame), frame.rect, BEAM);
         if self.comb {
-            teeth.iter().for_each(|tooth| tick(painter, frame.cell(*tooth) + vec2(0.0, TICK), COMB));
+            teeth
+                .iter()
+                .for_each(|tooth| tick(painter, frame.cell(*tooth) + vec2(0.0, TICK_LENGTH_POINTS), COMB_COLOUR));
         }
         if let Some((outline, _)) = self.outline(frame) {
-            line(painter, &outline, frame.rect, BOUND);
+            line(painter, &outline, frame.rect, BOUND_COLOUR);
         }
     }
 
@@ -100,7 +102,7 @@ impl Theory<'_> {
         let middle = cell(x_metres, y_metres);
         let reach = |times: f64| outline(times).iter().map(|p| p.distance(middle)).fold(0.0f32, f32::max);
         let round = |i: usize| [1.0, 2.0, 5.0][i % 3] * 10f64.powi(i as i32 / 3);
-        let times = (0..=27).map(round).find(|times| reach(*times) > ELLIPSE)?;
+        let times = (0..=27).map(round).find(|times| reach(*times) > MIN_ELLIPSE_POINTS)?;
         Some((outline(times), times))
     }
 
@@ -114,26 +116,32 @@ impl Theory<'_> {
         let column_cos = radar.fold_period_cos() / radar.elements as f64;
         let mut lines = vec![
             (Color32::WHITE, format!("Theory of {}, as a point", self.name)),
-            (BIN, format!("range bin c/2B {}", length(bin_metres))),
+            (BIN_COLOUR, format!("range bin c/2B {}", length(bin_metres))),
             (BEAM, format!("half power {along} × {columns:.1} columns (cos θ {:.4})", columns * column_cos)),
         ];
         if let Some(lobe) = blob.side_lobes.iter().flatten().max_by(|a, b| a.level.0.total_cmp(&b.level.0)) {
             let level = plain(lobe.level.0, 1);
-            lines.push((LOBE, format!("first side lobe {level} dB, {:.1} columns off", lobe.columns)));
+            lines.push((LOBE_COLOUR, format!("first side lobe {level} dB, {:.1} columns off", lobe.columns)));
         }
         let [across, along] = [streak.columns, streak.bins].map(|[low, high]| low + high + 1);
-        lines.push((DRAWN_OUT, format!("smeared over {across} columns and {along} bins (at −{:.0} dB)", STREAK.0)));
+        lines.push((
+            STREAK_COLOUR,
+            format!("smeared over {across} columns and {along} bins (at −{:.0} dB)", STREAK_DEPTH.0),
+        ));
         if self.comb {
             let spacing = crate::theory::comb::tooth_spacing_cos(radar, *place) / column_cos;
-            lines.push((COMB, format!("comb of the two ends: a tooth every {spacing:.2} columns")));
+            lines.push((COMB_COLOUR, format!("comb of the two ends: a tooth every {spacing:.2} columns")));
         }
         if let (Some(ellipse), Some((_, times))) = (self.ellipse, self.outline(frame)) {
             let (minor, major) = (length(ellipse.minor_metres), length(ellipse.major_metres));
             let shown = if times > 1.0 { format!(", drawn × {times:.0}") } else { String::new() };
-            lines.push((BOUND, format!("σ ≥ {minor} × {major} for {} at {:.0} dB{shown}", self.listening, self.snr.0)));
+            lines.push((
+                BOUND_COLOUR,
+                format!("σ ≥ {minor} × {major} for {} at {:.0} dB{shown}", self.listening, self.snr.0),
+            ));
         }
         // The longest line: the first that a small map leaves out.
-        lines.push((ALIAS, self.aliases(frame)));
+        lines.push((ALIAS_COLOUR, self.aliases(frame)));
         lines
     }
 
@@ -157,7 +165,7 @@ impl Theory<'_> {
     /// `pointer` only the name stays, so that the map is in sight.
     pub fn tell(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, taken: &[Pos2]) {
         let rect = frame.rect;
-        if rect.width() < ROOM.x || rect.height() < ROOM.y {
+        if rect.width() < MIN_NUMBERS_MAP_POINTS.x || rect.height() < MIN_NUMBERS_MAP_POINTS.y {
             return;
         }
         let font = FontId::proportional(10.5);
@@ -167,7 +175,7 @@ impl Theory<'_> {
         let own = self.places(frame);
         let apart = clear_patch(rect, &[own.as_slice(), taken].concat(), &sizes);
         let over = clear_patch(rect, &own, &sizes);
-        let (mut patch, mut count) = if apart.1 < over.1.min(ENOUGH_LINES) { over } else { apart };
+        let (mut patch, mut count) = if apart.1 < over.1.min(MAX_PRIORITY_LINES) { over } else { apart };
         if pointer.is_some_and(|p| patch.contains(p)) {
             // The pointer refers to the map beneath.
             count = 1;
@@ -202,7 +210,9 @@ fn line(painter: &Painter, points: &[Pos2], rect: Rect, colour: Color32) {
 }
 
 fn tick(painter: &Painter, at: Pos2, colour: Color32) {
-    edged([2.6, 1.2], colour, |stroke| painter.vline(at.x, at.y - TICK..=at.y + TICK, stroke));
+    edged([2.6, 1.2], colour, |stroke| {
+        painter.vline(at.x, at.y - TICK_LENGTH_POINTS..=at.y + TICK_LENGTH_POINTS, stroke)
+    });
 }
 
 #[cfg(test)]
@@ -319,7 +329,7 @@ mod tests {
         let theory = theory(&overlay, reflector);
         let (outline, times) = theory.outline(frame(&radar)).unwrap();
         let size = Rect::from_points(&outline).size();
-        assert!(size.max_elem() > ELLIPSE && size.max_elem() < 5.1 * ELLIPSE, "{size:?}");
+        assert!(size.max_elem() > MIN_ELLIPSE_POINTS && size.max_elem() < 5.1 * MIN_ELLIPSE_POINTS, "{size:?}");
         let leading = times / 10f64.powf(times.log10().floor());
         assert!(times >= 10.0 && [1.0, 2.0, 5.0].contains(&leading), "{times}");
     }

@@ -2,7 +2,7 @@
 
 use super::caption::{Caption, caption};
 use super::frame::{Cells, Marked};
-use super::{EARLIER_SCENE, HandMemory, Input, Kinds, Problem, Theory, ToldApart, show};
+use super::{EARLIER_SCENE_TEXT, HandMemory, Input, Kinds, Problem, Theory, ToldApart, show};
 use crate::app::content::{Content, Cx};
 use crate::app::jobs::{Jobs, Scores, TheoryResult, judged_output};
 use crate::app::state::{Command, MapKind, MethodSlot, Panel, State};
@@ -281,7 +281,7 @@ pub fn old(state: &State, jobs: &Jobs, kind: MapKind) -> String {
     let of_another_method = kind.slot().and_then(|slot| jobs.pipeline.method(slot).of_another_method());
     match (of_another_method, kind.slot().and_then(|slot| state.method_in(slot))) {
         (Some(shown), Some(wanted)) => format!("{shown}'s result; {} is running", wanted.name()),
-        _ => EARLIER_SCENE.to_owned(),
+        _ => EARLIER_SCENE_TEXT.to_owned(),
     }
 }
 

@@ -7,10 +7,10 @@ use crate::maps::cfar::{Cfar, Level};
 use eframe::egui::{Painter, Pos2, Shape, pos2};
 
 /// Points along each side of the window: in Cartesian maps sides are curved.
-const ALONG: usize = 12;
+const SIDE_POINTS: usize = 12;
 
 /// Distance of the text below the top of the map, points: below the value of the cell.
-const BELOW: f32 = 28.0;
+const TEXT_OFFSET_POINTS: f32 = 28.0;
 
 /// Least width of a piece beyond an edge, as a part of the map's width; less is a rounding error.
 const MIN_PIECE_RATIO: f32 = 1e-4;
@@ -30,7 +30,7 @@ pub fn draw(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<
         }
     }
     if let Some(found) = cells.and_then(|cells| level_of(cells, cfar, map, [bin, column])) {
-        let (corner, align) = frame.far_corner(frame.cursor(cursor), BELOW);
+        let (corner, align) = frame.far_corner(frame.cursor(cursor), TEXT_OFFSET_POINTS);
         axes::text_on_patch(painter, corner, align, &told(&found));
     }
 }
@@ -69,8 +69,8 @@ fn outlines(frame: Frame<'_>, [bin, column]: [usize; 2], sides: [usize; 2]) -> V
     }
     let outline = |[left, right]: [f32; 2]| {
         let corners = [pos2(left, bottom), pos2(right, bottom), pos2(right, top), pos2(left, top)];
-        let sides = (0..4).flat_map(move |i| (0..ALONG).map(move |k| (corners[i], corners[(i + 1) % 4], k)));
-        sides.map(|(from, to, k)| frame.at_fraction(from + (k as f32 / ALONG as f32) * (to - from))).collect()
+        let sides = (0..4).flat_map(move |i| (0..SIDE_POINTS).map(move |k| (corners[i], corners[(i + 1) % 4], k)));
+        sides.map(|(from, to, k)| frame.at_fraction(from + (k as f32 / SIDE_POINTS as f32) * (to - from))).collect()
     };
     pieces.into_iter().map(outline).collect()
 }

@@ -10,9 +10,9 @@ pub(super) const NAME: &str = "antennas";
 const MAX_ANTENNAS: usize = 64;
 
 /// Range for which the panel states the path error of the pairs' midpoints, metres.
-const NEAR_METRES: f64 = 2.0;
+const NEAR_RANGE_METRES: f64 = 2.0;
 
-pub(super) const TOOLTIP: &str = "Whether every element sends and hears by itself, or each pair of a transmitter and a receiver is an element \
+pub(super) const ANTENNAS_TOOLTIP: &str = "Whether every element sends and hears by itself, or each pair of a transmitter and a receiver is an element \
                                   halfway between both. A place of the line that no pair makes is a gap and hears nothing";
 
 pub(super) fn follows(radar: &Radar) -> String {
@@ -41,7 +41,7 @@ fn consequence(radar: &Radar, antennas: &Antennas) -> String {
     let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
     let pairs = (0..radar.elements).filter(|n| !radar.is_gap(*n)).map(|n| radar.pair(n));
     let apart = pairs.map(|p| (p.transmitter_x_metres - p.receiver_x_metres).abs()).fold(0.0, f64::max);
-    let turns = 2.0 * apart * apart / (8.0 * NEAR_METRES) / radar.wavelength_metres();
+    let turns = 2.0 * apart * apart / (8.0 * NEAR_RANGE_METRES) / radar.wavelength_metres();
     let mut made = format!("{transmitters} × {receivers} pairs are {} elements", transmitters * receivers);
     if antennas.left_out() > 0 {
         made += &format!(", {} of them at the place of another", antennas.left_out());
@@ -53,7 +53,9 @@ fn consequence(radar: &Radar, antennas: &Antennas) -> String {
         let most = antennas.depth_metres().into_iter().fold(0.0, |most: f64, y| most.max(y.abs()));
         made += &format!(", up to {:.1} mm off the line", most * 1e3);
     }
-    format!("{made}; at {NEAR_METRES:.0} m the way is up to {turns:.2} wavelengths longer than that of their midpoints")
+    format!(
+        "{made}; at {NEAR_RANGE_METRES:.0} m the way is up to {turns:.2} wavelengths longer than that of their midpoints"
+    )
 }
 
 /// Draws the numbers of transmitters and receivers, where they stand apart.

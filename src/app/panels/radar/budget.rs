@@ -12,25 +12,25 @@ use egui_plot::{HLine, LineStyle};
 pub(super) const HEADING: &str = "Link budget";
 
 /// Height and largest width of the chart, points.
-const CHART: [f32; 2] = [170.0, 560.0];
+const CHART_SIZE_POINTS: [f32; 2] = [170.0, 560.0];
 
 /// Cross section for which SNR is drawn at first, dBsm: about that of a car from behind.
-const CAR_DBSM: f64 = 10.0;
+const CAR_CROSS_SECTION_DBSM: f64 = 10.0;
 
 /// Least SNR that is drawn, dB.
-const LEAST_DB: f64 = -30.0;
+const MIN_DRAWN_SNR_DB: f64 = -30.0;
 
-const POINTS: u32 = 120;
+const CURVE_POINTS: u32 = 120;
 
 /// Width of an element's pattern when one is switched on, degrees.
 const USUAL_WIDTH_DEGREES: f64 = 80.0;
 
 /// Text in place of the numbers, without a link budget.
-const WITHOUT: &str = "None: the thesis' convention. A sample's amplitude is P σ / R², levels in dBm are those of samples, and elements are \
+const NO_BUDGET_TEXT: &str = "None: the thesis' convention. A sample's amplitude is P σ / R², levels in dBm are those of samples, and elements are \
                        isotropic. The floor Receiver takes the usual budget: 12 dBm, 10 dBi, 12 dB.";
 
 /// Text of the losses that the figures leave out.
-const LEFT_OUT: &str = "Ends and array add their elements in phase, as a map does beyond the far field. The loss of an echo between two cells is left out.";
+const LOSSES_TEXT: &str = "Ends and array add their elements in phase, as a map does beyond the far field. The loss of an echo between two cells is left out.";
 
 const TRANSMIT_POWER: Quantity = Quantity::metres(
     "transmit power",
@@ -64,7 +64,7 @@ pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Optio
             radar.budget = has.then(LinkBudget::default);
         }
         let Some(budget) = radar.budget else {
-            ui.add(Label::new(WITHOUT).wrap());
+            ui.add(Label::new(NO_BUDGET_TEXT).wrap());
             return;
         };
         table.show(ui, HEADING, |ui| numbers(ui, table, radar, budget));
@@ -72,7 +72,7 @@ pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Optio
         if let Some((name, object)) = selected {
             ui.add(Label::new(told(radar, name, object)).wrap());
         }
-        ui.weak(LEFT_OUT);
+        ui.weak(LOSSES_TEXT);
     });
     if is_sought {
         shown.header_response.scroll_to_me(Some(Align::Min));
@@ -122,7 +122,7 @@ fn pattern(ui: &mut Ui, table: Table, budget: &mut LinkBudget) {
 /// Draws SNR against range, for an object of a cross section that is chosen above it.
 fn curve(ui: &mut Ui, radar: &Radar) {
     let id = ui.scope_id().with("cross section");
-    let mut dbsm = ui.data(|d| d.get_temp(id)).unwrap_or(CAR_DBSM);
+    let mut dbsm = ui.data(|d| d.get_temp(id)).unwrap_or(CAR_CROSS_SECTION_DBSM);
     ui.horizontal(|ui| {
         let tooltip =
             "Radar cross section of the object whose SNR is drawn. A car has about 10 dBsm, a person 0, a post −10";
@@ -137,14 +137,16 @@ fn curve(ui: &mut Ui, radar: &Radar) {
     let most = 1.25 * falls.max(radar.max_range_metres());
     let at = |range: f64, of: f64| of - 40.0 * range.log10();
     let [sample, array] = [at_one_metre.sample.0, at_one_metre.array.0];
-    let high = at(most / 20.0, array).max(LEAST_DB + 10.0);
-    let size = vec2(ui.available_width().min(CHART[1]), CHART[0]);
+    let high = at(most / 20.0, array).max(MIN_DRAWN_SNR_DB + 10.0);
+    let size = vec2(ui.available_width().min(CHART_SIZE_POINTS[1]), CHART_SIZE_POINTS[0]);
     let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-    let (x, y) = (Axis::new(0.0, most, "range, m"), Axis::new(LEAST_DB, high, "SNR, dB"));
+    let (x, y) = (Axis::new(0.0, most, "range, m"), Axis::new(MIN_DRAWN_SNR_DB, high, "SNR, dB"));
     let mut chart = Chart::new("SNR against range", x, y);
     let inks = Inks::of(ui.visuals());
     let points = |of: f64| {
-        (1..=POINTS).map(move |i| f64::from(i) / f64::from(POINTS) * most).map(move |range| [range, at(range, of)])
+        (1..=CURVE_POINTS)
+            .map(move |i| f64::from(i) / f64::from(CURVE_POINTS) * most)
+            .map(move |range| [range, at(range, of)])
     };
     let detection = HLine::new("", DETECTION_SNR.0).stroke(Stroke::new(1.0, inks.grid_text));
     chart.add(detection.style(LineStyle::dashed_dense()));

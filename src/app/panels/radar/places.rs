@@ -5,7 +5,7 @@ use crate::radar::{Antennas, Radar};
 use eframe::egui::Ui;
 
 /// Names of the lists, places along the line and off it.
-const NAMES: [&str; 4] =
+const LIST_NAMES: [&str; 4] =
     ["transmitters at, mm", "receivers at, mm", "transmitters forward, mm", "receivers forward, mm"];
 
 /// Tooltips of the lists: places along the line, and places off it.
@@ -15,7 +15,7 @@ const TOOLTIPS: [&str; 2] = [
 ];
 
 /// Digits of a place after the point, millimetres.
-const DECIMALS: usize = 4;
+const PLACE_DECIMALS: usize = 4;
 
 /// Draws all lists, if `radar` has antennas, and applies the typed places.
 pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
@@ -28,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
         antennas.transmitter_y_metres(),
         antennas.receiver_y_metres(),
     ];
-    for (list, name) in NAMES.into_iter().enumerate() {
+    for (list, name) in LIST_NAMES.into_iter().enumerate() {
         let (id, width) = (ui.scope_id().with(name), ui.available_width().min(560.0));
         let read = |text: &str| taken(own, list, places(text)?).map_err(|error| error.to_string());
         let shown = (listed(own[list]), width);
@@ -56,7 +56,7 @@ fn taken(own: [&[f64]; 4], list: usize, mut places: Vec<f64>) -> Result<Antennas
 /// Text of places in metres, as a list in millimetres.
 fn listed(x_metres: &[f64]) -> String {
     let one = |x: &f64| {
-        let text = format!("{:.DECIMALS$}", x * 1e3);
+        let text = format!("{:.PLACE_DECIMALS$}", x * 1e3);
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     };
     x_metres.iter().map(one).collect::<Vec<_>>().join(", ")
@@ -114,7 +114,7 @@ mod tests {
         let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
         let mut panel = Harness::builder().with_size([600.0, 300.0]).build_ui_state(draw, radar());
         panel.run();
-        panel.enters(NAMES[0], text);
+        panel.enters(LIST_NAMES[0], text);
         let told = panel.query_by_label_contains("is no number").is_some();
         (panel.state().antennas.as_ref().unwrap().transmitter_x_metres().len(), told)
     }

@@ -10,16 +10,16 @@ use eframe::egui::{
 };
 
 /// Height of the drawing, points.
-const HEIGHT: f32 = 54.0;
+const STRIP_HEIGHT_POINTS: f32 = 54.0;
 
 /// Room for the names of the rows, points.
-const NAMES: f32 = 84.0;
+const NAMES_WIDTH_POINTS: f32 = 84.0;
 
 /// Room beside the antennas for dragging, as a part of the line on which they stand.
-const BESIDE: f64 = 0.15;
+const MARGIN_PART: f64 = 0.15;
 
 /// Largest distance of the pointer from an antenna, points.
-const REACH: f32 = 8.0;
+const MAX_POINTER_DISTANCE_POINTS: f32 = 8.0;
 
 /// Step of an antenna off the line, metres.
 const FORWARD_STEP_METRES: f64 = 1e-3;
@@ -30,7 +30,7 @@ const FORWARD_STEP_POINTS: f32 = 4.0;
 /// Largest drawn distance of an antenna from its row's middle, points.
 const FORWARD_POINTS: f64 = 5.0;
 
-const ROWS: [&str; 3] = ["transmitters", "receivers", "elements"];
+const ROW_NAMES: [&str; 3] = ["transmitters", "receivers", "elements"];
 
 /// One antenna: a row, 0 the transmitters and 1 the receivers, and its number there.
 type One = (usize, usize);
@@ -58,10 +58,10 @@ struct Drag {
 impl Drawn {
     fn of(antennas: &Antennas, rect: Rect) -> Self {
         let [low, high] = antennas.span_metres();
-        let beside = BESIDE * (high - low);
+        let beside = MARGIN_PART * (high - low);
         let x_metres = [antennas.transmitter_x_metres().to_vec(), antennas.receiver_x_metres().to_vec()];
         let y_metres = [antennas.transmitter_y_metres().to_vec(), antennas.receiver_y_metres().to_vec()];
-        let rect = Rect::from_min_max(rect.min + vec2(NAMES, 0.0), rect.max - vec2(6.0, 0.0));
+        let rect = Rect::from_min_max(rect.min + vec2(NAMES_WIDTH_POINTS, 0.0), rect.max - vec2(6.0, 0.0));
         Drawn { rect, x_metres, y_metres, span_metres: [low - beside, high + beside] }
     }
 
@@ -90,24 +90,24 @@ impl Drawn {
     /// Place on screen in a row; `forward` is the distance off the line, as a part of the largest.
     fn at(&self, row: usize, x_metres: f64, forward: f64) -> Pos2 {
         let along = ((x_metres - self.span_metres[0]) / self.metres_per_point()) as f32;
-        let middle = HEIGHT * (row as f32 + 0.5) / ROWS.len() as f32;
+        let middle = STRIP_HEIGHT_POINTS * (row as f32 + 0.5) / ROW_NAMES.len() as f32;
         self.rect.min + vec2(along, middle - (FORWARD_POINTS * forward) as f32)
     }
 
     /// The antenna under the pointer.
     fn nearest(&self, pos: Pos2) -> Option<One> {
-        let row = ((pos.y - self.rect.top()) / HEIGHT * ROWS.len() as f32).floor().max(0.0) as usize;
+        let row = ((pos.y - self.rect.top()) / STRIP_HEIGHT_POINTS * ROW_NAMES.len() as f32).floor().max(0.0) as usize;
         let distances = self.x_metres.get(row)?.iter().map(|x| (self.at(row, *x, 0.0).x - pos.x).abs());
         let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-        nearest.filter(|(_, distance)| *distance <= REACH).map(|(number, _)| (row, number))
+        nearest.filter(|(_, distance)| *distance <= MAX_POINTER_DISTANCE_POINTS).map(|(number, _)| (row, number))
     }
 
     fn draw(&self, ui: &Ui, made: &Antennas, chosen: Option<One>) {
         let painter = ui.painter();
         let (ink, font) = (ui.visuals().text_color(), TextStyle::Small.resolve(ui.style()));
         let upright = |at: Pos2, half: f32, stroke: Stroke| painter.vline(at.x, at.y - half..=at.y + half, stroke);
-        for (row, name) in ROWS.iter().enumerate() {
-            let at = pos2(self.rect.left() - NAMES, self.at(row, 0.0, 0.0).y);
+        for (row, name) in ROW_NAMES.iter().enumerate() {
+            let at = pos2(self.rect.left() - NAMES_WIDTH_POINTS, self.at(row, 0.0, 0.0).y);
             painter.text(at, Align2::LEFT_CENTER, name, font.clone(), ink);
         }
         // A straight line has nothing to divide by.
@@ -151,7 +151,7 @@ pub(super) fn show(ui: &mut Ui, radar: &mut Radar, is_free: bool) {
         return;
     };
     let sense = if is_free { Sense::click_and_drag() } else { Sense::hover() };
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width().min(560.0), HEIGHT), sense);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width().min(560.0), STRIP_HEIGHT_POINTS), sense);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, is_free, "Antennas"));
     let chosen = ui.data(|d| d.get_temp::<One>(response.id.with("chosen")));
     let at_rest = Drawn::of(&antennas, rect);

@@ -4,13 +4,13 @@ use crate::app::widgets::Quantity;
 use eframe::egui::{Align, Color32, Grid, Id, Label, Response, TextStyle, Ui};
 
 /// Gap between two columns, points.
-const GAP: f32 = 12.0;
+const COLUMN_GAP_POINTS: f32 = 12.0;
 
 /// Width of the widest value, two names of windows beside each other, points.
 const VALUE_WIDTH: f32 = 170.0;
 
 /// Least width of a column of consequences, points: in a narrower one, sentences break into single words.
-const LEAST_CONSEQUENCE_WIDTH: f32 = 150.0;
+const MIN_CONSEQUENCE_WIDTH_POINTS: f32 = 150.0;
 
 /// Layout of the rows.
 #[derive(Clone, Copy)]
@@ -30,8 +30,8 @@ impl Table {
         let width =
             |name: &str| ui.painter().layout_no_wrap(name.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x;
         let name_width = names.into_iter().map(width).fold(0.0, f32::max);
-        let left = ui.available_width() - name_width - VALUE_WIDTH - 2.0 * GAP;
-        let consequence_width = Some(left).filter(|left| *left >= LEAST_CONSEQUENCE_WIDTH);
+        let left = ui.available_width() - name_width - VALUE_WIDTH - 2.0 * COLUMN_GAP_POINTS;
+        let consequence_width = Some(left).filter(|left| *left >= MIN_CONSEQUENCE_WIDTH_POINTS);
         Table { name_width, consequence_width, sought }
     }
 
@@ -46,7 +46,9 @@ impl Table {
     /// Draws rows: in a grid of three columns, or below each other where consequences have no column.
     pub fn show(self, ui: &mut Ui, name: &str, rows: impl FnOnce(&mut Ui)) {
         match self.consequence_width {
-            Some(_) => _ = Grid::new(name).num_columns(3).spacing([GAP, 5.0]).striped(true).show(ui, rows),
+            Some(_) => {
+                _ = Grid::new(name).num_columns(3).spacing([COLUMN_GAP_POINTS, 5.0]).striped(true).show(ui, rows)
+            }
             None => rows(ui),
         }
     }
@@ -57,7 +59,7 @@ impl Table {
         let Some(width) = self.consequence_width else {
             let value = ui.horizontal(|ui| {
                 let label = self.name(ui, name);
-                ui.add_space((self.name_width - label.rect.width()).max(0.0) + GAP);
+                ui.add_space((self.name_width - label.rect.width()).max(0.0) + COLUMN_GAP_POINTS);
                 value(ui, label.id)
             });
             ui.indent(("consequence", name.0), |ui| ui.add(consequence));

@@ -9,13 +9,13 @@ use eframe::egui::{
 };
 
 /// Distance from the edge of the canvas to the middle of a sign there, points.
-const INSET: f32 = 13.0;
+const SIGN_INSET_POINTS: f32 = 13.0;
 
 /// Most signs; the sentence counts all.
-const SIGNS: usize = 100;
+const MAX_SIGNS: usize = 100;
 
 /// Widths of the sentence, points: the first with which it stays in the canvas and covers no label of a direction.
-const WIDTHS: [f32; 8] = [330.0, 250.0, 190.0, 150.0, 120.0, 105.0, 95.0, 85.0];
+const SENTENCE_WIDTHS_POINTS: [f32; 8] = [330.0, 250.0, 190.0, 150.0, 120.0, 105.0, 95.0, 85.0];
 
 struct Beyond<'a> {
     index: usize,
@@ -36,7 +36,7 @@ pub fn warn(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> Op
     let beyond = beyond(canvas.radar, scene);
     let said = sentence(canvas.radar, &beyond)?;
     let ink = ui.visuals().warn_fg_color;
-    for one in beyond.iter().take(SIGNS) {
+    for one in beyond.iter().take(MAX_SIGNS) {
         let at = sign(painter, canvas, one, ink);
         let name = format!("{} beyond the maximum range", one.object.called(one.index));
         let place = Rect::from_center_size(at, Vec2::splat(18.0));
@@ -89,7 +89,7 @@ fn sentence(radar: &Radar, beyond: &[Beyond<'_>]) -> Option<String> {
 /// Draws a triangle with an exclamation mark beside the farthest reflector, or at the edge of the canvas with an arrow outwards where that is
 /// out of sight. Returns the triangle's place.
 fn sign(painter: &Painter, canvas: Canvas<'_>, one: &Beyond<'_>, ink: Color32) -> Pos2 {
-    let (target, inner) = (canvas.at(one.farthest), canvas.rect.shrink(INSET));
+    let (target, inner) = (canvas.at(one.farthest), canvas.rect.shrink(SIGN_INSET_POINTS));
     let in_sight = inner.contains(target);
     let at = if in_sight { target + vec2(14.0, -10.0) } else { on_edge(inner, target) };
     let corners = vec![at + vec2(0.0, -7.5), at + vec2(7.5, 6.0), at + vec2(-7.5, 6.0)];
@@ -117,7 +117,7 @@ fn on_edge(inner: Rect, target: Pos2) -> Pos2 {
 const MAX_OBJECTS_BEHIND: usize = 100;
 
 /// Radius of a mirror image, points.
-const MIRROR_RADIUS: f32 = 4.5;
+const MIRROR_RADIUS_POINTS: f32 = 4.5;
 
 /// Draws the mirror images of objects behind the array. Returns a sentence on them, if there are any.
 pub fn mirror(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> Option<String> {
@@ -127,9 +127,9 @@ pub fn mirror(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> 
     let name = |index: usize| scene.objects[index].called(index);
     for (index, [x, y]) in behind.iter().copied().take(MAX_OBJECTS_BEHIND) {
         let (from, to) = (canvas.at(Place::new(x, y)), canvas.at(Place::new(x, -y)));
-        painter.extend(Shape::dashed_line(&[from, to + vec2(0.0, MIRROR_RADIUS)], stroke, 2.0, 4.0));
-        painter.circle_stroke(to, MIRROR_RADIUS, stroke);
-        let place = Rect::from_center_size(to, Vec2::splat(4.0 * MIRROR_RADIUS));
+        painter.extend(Shape::dashed_line(&[from, to + vec2(0.0, MIRROR_RADIUS_POINTS)], stroke, 2.0, 4.0));
+        painter.circle_stroke(to, MIRROR_RADIUS_POINTS, stroke);
+        let place = Rect::from_center_size(to, Vec2::splat(4.0 * MIRROR_RADIUS_POINTS));
         let response = ui.interact(place, Id::unique(("mirror image", index)), Sense::hover());
         let said = format!("{} is behind the array: the maps show it here", name(index));
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &said));
@@ -149,7 +149,7 @@ pub fn write(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, below: f32, said: &
     let ink = ui.visuals().warn_fg_color;
     let at = pos2(canvas.rect.left() + 12.0, (canvas.rect.top() + 28.0).max(below + 8.0));
     let labels = [-60, -30, 0].map(|degrees| direction_label(painter, canvas, degrees).1);
-    let laid = WIDTHS.map(|width| {
+    let laid = SENTENCE_WIDTHS_POINTS.map(|width| {
         let galley = painter.layout(said.to_owned(), FontId::proportional(12.0), ink, width);
         (Rect::from_min_size(at, galley.size()).expand(4.0), galley)
     });

@@ -12,13 +12,13 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Most reflectors that are drawn of one object.
-const DOTS: usize = 400;
+const MAX_DRAWN_REFLECTORS: usize = 400;
 
 /// Width of the marks of both ends beside the middle of the array, points.
-const ENDS_MARKS: f32 = 22.0;
+const END_MARK_WIDTH_POINTS: f32 = 22.0;
 
 /// Least gap between the labels of two rings, points.
-const BETWEEN_LABELS: f32 = 5.0;
+const LABEL_GAP_POINTS: f32 = 5.0;
 
 /// Rectangle of the canvas, and the part of the scene that it shows.
 #[derive(Clone, Copy)]
@@ -109,8 +109,8 @@ fn rings(painter: &Painter, canvas: Canvas<'_>) {
         let label = format!("{}{unit}", axes::tick_text(range, step));
         let half = axes::width(painter, &label) / 2.0;
         let off = (canvas.at(Place::new(range, 0.0)) - origin).x;
-        if off + half <= free && off - half >= ENDS_MARKS {
-            free = off - half - BETWEEN_LABELS;
+        if off + half <= free && off - half >= END_MARK_WIDTH_POINTS {
+            free = off - half - LABEL_GAP_POINTS;
             for at in [origin - vec2(off, -3.0), origin + vec2(off, 3.0)] {
                 axes::text(painter, at, Align2::CENTER_TOP, &label, inks.grid_text);
             }
@@ -222,7 +222,7 @@ pub fn velocity(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Lo
     let part = parts.into_iter().filter(|part| part.is_finite()).fold(1.0, f32::min).max(0.0);
     let (stroke, tip) = (Stroke::new(1.2, colour), from + part * way);
     painter.line_segment([from, tip], stroke);
-    head(painter, tip, way.normalized() * HEAD.min(0.5 * part * way.length()), stroke);
+    head(painter, tip, way.normalized() * ARROW_HEAD_POINTS.min(0.5 * part * way.length()), stroke);
 }
 
 /// Draws an arrow's head as long as `along`, which leads to `tip`.
@@ -234,7 +234,7 @@ fn head(painter: &Painter, tip: Pos2, along: Vec2, stroke: Stroke) {
 
 fn dots(painter: &Painter, object: &Object, radius: f32, colour: Color32, at: impl Fn(Place) -> Pos2) {
     let reflectors = object.reflectors();
-    let step = reflectors.len().div_ceil(DOTS).max(1);
+    let step = reflectors.len().div_ceil(MAX_DRAWN_REFLECTORS).max(1);
     for r in reflectors.iter().step_by(step) {
         painter.circle_filled(at(Place::new(r.x_metres, r.y_metres)), radius, colour);
     }
@@ -337,7 +337,7 @@ fn length_text(metres: f64) -> String {
 const ARROW_GAP_POINTS: f32 = 12.0;
 
 /// Length of an arrow's head, points.
-const HEAD: f32 = 11.0;
+const ARROW_HEAD_POINTS: f32 = 11.0;
 
 /// Distance from the edge of the canvas that the head of an object's arrow keeps, points.
 const ARROW_INSET_POINTS: f32 = 6.0;
@@ -371,7 +371,7 @@ fn arrow(painter: &Painter, way: &[Pos2], stroke: Stroke) {
     let is_free = |at: &&Pos2| at.distance(*first) > ARROW_GAP_POINTS && at.distance(*last) > ARROW_GAP_POINTS;
     let curve: Vec<Pos2> = way.iter().filter(is_free).copied().collect();
     let [.., before, tip] = curve[..] else { return };
-    head(painter, tip, HEAD * (tip - before).normalized(), stroke);
+    head(painter, tip, ARROW_HEAD_POINTS * (tip - before).normalized(), stroke);
     painter.add(Shape::line(curve, stroke));
 }
 

@@ -7,7 +7,7 @@ use crate::scene::{Interferer, Mirror, Object, Scene};
 use eframe::egui::{Align2, Color32, Painter, Stroke, vec2};
 
 /// Most reflectors whose ghosts are drawn.
-const MOST_MIRRORED: usize = 400;
+const MAX_MIRRORED_REFLECTORS: usize = 400;
 
 /// Draws the wall that mirrors, its ghosts, and the other radar.
 pub fn draw(painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
@@ -22,8 +22,8 @@ pub fn draw(painter: &Painter, canvas: Canvas<'_>, scene: &Scene) {
 
 /// Draws the ghosts of the wall: three hollow marks for every reflector before it.
 fn ghosts(painter: &Painter, canvas: Canvas<'_>, scene: &Scene, mirror: &Mirror) {
-    let drawn = scene.objects.iter().filter(|object| object.reflector_count() <= MOST_MIRRORED);
-    let reflectors = drawn.flat_map(Object::reflectors).take(MOST_MIRRORED);
+    let drawn = scene.objects.iter().filter(|object| object.reflector_count() <= MAX_MIRRORED_REFLECTORS);
+    let reflectors = drawn.flat_map(Object::reflectors).take(MAX_MIRRORED_REFLECTORS);
     for ghost in reflectors.flat_map(|reflector| mirror.ghosts(canvas.radar, &reflector)) {
         let at = canvas.at(Place::new(ghost.x_metres, ghost.y_metres));
         painter.circle_stroke(at, 3.0, Stroke::new(1.0, canvas.inks.grid_text));

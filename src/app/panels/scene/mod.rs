@@ -48,7 +48,7 @@ pub struct Input<'a> {
 }
 
 /// Opacity of marks that belong to an earlier scene.
-const OLD_OPACITY: f32 = 0.35;
+const OLD_MARK_OPACITY: f32 = 0.35;
 
 /// Draws the canvas. Drags and selections go straight to the editor, since commands would take effect a frame later.
 pub fn show(ui: &mut Ui, mut input: Input<'_>, state: &mut State) -> Vec<Command> {
@@ -78,7 +78,7 @@ pub fn show(ui: &mut Ui, mut input: Input<'_>, state: &mut State) -> Vec<Command
     let scene = moved.clone().unwrap_or_else(|| editor.scene().clone());
     objects(&painter, canvas, &scene, editor, hovered.map(|h| h.object), input.tells_maps);
     let mut of_found = painter.clone();
-    of_found.set_opacity(if input.found_stale { OLD_OPACITY } else { 1.0 });
+    of_found.set_opacity(if input.found_stale { OLD_MARK_OPACITY } else { 1.0 });
     canvas::found(&of_found, canvas, input.found);
     canvas::trails(&painter, canvas, &input.trails);
     if moved.is_none() {
@@ -183,7 +183,7 @@ fn say(ui: &Ui, painter: &Painter, rect: Rect, empty: bool, error: Option<&str>)
 }
 
 /// Room for the labels on each side of the half disc, points.
-const LABELS: Vec2 = vec2(30.0, 24.0);
+const LABEL_ROOM_POINTS: Vec2 = vec2(30.0, 24.0);
 
 /// Least height of a panel with a hint, points: in a lower one the hint would cover the scene.
 const MIN_HINT_PANEL_HEIGHT_POINTS: f32 = 160.0;
@@ -213,7 +213,7 @@ fn fit(extent: f64, editor: &Editor, view: &mut SceneView, rect: Rect, has_hint:
         high.y_metres = high.y_metres.max(b.y_metres.min(limit));
     }
     // Around the half disc there is room for the labels of its rings and spokes.
-    let inner = rect.shrink2(LABELS.min(rect.size() / 4.0));
+    let inner = rect.shrink2(LABEL_ROOM_POINTS.min(rect.size() / 4.0));
     view.show(inner, low, high);
     if has_hint {
         // What is free is above the scene.
