@@ -69,6 +69,9 @@ fn what_does_not_belong_to_a_capture_is_told() {
     told(&["import", "room.bin", "-o", "room.txt"], "expected a name ending in .toml");
     told(&["import", "room.bin", "-o", "no/room.toml"], "beside the capture");
     told(&["range-doppler", "room.bin", "-o", "d.npz", "--time", "1"], "--time is a scene's");
+    told(&["range-doppler", "room.bin", "-o", "d.npz", "--seed", "1"], "--seed is a scene's");
+    told(&["maps", "room.bin", "-o", "m.npz", "--floor", "snr=20"], "--floor is a scene's");
+    told(&["reconstruct", "room.bin", "-o", "o.npz", "--floor", "exact"], "--floor is a scene's");
     std::fs::write(folder.path().join("s.toml"), "").unwrap();
     std::fs::write(folder.path().join("wrong.bin"), [0; 5000]).unwrap();
     told(&["maps", "wrong.bin", "-o", "m.npz"], "wrong.bin");

@@ -179,6 +179,15 @@ fn samples_with_receivers_are_found_without_a_cfg() {
 }
 
 #[test]
+fn a_short_file_without_a_cfg_is_never_sure() {
+    let bytes = written(&in_order(PartOrder::Pairs), &chirps());
+    for length in [1000, 2000, 4000] {
+        let found = found(bytes[..length].to_vec(), None);
+        assert_ne!(found.certainty(), Certainty::Sure, "{length} bytes: {:#?}", found.sentences());
+    }
+}
+
+#[test]
 fn a_cfg_of_another_capture_is_doubted() {
     let right = in_order(PartOrder::TwoLanes);
     let bytes = written(&right, &(0..5).flat_map(|_| chirps()).collect::<Vec<_>>());

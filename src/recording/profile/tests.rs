@@ -40,6 +40,7 @@ fn faults_name_line_with_command() {
         (" 8 5209", " 8.5 5209", ["line 6", "8.5"]),
         (" 8 5209", " 1e99 5209", ["line 6", "up to 65536"]),
         ("0 77 429", "0 nan 429", ["start frequency", "above 0"]),
+        ("0 77 429", "0 1e30 429", ["start frequency", "at most 1e9"]),
         (" 70 1 8", " 0 1 8", ["the slope in MHz/us is 0", "other than 0"]),
         ("chirpCfg 1 1 0 0", "chirpCfg 1 1 0 5", ["line 8", "the change of frequency is not 0"]),
         ("frameCfg 0 1", "frameCfg 0 2", ["chirp 2", "no chirpCfg"]),
