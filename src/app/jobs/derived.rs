@@ -12,6 +12,9 @@ use std::time::Duration;
 /// Age at which a value is marked as old; a shorter one would flicker.
 pub const STALE: Duration = Duration::from_millis(400);
 
+/// Longest time of work for an earlier request; longer work is cancelled, but during a drag, so that the user sees what changes.
+pub const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(400);
+
 /// The inputs of a value, and its computation. Equal queries have equal values.
 pub trait Query: Clone + PartialEq + Send + 'static {
     type Value: Send + 'static;

@@ -1,6 +1,6 @@
 //! The worker of the maps on screen, its last request and its last result.
 
-use super::MAX_OUTDATED_WORK_TIME;
+use super::derived::MAX_OUTDATED_WORK_TIME;
 use super::rest::Rest;
 use super::scene_maps::{MapsRequest, MapsResult, MapsState};
 use crate::engine::EngineStage;

@@ -1,6 +1,6 @@
 //! The worker of one method for the scene on screen: the last request, and the last output or the reason why there is none.
 
-use super::MAX_OUTDATED_WORK_TIME;
+use super::derived::MAX_OUTDATED_WORK_TIME;
 use super::memo::Memo;
 use super::scene_maps::{MapsRequest, MapsResult, Origin, Pair};
 use super::source::Source;

@@ -78,9 +78,6 @@ use std::time::Duration;
 /// Time between two frames while a progress bar is shown.
 const PROGRESS_FRAME_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Longest time of work for an earlier request; longer work is cancelled, but during a drag, so that the user sees what changes.
-const MAX_OUTDATED_WORK_TIME: Duration = Duration::from_millis(400);
-
 /// All work of the app.
 pub struct Jobs {
     pub pipeline: Pipeline,

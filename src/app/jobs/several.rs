@@ -1,6 +1,6 @@
 //! One map for several values, off the UI thread. The latest request wins, and each map is shown as soon as it is finished.
 
-use super::MAX_OUTDATED_WORK_TIME;
+use super::derived::MAX_OUTDATED_WORK_TIME;
 use super::painter::Painter;
 use super::subject::{Paint, Subject};
 use crate::app::shared::Shared;
