@@ -48,7 +48,7 @@ pub struct Found {
     pub search_residual_part: f64,
     /// Mean power of the scaled samples.
     pub sample_power: f64,
-    /// Mean power of their residual.
+    /// Mean power of their residual before gains are tied and near points are merged: that of noise alone in a complete list.
     pub residual_variance: f64,
     /// Variance of the white noise in that residual.
     pub noise_variance: f64,
@@ -100,6 +100,8 @@ impl Search<'_> {
     /// The objects of `fit` with the gains and the reflectivities that they are drawn with.
     fn described(&self, fit: Fit, is_complete: bool, scale: f64) -> Result<Found, ReconstructError> {
         let fitter = self.fitter;
+        let weight = fitter.squared.iter().sum::<f64>() * fitter.sensor.element_x.len() as f64;
+        let residual_variance = fit.cost() / weight;
         let best = if is_complete { self.with_tied_gains(fit) } else { fit };
         let best = if self.has_white_noise { self.merged(best) } else { best };
         let is_certain = is_complete && !self.has_white_noise;
@@ -109,12 +111,11 @@ impl Search<'_> {
         let all = fitter.energy(self.samples);
         // With the mean of both gains, an echo whose strength differs between the ends stays in the residual.
         let drawn_gains: Vec<Gains> = best.gains.iter().map(|[a, b]| [(a + b) / 2.0; 2]).collect();
-        let weight = fitter.squared.iter().sum::<f64>() * fitter.sensor.element_x.len() as f64;
         Ok(Found {
             reflectivities: reflectivities(&best.gains),
             search_residual_part: best.cost() / all,
             sample_power: all / weight,
-            residual_variance: best.cost() / weight,
+            residual_variance,
             noise_variance,
             needed_decades: self.needed_decades(&best, noise_variance),
             drawn_residual: fitter.subtract(self.samples, &best.atoms, &drawn_gains).residual.flat(&fitter.sensor),
@@ -245,9 +246,10 @@ fn reflectivities(gains: &[Gains]) -> Vec<f64> {
 mod tests {
     use super::super::{Detector, Settings, Trace};
     use super::*;
-    use crate::radar::{Radar, hann};
+    use crate::radar::{Decibels, Radar, hann};
     use crate::reconstruct::fit::Samples;
-    use crate::scene::Scene;
+    use crate::scene::{Reflector, Scene};
+    use crate::signal::floor::snr_noise_variance;
     use crate::signal::{Floor, simulate};
     use crate::task::Task;
 
@@ -266,6 +268,23 @@ mod tests {
         let kept = search.merged(fitter.solve(samples, atoms.clone(), Tie::PerEnd, 0.0)).atoms;
         assert_eq!(kept, [atoms[0], atoms[2], atoms[3]]);
         assert_eq!(search.merged(fitter.solve(samples, kept.clone(), Tie::PerEnd, 0.0)).atoms, kept);
+    }
+
+    #[test]
+    fn merged_points_are_no_noise() {
+        let (radar, task, snr) = (Radar::default(), Task::default(), Decibels(40.0));
+        let scene = Scene::of_points([(3.0, 11.0), (3.003, 11.012)]);
+        let ends = simulate(&radar, &scene, Floor::Snr(snr), 0).unwrap().two_ends(&radar);
+        let fitter = &Fitter::new(&radar, &hann(radar.samples), &task, usize::MAX);
+        let samples = &Samples::new(&fitter.sensor, &ends.flat());
+        let (detector, settings, trace) = (&Detector::of(&radar), &Settings::default(), &Trace::default());
+        let search = Search { radar: &radar, fitter, detector, samples, has_white_noise: true, settings, trace };
+        let point = |r: Reflector| Atom::Point { x_metres: r.x_metres, y_metres: r.y_metres };
+        let atoms = scene.reflectors().into_iter().map(point).collect();
+        let found = search.described(fitter.solve(samples, atoms, Tie::PerEnd, 0.0), true, 1.0).unwrap();
+        let added = snr_noise_variance(&radar, &scene.reflectors(), snr)[0];
+        assert_eq!(found.atoms.len(), 1);
+        assert!((found.residual_variance / added - 1.0).abs() < 0.1, "{:e} for {added:e}", found.residual_variance);
     }
 
     #[test]
