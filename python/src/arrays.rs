@@ -100,7 +100,7 @@ pub fn layout_of(any: Option<&Bound<'_, PyAny>>, radar: &Radar) -> PyResult<Opti
     let Some(any) = any else { return Ok(None) };
     if let Ok(name) = any.extract::<String>() {
         let wrong = |error: String| value(format!("layout: {error}"));
-        let kind: LayoutKind = name.parse().map_err(|e| wrong(e.to_string()))?;
+        let kind: LayoutKind = name.parse().map_err(wrong)?;
         let numbers = || kind.numbers(radar).map_err(|e| wrong(e.to_string()));
         return if kind == LayoutKind::TwoEnds { Ok(None) } else { numbers().map(Some) };
     }
