@@ -1,12 +1,13 @@
 //! Whole reconstructions of known scenes.
 
 use super::*;
-use crate::maps::{LogMaps, Normalisation};
+use crate::maps::{LogMaps, Normalisation, RangeAngleMap};
 use crate::radar::Decibels;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::{Line, Object, Point, Scene};
 use crate::signal::{Floor, simulate};
 use crate::task::Task;
+use ndarray::Array2;
 use num_complex::Complex64;
 
 fn ends_of(radar: &Radar, scene: &Scene) -> TwoEnds {
@@ -204,4 +205,19 @@ fn a_wide_array_finds_what_stands_beyond_the_maximum_range() {
     let scene = Scene::of_points([(4.8, 47.8), (-46.8, 22.7), (8.0, 18.3), (50.0, 12.0)]);
     let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
     assert!(worst_error_metres(&scene, &found) < 1e-6, "{:?}", found.reflectors);
+}
+
+#[test]
+fn a_doubtful_giant_is_not_listed_among_doubtful_objects() {
+    let radar = Radar::default();
+    let point = |x_metres, y_metres| Atom::Point { x_metres, y_metres };
+    let found = Found {
+        atoms: vec![point(47.5, 23.5), point(12.6, 6.4), point(12.7, 7.1)],
+        reflectivities: vec![33.0, 1.2, 0.8],
+        scale: 1.0,
+        needed_decades: vec![0.5; 3],
+        ..Found::default()
+    };
+    let listed = found.as_drawn(&radar, RangeAngleMap { lambda: Array2::zeros((1, 1)) }, None).reflectors;
+    assert_eq!(listed.iter().map(|r| r.reflectivity).collect::<Vec<_>>(), [1.2, 0.8]);
 }
