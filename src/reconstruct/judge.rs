@@ -19,8 +19,11 @@ const RESIDUAL_DECADES: [f32; 2] = [-3.0, -1.0];
 const BRIGHT_SHIFT_DECADES: f32 = 3.0;
 
 /// Bounds of the part of the shown cells that have more residual than drawn power, 0 to 1. Between them the weight of the search's map falls to
-/// the least in every cell: such a scene is not made of points and rows. Cells that a dynamic range cuts off don't count.
+/// the least in every cell: such a scene is not made of points and rows.
 const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
+
+/// [`UNEXPLAINED_PART`] where a dynamic range cuts off the dark cells, which don't count. Points and rows explain most bright cells.
+const UNEXPLAINED_BRIGHT_PART: [f32; 2] = [0.3, 0.6];
 
 /// Weight of the network's map, 0 to 1, where the search has a residual and the two maps agree. Their errors are different, so that a mean has a
 /// smaller error than either. The network's error is the smaller one there.
@@ -56,11 +59,12 @@ pub fn network_weight(
 ) -> Array2<f32> {
     let shown = || residual.iter().zip(&drawn.lambda).filter(|(_, drawn)| **drawn > 1.0 - shown_part);
     let unexplained_part = shown().filter(|(left, _)| **left > 0.0).count() as f32 / shown().count().max(1) as f32;
-    let scene_unexplained = ramp(UNEXPLAINED_PART, unexplained_part);
+    let is_cut_off = shown_part < 1.0;
+    let scene_unexplained = ramp(if is_cut_off { UNEXPLAINED_BRIGHT_PART } else { UNEXPLAINED_PART }, unexplained_part);
     let mut square = &drawn.lambda - &network.lambda;
     square.par_mapv_inplace(|v| v * v);
     let mut weight = moving_mean(&square);
-    let shift = if shown_part < 1.0 { BRIGHT_SHIFT_DECADES } else { 0.0 };
+    let shift = if is_cut_off { BRIGHT_SHIFT_DECADES } else { 0.0 };
     let least = if is_hidden { scene_unexplained.max(MIN_UNEXPLAINED_OVER_NOISE) } else { scene_unexplained };
     let unexplained = |left: f32| ramp(RESIDUAL_DECADES, left - shift).max(least);
     let agreed = |contradiction: f32| AGREED_WEIGHT + (1.0 - AGREED_WEIGHT) * contradiction;
@@ -193,6 +197,15 @@ mod tests {
         let weight = |part| network_weight(&drawn, &flat(0.9), Some(&flat(0.1)), &left, part, false)[[3, 5]];
         assert_eq!(weight(1.0), 1.0);
         assert_eq!(weight(0.5), 0.0, "cells that are cut off do not count");
+    }
+
+    #[test]
+    fn bright_cells_of_a_scene_count_as_unexplained_sooner() {
+        let mut left = Array2::from_elem((40, 60), -9.0);
+        left.slice_mut(ndarray::s![..18, ..]).fill(0.5);
+        let weight = |part| network_weight(&flat(0.9), &flat(0.9), Some(&flat(0.1)), &left, part, false)[[30, 30]];
+        assert_eq!(weight(1.0), 0.0);
+        assert!((weight(0.5) - 0.5 * AGREED_WEIGHT).abs() < 1e-6, "{}", weight(0.5));
     }
 
     #[test]
