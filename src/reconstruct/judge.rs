@@ -22,7 +22,7 @@ const BRIGHT_SHIFT_DECADES: f32 = 3.0;
 /// the least in every cell: such a scene is not made of points and rows.
 const UNEXPLAINED_PART: [f32; 2] = [0.7, 0.9];
 
-/// [`UNEXPLAINED_PART`] where a dynamic range cuts off the dark cells, which don't count. Points and rows explain most bright cells.
+/// [`UNEXPLAINED_PART`] over a dynamic range. Cells that it cuts off don't count, and a list of points and rows leaves few bright cells unexplained.
 const UNEXPLAINED_BRIGHT_PART: [f32; 2] = [0.3, 0.6];
 
 /// Weight of the network's map, 0 to 1, where the search has a residual and the two maps agree. Their errors are different, so that a mean has a

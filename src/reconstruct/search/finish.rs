@@ -48,7 +48,7 @@ pub struct Found {
     pub search_residual_part: f64,
     /// Mean power of the scaled samples.
     pub sample_power: f64,
-    /// Mean power of their residual before gains are tied and near points are merged: that of noise alone in a complete list.
+    /// Mean power of their residual before gains are tied and near points are merged. In a complete list this is the power of the noise.
     pub residual_variance: f64,
     /// Variance of the white noise in that residual.
     pub noise_variance: f64,

@@ -157,16 +157,16 @@ impl Found {
     /// The objects with the map `lambda`, in which noise alone doesn't exceed `least_eta`.
     pub fn as_drawn(&self, radar: &Radar, lambda: RangeAngleMap, least_eta: Option<f32>) -> Reconstruction {
         let max_range_metres = radar.max_range_metres();
-        let is_plain = |(reflector, _): &(Reflector, f64)| {
+        let is_in_range = |(reflector, _): &(Reflector, f64)| {
             self.is_complete || reflector.x_metres.hypot(reflector.y_metres) < max_range_metres
         };
-        let is_certain = |object: &(Reflector, f64)| object.1 >= confidence_at(CERTAIN_DECADES) && is_plain(object);
+        let is_certain = |object: &(Reflector, f64)| object.1 >= confidence_at(CERTAIN_DECADES) && is_in_range(object);
         let size = |(reflector, _): &(Reflector, f64)| reflector.reflectivity.abs();
         let objects: Vec<(Reflector, f64)> = self.reflectors(self.scale).zip(self.confidences()).collect();
         let largest_where = |is_counted: &dyn Fn(&(Reflector, f64)) -> bool| {
             objects.iter().filter(|object| is_counted(object)).map(size).reduce(f64::max)
         };
-        let largest = largest_where(&is_certain).or_else(|| largest_where(&is_plain)).unwrap_or(f64::INFINITY);
+        let largest = largest_where(&is_certain).or_else(|| largest_where(&is_in_range)).unwrap_or(f64::INFINITY);
         let listed =
             objects.into_iter().filter(|object| is_certain(object) || size(object) <= MAX_OVER_CERTAIN * largest);
         let (reflectors, confidences) = listed.unzip();
