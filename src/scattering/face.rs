@@ -5,6 +5,7 @@ use super::geometry::{V, hypotenuse, root};
 use super::transition::transition;
 use super::{AntennaPlaces, EchoKind, PathEcho, REFERENCE_LENGTH_METRES, Wave};
 use num_complex::Complex64;
+use std::f64::consts::PI;
 
 /// An antenna on the line of a face is taken to be this far beside it, metres.
 const MIN_HEIGHT_METRES: f64 = 1e-9;
@@ -55,22 +56,29 @@ impl Face {
         let Foot { along_metres: foot, range_metres, legs } = seen.foot();
         let on_face = low < foot && foot <= high;
         let amplitude = if on_face { scale / root(range_metres * legs) } else { 0.0 };
+        let edges = lit_metres.map(|u| seen.edge(u, range_metres, wave));
         let glint = PathEcho {
             range_metres,
             amplitude: amplitude.into(),
             cos_incidence: (seen.transmitter + seen.receiver) / (2.0 * range_metres),
-            is_mirrored: true,
+            mirror_part: mirror_part(edges[0].fresnel_parameter.min(edges[1].fresnel_parameter)),
             ..silent(foot, EchoKind::Glint)
         };
         // The same comparisons as for the glint, so that rounding can't separate them.
         let signs = [if foot > low { -1.0 } else { 1.0 }, if foot <= high { -1.0 } else { 1.0 }];
-        let [a, b] = [(low, signs[0]), (high, signs[1])].map(|(u, sign)| {
-            let Edge { range_metres, value, cos_incidence } = seen.edge(u, range_metres, wave);
-            let amplitude = value * (sign * scale);
-            PathEcho { range_metres, amplitude, cos_incidence, ..silent(u, EchoKind::Edge) }
-        });
-        [glint, a, b]
+        let edge = |n: usize| {
+            let Edge { range_metres, value, cos_incidence, .. } = edges[n];
+            let amplitude = value * (signs[n] * scale);
+            PathEcho { range_metres, amplitude, cos_incidence, ..silent(lit_metres[n], EchoKind::Edge) }
+        };
+        [glint, edge(0), edge(1)]
     }
+}
+
+/// [`PathEcho::mirror_part`] of a glint by the Fresnel parameter of the nearer end; at `sqrt(pi)` the whole first Fresnel zone lies on the face.
+fn mirror_part(fresnel_parameter: f64) -> f64 {
+    let part = (fresnel_parameter / root(PI)).min(1.0);
+    part * part * (3.0 - 2.0 * part)
 }
 
 /// Places of both antennas relative to a face.
@@ -96,6 +104,8 @@ struct Foot {
 /// Echo of an end, of a face of unit power and reflectivity, but for its sign.
 struct Edge {
     range_metres: f64,
+    /// Square root of the phase by which it lags behind the glint, radians.
+    fresnel_parameter: f64,
     value: Complex64,
     cos_incidence: f64,
 }
@@ -138,6 +148,6 @@ impl Heights {
         // w^2 = kappa (range - foot_range), without its cancellation.
         let w = s.abs() * root(kappa * rt * rr / both);
         let strength = c * root(2.0 / (rt * rr * both));
-        Edge { range_metres, value: transition(w) * strength, cos_incidence: c }
+        Edge { range_metres, fresnel_parameter: w, value: transition(w) * strength, cos_incidence: c }
     }
 }

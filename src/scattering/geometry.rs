@@ -39,7 +39,6 @@ impl Mul<f64> for V {
 }
 
 impl V {
-    /// Scalar product.
     pub fn dot(self, o: V) -> f64 {
         self.0 * o.0 + self.1 * o.1
     }

@@ -126,14 +126,15 @@ pub struct PathEcho {
     /// Cosine of the angle of incidence there.
     pub cos_incidence: f64,
     pub kind: EchoKind,
-    /// Whether it is reflected as by a mirror, so that its way goes on straight behind the face.
-    pub is_mirrored: bool,
+    /// Part that is reflected as by a mirror, so that its way goes on straight behind the face: 1 for a glint whose first Fresnel zone lies on
+    /// the face, less the nearer it is to an end of the face, where its shadow is that of the edge; 0 for all other echoes.
+    pub mirror_part: f64,
 }
 
 impl PathEcho {
     pub(crate) fn silent(place_metres: [f64; 2], kind: EchoKind) -> Self {
         let amplitude = Complex64::default();
-        PathEcho { range_metres: 0.0, amplitude, place_metres, cos_incidence: 1.0, kind, is_mirrored: false }
+        PathEcho { range_metres: 0.0, amplitude, place_metres, cos_incidence: 1.0, kind, mirror_part: 0.0 }
     }
 
     /// Whether there is such an echo.

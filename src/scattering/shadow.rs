@@ -65,7 +65,6 @@ impl Obstacle {
         Obstacle { shape: Convex::Corners(corners), centre, radius_metres }
     }
 
-    /// The field past the obstacle on a path.
     fn passage(&self, path: &AntennaPath) -> Passage {
         let AntennaPath { antenna, unit, faded_square, ref ray } = *path;
         let full = ray.full;
@@ -113,8 +112,7 @@ struct AntennaPath {
 }
 
 impl AntennaPath {
-    /// The path from `antenna` to `place`, of a wave with `radians_per_metre` of phase there and back for each metre of range. `beyond_metres` is the
-    /// length of the path behind `place`, straight in the mirror of a face.
+    /// The path from `antenna` to `place` of a wave with this phase there and back a metre of range; it goes on `beyond_metres`, straight in a face's mirror.
     fn new(radians_per_metre: f64, antenna: V, place: V, beyond_metres: f64) -> Self {
         let path = place - antenna;
         let full = path.norm();
@@ -159,9 +157,7 @@ impl Ray {
 
 /// The edges of an obstacle beside a path.
 struct Edges {
-    /// Largest Fresnel parameter of an edge.
     max_parameter: f64,
-    /// Smallest Fresnel parameter of an edge.
     min_parameter: f64,
     /// Magnitude of the Fresnel parameter of the edge nearest to the path, and its place along the path, metres.
     nearest: (f64, f64),
@@ -182,8 +178,7 @@ impl Edges {
         }
     }
 
-    /// Adds the corners beside the path, and the points where the outline crosses the lines across the path at its ends. `corners` are (along,
-    /// beside), metres.
+    /// Adds the corners beside the path, (along, beside) in metres, and the outline's crossings of the lines across the path at its ends.
     fn add_outline(&mut self, ray: &Ray, corners: &[(f64, f64)]) {
         for (i, &(l, q)) in corners.iter().enumerate() {
             if l >= 0.0 && l <= ray.full {
@@ -199,7 +194,6 @@ impl Edges {
         }
     }
 
-    /// The field past the edges.
     fn passage(&self, ray: &Ray) -> Passage {
         let Edges { max_parameter, min_parameter, nearest: (_, l) } = *self;
         if max_parameter < min_parameter {
@@ -231,7 +225,7 @@ pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlac
     }
     let place = V::from(echo.place_metres);
     let [t, r] = [antennas.transmitter_metres, antennas.receiver_metres].map(V::from);
-    let beyond = |other: V| if echo.is_mirrored { (place - other).norm() } else { 0.0 };
+    let beyond = |other: V| if echo.mirror_part > 0.0 { (place - other).norm() * echo.mirror_part } else { 0.0 };
     let path = |from: V, other: V| AntennaPath::new(wave.radians_per_metre, from, place, beyond(other));
     let there = path(t, r);
     let back = (antennas.transmitter_metres != antennas.receiver_metres).then(|| path(r, t));
@@ -248,15 +242,17 @@ pub(super) fn behind(obstacles: &[Obstacle], wave: &Wave, antennas: &AntennaPlac
 /// The echo after diffraction past one obstacle. `back` is the passage on the path back, `None` where it is the same as `there`.
 ///
 /// The path of a glint passes the obstacle, and then the obstacle's image in the mirror. The two edges act as one where the obstacle touches the
-/// face, and independently where it is far from the face.
+/// face, and independently where it is far from the face. At an end of the face the glint has the factor of the edge, so that the sum of both stays
+/// continuous where the glint leaves the face.
 fn diffracted(there: Passage, back: Option<Passage>, echo: PathEcho) -> PathEcho {
     let (is_one, back) = (back.is_none(), back.unwrap_or(there));
     let mean_detour_metres = (there.detour_metres + back.detour_metres) / 2.0;
-    let (factor, power) = if echo.is_mirrored {
+    let (factor, power) = if echo.mirror_part > 0.0 {
         let correlation = (there.part * back.part).max(0.0).sqrt().min(1.0);
         // At grazing incidence the field past two edges is the probability that two correlated normal variables are both positive: 1/4 for
         // independent edges, 1/2 for one. The exponent makes 1/2 of one edge that value.
-        let power = -(0.25 + correlation.asin() / TAU).log2();
+        let mirror_power = -(0.25 + correlation.asin() / TAU).log2();
+        let power = mirror_power + (2.0 - mirror_power) * (1.0 - echo.mirror_part);
         // Each path's factor is raised on its own: the phase of neither reaches half a turn, that of their product may.
         let raised = there.factor.powf(power / 2.0);
         (raised * if is_one { raised } else { back.factor.powf(power / 2.0) }, power)

@@ -13,7 +13,6 @@ use crate::scene::{Object, Shape};
 /// The rectangle around all antennas.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Array {
-    /// Corners of the rectangle around all antennas, metres.
     corners: [V; 4],
     /// Half a detour over which every effect has faded, metres.
     faded: f64,

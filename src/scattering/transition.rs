@@ -89,15 +89,7 @@ mod tests {
         let (steps, top) = (20_000, 8.0);
         let h = top / f64::from(steps);
         let f = |s: f64| (-(2.0 * z * s + s * s)).exp();
-        let weight = |i: i32| {
-            if i == 0 || i == steps {
-                1.0
-            } else if i % 2 == 1 {
-                4.0
-            } else {
-                2.0
-            }
-        };
+        let weight = |i: i32| if i == 0 || i == steps { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
         (0..=steps).map(|i| f(f64::from(i) * h) * weight(i)).sum::<Complex64>() * (h / 3.0 / PI.sqrt())
     }
 

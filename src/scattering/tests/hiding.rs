@@ -1,7 +1,7 @@
 //! Echoes of bodies that others hide.
 
 use super::*;
-use crate::scene::{Block, Point, Post, Wall};
+use crate::scene::{Block, Point, Polygon, Post, Wall};
 use proptest::prelude::*;
 
 #[test]
@@ -26,6 +26,38 @@ fn an_obstacle_that_comes_from_the_side_begins_with_no_effect() {
     assert!(last < 0.1, "behind the middle of the box: {last}");
     let step = largest_step(|x| at_range(&[at(x)], kappa, free.range_metres), -1.6, 16_000);
     assert!(step < 0.002, "{step}");
+}
+
+/// Sum of the echoes of `kinds` of a body behind a post, at an antenna at `x` metres, freed of the phase of the way to `apex_metres`.
+fn behind_a_post(body: &Object, post: Post, kinds: &[EchoKind], apex_metres: [f64; 2], x: f64) -> Vec<Complex64> {
+    let radar = Radar::default();
+    let mut echoes = heard(&radar, &[body.clone(), Object::Post(post)], &AntennaPlaces::at([x, 0.0]));
+    echoes.retain(|e| kinds.contains(&e.kind));
+    at_range(&echoes, Wave::of(&radar).radians_per_metre, (x - apex_metres[0]).hypot(apex_metres[1]))
+}
+
+#[test]
+fn nothing_jumps_where_a_shadowed_glint_leaves_its_face() {
+    let wall = Object::Wall(Wall::new(-1.0, 20.0, 2.0, 0.0));
+    let kinds = [EchoKind::Glint, EchoKind::Edge];
+    for post in [0.1, 0.35, 0.5].map(|x| Post::new(x, 10.0, 0.2)) {
+        let [before, after] = [-1e-7, 1e-7].map(|x| behind_a_post(&wall, post.clone(), &kinds, [0.0, 20.0], x)[0]);
+        let step = (after - before).norm() / before.norm();
+        assert!(step < 1e-4, "{post:?}: {step}");
+    }
+}
+
+#[test]
+fn a_right_inner_corner_behind_a_post_does_not_flicker() {
+    let post = Post::new(0.0, 7.0, 0.2);
+    for arm in [1.0, 3.0] {
+        let (out, near, far) = (arm + 0.2, 14.0 - arm, 14.2 - arm);
+        let corners = [[-arm, near], [0.0, 14.0], [arm, near], [out, far], [0.0, 14.4], [-out, far]];
+        let corner = Object::Polygon(Polygon::new(corners.to_vec()));
+        let at = |x| behind_a_post(&corner, post.clone(), &[EchoKind::DoubleBounce], [0.0, 14.0], x);
+        let step = largest_step(at, -1.0, 20_000);
+        assert!(step < 0.004, "arms of {arm} m: {step}");
+    }
 }
 
 #[test]

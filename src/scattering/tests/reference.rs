@@ -61,8 +61,7 @@ pub fn face(
     sums.iter().zip(samples).map(|(sum, n)| sum * density(*n)).collect()
 }
 
-/// Bessel's functions of the first and the second kind of orders 0 to `top` at `x`: the first downwards (Miller), the second upwards from
-/// Neumann's series.
+/// Bessel's functions of the first kind (downwards, Miller) and of the second (upwards from Neumann's series) of orders 0 to `top` at `x`.
 fn bessel(x: f64, top: usize) -> (Vec<f64>, Vec<f64>) {
     let start = (top.max(x as usize) + 40 + (15.0 * x.cbrt()) as usize) / 2 * 2;
     let mut first = vec![0.0; start + 2];
@@ -86,8 +85,7 @@ fn bessel(x: f64, top: usize) -> (Vec<f64>, Vec<f64>) {
     (first, second)
 }
 
-/// The exact echo of a perfect cylinder at sample `n`, E along the post, from a line source that is also the observer, the
-/// phase of the way to the cylinder's nearest point included.
+/// The exact echo of a perfect cylinder at sample `n`, E along the post, from an observing line source, the way to its nearest point included.
 pub fn post(radar: &Radar, centre: [f64; 2], radius: f64, antenna: [f64; 2], n: usize) -> Complex64 {
     let away = (antenna[0] - centre[0]).hypot(antenna[1] - centre[1]);
     let k = radians_per_metre(radar, n as f64) / 2.0;
@@ -102,11 +100,4 @@ pub fn post(radar: &Radar, centre: [f64; 2], radius: f64, antenna: [f64; 2], n: 
     let total = term(0) + 2.0 * (1..=top).map(term).sum::<Complex64>();
     let scale = radar.transmit_power_watts / (away - radius) / REFERENCE_LENGTH_METRES.sqrt();
     total * (PI * k).sqrt() * scale / EIGHTH_TURN
-}
-
-#[test]
-fn bessel_functions_of_known_values() {
-    let (j, y) = bessel(10.0, 12);
-    assert!((j[0] + 0.245_935_764_451_348_33).abs() < 1e-14 && (y[0] - 0.055_671_167_283_599_39).abs() < 1e-14);
-    assert!((j[10] - 0.207_486_106_633_358_86).abs() < 1e-13 && (y[10] + 0.359_814_152_183_402_7).abs() < 1e-12);
 }

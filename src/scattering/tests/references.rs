@@ -153,8 +153,7 @@ fn the_two_way_carrier_is_held_to_quadrature() {
     let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
     for (ends, bound) in [([[-2.0, 10.0], [2.0, 10.0]], 1e-3), ([[3.0, 5.0], [9.0, 5.0]], 2e-2)] {
         let antennas = AntennaPlaces::at([0.3, 0.0]);
-        let mut found = Vec::new();
-        Scatterer::new(&radar, &Object::Wall(wall(ends, 1.0)), &[]).echoes(&antennas, &mut found);
+        let found = heard(&radar, &[Object::Wall(wall(ends, 1.0))], &antennas);
         let expected = reference::face(&radar, ends, 1.0, &antennas, &SAMPLES, 4.0);
         let off = worst(&samples(&radar, &found), &expected);
         assert!(off < bound, "{ends:?}: {off:e}");
@@ -169,9 +168,7 @@ fn posts_are_their_exact_series() {
     {
         for x in [-0.9, 0.0, 0.4] {
             let antennas = AntennaPlaces::at([x, 0.0]);
-            let mut found = Vec::new();
-            let post = Object::Post(Post::new(centre[0], centre[1], radius));
-            Scatterer::new(&radar, &post, &[]).echoes(&antennas, &mut found);
+            let found = heard(&radar, &[Object::Post(Post::new(centre[0], centre[1], radius))], &antennas);
             let expected: Vec<_> =
                 SAMPLES.iter().map(|n| reference::post(&radar, centre, radius, [x, 0.0], *n)).collect();
             let off = worst(&samples(&radar, &found), &expected);
