@@ -112,7 +112,6 @@ pub struct UnknownMethod {
 }
 
 /// The method called `name`.
-///
 /// # Errors
 /// [`UnknownMethod`] lists the known names.
 pub fn by_name(name: &str) -> Result<Arc<dyn Reconstructor>, UnknownMethod> {

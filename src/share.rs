@@ -312,8 +312,7 @@ mod tests {
             prop_assert_eq!(SharedScene::from_text(&text), Ok(shared));
         }
 
-        /// A changed, lost or doubled letter is reported. Some bits at the beginning of the compressed bytes have no meaning: a letter that differs only in
-        /// those is accepted.
+        /// A changed, lost or doubled letter is reported, but for one that differs only in bits without meaning at the stream's beginning.
         #[test]
         fn a_damaged_letter_is_told(at in 11..10_000usize, letter in "[A-Za-z0-9_-]") {
             let text = shared().to_text().unwrap();

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import ClassVar, NamedTuple, Sequence
+from dataclasses import dataclass, field, fields
+from typing import ClassVar, NamedTuple, Sequence, SupportsFloat, SupportsIndex
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +15,28 @@ class ArgumentError(TypeError, ValueError):
     """An argument of the wrong type. It is a ValueError too, as all errors of the library are."""
 
 
+#: What is expected in a field of a type, and the types that have it: numbers of NumPy are among them.
+_EXPECTED: dict[str, tuple[str, tuple[type, ...]]] = {
+    "float": ("a number", (SupportsFloat, SupportsIndex)),
+    "int": ("a whole number", (SupportsIndex,)),
+    "str": ("a text", (str,)),
+}
+
+
 @dataclass(frozen=True)
-class Point:
+class _Checked:
+    """A data class whose numbers and texts are checked when it is made."""
+
+    def __post_init__(self) -> None:
+        for one in fields(self):
+            value = getattr(self, one.name)
+            expected, types = _EXPECTED.get(str(one.type), ("", (object,)))
+            if not isinstance(value, types):
+                raise ArgumentError(f"{type(self).__name__}: {one.name} is {value!r}; expected {expected}")
+
+
+@dataclass(frozen=True)
+class Point(_Checked):
     """One reflector. x lies along the array, y ahead of it, both in metres. Every object may have a name, and a velocity, which only
     `range_doppler` sees."""
 
@@ -30,7 +50,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Line:
+class Line(_Checked):
     """Reflectors at equal spacing on a straight line. `direction_degrees` is 0 along +x and 90 straight ahead."""
 
     kind: ClassVar[str] = "line"
@@ -46,7 +66,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Cluster:
+class Cluster(_Checked):
     """Reflectors drawn from a normal distribution around a centre; the same seed gives the same cluster."""
 
     kind: ClassVar[str] = "gaussian"
@@ -63,7 +83,7 @@ class Cluster:
 
 
 @dataclass(frozen=True)
-class Wall:
+class Wall(_Checked):
     """A straight wall around (x, y). `angle_degrees` is that of its length from +x, counter-clockwise. `reflectivity` is the reflection
     coefficient, `roughness_millimetres` the standard deviation of the surface's height, `seed` picks the rough surface."""
 
@@ -81,7 +101,7 @@ class Wall:
 
 
 @dataclass(frozen=True)
-class Box:
+class Box(_Checked):
     """A rectangle around (x, y), such as a car of 4.5 m by 1.8 m; the other fields as those of a `Wall`."""
 
     kind: ClassVar[str] = "box"
@@ -99,7 +119,7 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Post:
+class Post(_Checked):
     """A round post around (x, y); the other fields as those of a `Wall`."""
 
     kind: ClassVar[str] = "post"
@@ -115,7 +135,7 @@ class Post:
 
 
 @dataclass(frozen=True)
-class Polygon:
+class Polygon(_Checked):
     """A closed outline of straight faces with these corners (x, y) in order, either way round; the other fields as those of a `Wall`."""
 
     kind: ClassVar[str] = "polygon"
@@ -129,7 +149,7 @@ class Polygon:
 
 
 @dataclass(frozen=True)
-class Interferer:
+class Interferer(_Checked):
     """Another radar that sends at the same time: heard while its frequency crosses ours.
 
     `strength` is its amplitude at 1 m over the radar's power, `crossing` when its frequency crosses ours and `duration` for how long it is
@@ -144,7 +164,7 @@ class Interferer:
 
 
 @dataclass(frozen=True)
-class Mirror:
+class Mirror(_Checked):
     """A straight wall that mirrors: a point of it in metres, where it leads (0 along the array, 90 ahead), and the part of an amplitude
     that it reflects."""
 

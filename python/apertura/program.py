@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import atexit
 import importlib.metadata
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
+import threading
+import time
+from contextlib import suppress
 from pathlib import Path
 
 from ._apertura import Scene
+
+#: Longest that the program takes to read a scene, in seconds.
+_READING_SECONDS = 5.0
 
 _NAME = "apertura.exe" if sys.platform == "win32" else "apertura"
 
@@ -52,7 +59,8 @@ def _of_wheel() -> list[Path]:
 def open(scene: Scene | str | os.PathLike[str]) -> subprocess.Popen[bytes]:
     """Opens the window on a scene, or on the file of a scene or a recording, and does not wait for it.
 
-    A scene is written to a temporary file: what is changed in the window is kept where it is saved there.
+    A scene is written to a temporary file, which is removed when the program or Python ends: save what is changed in the window under another
+    name. Where it was saved to the temporary file, that stays. A Python that ends at once waits until the program has read the scene, 5 seconds.
 
     Returns:
         The process of the program.
@@ -63,11 +71,44 @@ def open(scene: Scene | str | os.PathLike[str]) -> subprocess.Popen[bytes]:
     """
     program = find_program()
     if isinstance(scene, Scene):
-        folder = Path(tempfile.mkdtemp(prefix="apertura-"))
-        path = folder / "scene.toml"
-        scene.save(path)
-    else:
-        path = Path(scene)
-        if not path.exists():
-            raise FileNotFoundError(f"{path}: there is no such file")
+        return _open_copy(program, scene)
+    path = Path(scene)
+    if not path.exists():
+        raise FileNotFoundError(f"{path}: there is no such file")
     return subprocess.Popen([program, str(path)])
+
+
+def _open_copy(program: str, scene: Scene) -> subprocess.Popen[bytes]:
+    """Opens the window on a temporary file with the scene."""
+    folder = Path(tempfile.mkdtemp(prefix="apertura-"))
+    path = folder / "scene.toml"
+    try:
+        scene.save(path)
+        written = path.stat().st_mtime_ns
+        process = subprocess.Popen([program, str(path)])
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    started, owner, removal = time.monotonic(), os.getpid(), threading.Lock()
+
+    def remove() -> None:
+        # What was saved from the window is not thrown away.
+        with removal, suppress(OSError):
+            if path.stat().st_mtime_ns == written:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def at_exit() -> None:
+        # A fork of this process ends on its own.
+        if os.getpid() != owner:
+            return
+        while process.poll() is None and time.monotonic() < started + _READING_SECONDS:
+            time.sleep(0.02)
+        remove()
+
+    def at_end() -> None:
+        process.wait()
+        remove()
+
+    atexit.register(at_exit)
+    threading.Thread(target=at_end, name="apertura-window", daemon=True).start()
+    return process

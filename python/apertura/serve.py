@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._apertura import Radar
+from .objects import ArgumentError
 
 VERSION = 1
 
@@ -58,8 +59,11 @@ def serve(
         weights: Hexadecimal digits that tell these weights from others, such as the first 12 of their SHA-256; rows of an evaluation hold them.
 
     Raises:
+        ArgumentError: `function` can't be called.
         ValueError: `answers` is neither of the two.
     """
+    if not callable(function):
+        raise ArgumentError(f"function is {function!r}; expected a function of ends and radar")
     if answers not in ("lambda", "decades"):
         raise ValueError(f'answers is {answers!r}; expected "lambda" or "decades"')
     source, sink = _pipes()

@@ -63,7 +63,6 @@ where
     Ok(array.as_array().to_owned())
 }
 
-/// Samples of this shape.
 pub fn samples<D: Dimension>(
     from: &Bound<'_, PyAny>,
     what: &str,

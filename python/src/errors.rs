@@ -40,7 +40,6 @@ pub fn at(path: &Path) -> impl Fn(io::Error) -> PyErr {
     move |error| system(&error, format!("{}: {error}", path.display()))
 }
 
-/// A scene file that can't be read or written.
 pub fn scene_file(error: SceneFileError) -> PyErr {
     match &error {
         SceneFileError::Io { source, .. } | SceneFileError::Archive { source: NpzError::Io(source), .. } => {
@@ -50,7 +49,6 @@ pub fn scene_file(error: SceneFileError) -> PyErr {
     }
 }
 
-/// A recording that can't be read.
 pub fn recording(error: RecordingError) -> PyErr {
     match &error.fault {
         Fault::Io(source) => system(source, &error),

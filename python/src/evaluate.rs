@@ -166,7 +166,6 @@ impl Run {
         Ok(Run { campaign, sets, methods, only, empty })
     }
 
-    /// Rows of the whole run.
     fn rows(&self) -> f64 {
         let scenes: f64 = self.sets.iter().map(|set| f64::from(self.campaign.scenes(set))).sum();
         self.only.as_ref().map_or(scenes * self.methods.len() as f64, |only| only.len() as f64)

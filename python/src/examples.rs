@@ -61,7 +61,6 @@ static EXTRACTOR: OnceLock<FeatureExtractor> = OnceLock::new();
 /// Largest tolerance of elements, in decibels, degrees or millimetres.
 const MAX_TOLERANCE: f64 = 360.0;
 
-/// Most examples that one call may ask for.
 const MAX_EXAMPLES: usize = 4096;
 
 #[pymethods]

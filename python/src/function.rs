@@ -124,7 +124,6 @@ impl Function {
     }
 }
 
-/// Whether `name` is a valid name of a method.
 pub fn is_name(name: &str) -> bool {
     (1..=MAX_NAME).contains(&name.len()) && name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
 }

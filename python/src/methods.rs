@@ -26,9 +26,7 @@ pub struct Method {
 
 /// The source from which a method is made again in another process.
 enum MadeOf {
-    /// The method's name.
     Name,
-    /// A file of weights.
     Weights(PathBuf),
     /// A function, and its texts: description, told, answers and weights.
     Function(Py<PyAny>, [String; 4]),

@@ -93,7 +93,6 @@ pub fn object(from: &Bound<'_, PyAny>, index: usize) -> PyResult<Object> {
     Ok(object)
 }
 
-/// The corners of a polygon.
 fn corners(from: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[f64; 2]>> {
     from.getattr("corners_metres")?.extract().map_err(|_| {
         PyTypeError::new_err(format!("{what}: corners_metres is no sequence of (x, y); expected numbers in metres"))

@@ -7,7 +7,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ptr;
 use std::sync::atomic::{AtomicPtr, AtomicU32, AtomicUsize, Ordering};
 
-/// Most threads that a caller may ask for.
 const MAX_THREADS: usize = 1024;
 
 /// A pool and the process whose threads it has.

@@ -3,10 +3,10 @@
 use crate::arrays::owned;
 use crate::budget::{LinkBudget, budget_of, link_figures};
 use crate::errors::{at, scene_file, value, whole};
-use crate::radar_fields::{antennas_of, carrier_of, fields_of, replaced, text_of, usual_of, window_of};
+use crate::radar_fields::{antennas_of, carrier_of, convention_of, fields_of, replaced, text_of, usual_of, window_of};
 use apertura::files::read_bounded;
 use apertura::radar::presets::{ALL, RadarPreset};
-use apertura::radar::{self, Antennas};
+use apertura::radar::{self, Antennas, Carrier, Convention, WindowFunction};
 use apertura::scene;
 use apertura::scene::file::{MAX_FILE_BYTES, SceneFile, radar_of};
 use ndarray::Array1;
@@ -42,6 +42,7 @@ use std::path::PathBuf;
 ///
 /// Raises:
 ///     ValueError: A field is out of range, or the radar asks for too much memory.
+///     ArgumentError: A name is no text.
 #[pyclass(module = "apertura", frozen)]
 #[derive(Clone, PartialEq)]
 pub struct Radar(pub radar::Radar);
@@ -80,9 +81,9 @@ impl Radar {
         elements: Option<i128>,
         end_elements: Option<i128>,
         samples: Option<i128>,
-        carrier: Option<&str>,
-        window: Option<&str>,
-        convention: Option<&str>,
+        #[pyo3(from_py_with = carrier_of)] carrier: Option<Carrier>,
+        #[pyo3(from_py_with = window_of)] window: Option<WindowFunction>,
+        #[pyo3(from_py_with = convention_of)] convention: Option<Convention>,
         transmitter_x_metres: Option<Vec<f64>>,
         receiver_x_metres: Option<Vec<f64>>,
         transmitter_y_metres: Option<Vec<f64>>,
@@ -106,8 +107,8 @@ impl Radar {
             end_elements: end_elements.unwrap_or(usual.end_elements),
             samples: samples.unwrap_or(usual.samples),
             chirp_seconds: chirp_seconds.unwrap_or(usual.chirp_seconds),
-            carrier: carrier.map_or(Ok(usual.carrier), carrier_of)?,
-            window: window.map_or(Ok(usual.window), window_of)?,
+            carrier: carrier.unwrap_or(usual.carrier),
+            window: window.unwrap_or(usual.window),
             antennas: None,
             focus_off_line: focus_off_line.unwrap_or(usual.focus_off_line),
             chirps: chirps.unwrap_or(usual.chirps),

@@ -1,29 +1,46 @@
 //! The fields of a radar under their Python names: names of choices, lists of places, and the constructor's dict.
 
 use crate::budget::LinkBudget;
-use crate::errors::value;
+use crate::errors::{argument, value};
 use apertura::radar::{self, Carrier, Convention, WindowFunction};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A carrier by its name.
-pub fn carrier_of(name: &str) -> PyResult<Carrier> {
-    let unknown = |_| value(format!("carrier is \"{name}\"; expected one-way or two-way"));
-    serde_json::from_value(name.into()).map_err(unknown)
+/// The carrier that the argument of this name says; `None` where it says none.
+pub fn carrier_of(said: &Bound<'_, PyAny>) -> PyResult<Option<Carrier>> {
+    if said.extract::<f64>().is_ok() {
+        let told = format!("carrier is {}; expected one-way or two-way: its frequency is carrier_hz", said.repr()?);
+        return Err(argument(said.py(), told));
+    }
+    choice("carrier", said, &[Carrier::OneWay, Carrier::TwoWay], Carrier::name)
 }
 
-/// A convention by its name.
-fn convention_of(name: &str) -> PyResult<Convention> {
-    Convention::by_name(name).ok_or_else(|| value(format!("convention is \"{name}\"; expected thesis or physical")))
+/// The convention that the argument of this name says; `None` where it says none.
+pub fn convention_of(said: &Bound<'_, PyAny>) -> PyResult<Option<Convention>> {
+    choice("convention", said, &Convention::ALL, Convention::name)
 }
 
-/// A window by its name.
-pub fn window_of(name: &str) -> PyResult<WindowFunction> {
-    let expected = || {
-        let names: Vec<_> = WindowFunction::ALL.iter().map(|w| w.name()).collect();
-        value(format!("window is \"{name}\"; expected {}", names.join(", ")))
+/// The window that the argument of this name says; `None` where it says none.
+pub fn window_of(said: &Bound<'_, PyAny>) -> PyResult<Option<WindowFunction>> {
+    choice("window", said, &WindowFunction::ALL, WindowFunction::name)
+}
+
+/// The one of `all` whose name the argument `name` says.
+fn choice<T: Copy>(
+    name: &str,
+    said: &Bound<'_, PyAny>,
+    all: &[T],
+    name_of: fn(T) -> &'static str,
+) -> PyResult<Option<T>> {
+    if said.is_none() {
+        return Ok(None);
+    }
+    let expected = all.iter().map(|one| name_of(*one)).collect::<Vec<_>>().join(" or ");
+    let Ok(text) = said.extract::<String>() else {
+        return Err(argument(said.py(), format!("{name} is {}; expected {expected}", said.repr()?)));
     };
-    WindowFunction::ALL.into_iter().find(|w| w.name() == name).ok_or_else(expected)
+    let found = all.iter().find(|one| name_of(**one) == text).copied();
+    found.map(Some).ok_or_else(|| value(format!("{name} is \"{text}\"; expected {expected}")))
 }
 
 /// Transmitters and receivers by their places along the line and off it.
@@ -83,14 +100,14 @@ pub fn fields_of<'py>(radar: &radar::Radar, py: Python<'py>) -> PyResult<Bound<'
 
 /// The fields of a radar that names none of them, in a convention if one is given.
 pub fn usual_of(
-    convention: Option<&str>,
-    carrier: Option<&str>,
+    convention: Option<Convention>,
+    carrier: Option<Carrier>,
     carrier_hz: Option<f64>,
     bandwidth_hz: Option<f64>,
 ) -> PyResult<radar::Radar> {
     let usual = radar::Radar::default();
-    let Some(convention) = convention.map(convention_of).transpose()? else { return Ok(usual) };
-    if carrier.map(carrier_of).transpose()?.is_some_and(|c| c != convention.carrier()) {
+    let Some(convention) = convention else { return Ok(usual) };
+    if carrier.is_some_and(|c| c != convention.carrier()) {
         let expected = convention.carrier().name();
         let said = convention.name();
         return Err(value(format!("carrier is another than that of the {said} convention, {expected}")));

@@ -25,6 +25,15 @@ NEAR = ap.Radar(bandwidth_hz=8e9)
         (lambda: ap.torch.Scenes("2", layout=[0.5]), "layout is [0.5]"),
         (lambda: ap.torch.Scenes("2", length="5"), "length is '5'"),
         (lambda: ap.Radar(elements=-1), "elements is -1"),
+        (lambda: ap.Radar(carrier=77e9), "carrier is 77000000000.0; expected one-way or two-way: its frequency is carrier_hz"),
+        (lambda: ap.Radar(window=3), "window is 3; expected hann or hamming"),
+        (lambda: ap.Radar(convention=b"thesis"), "convention is b'thesis'; expected thesis or physical"),
+        (lambda: ap.Point("a", 1), "Point: x_metres is 'a'; expected a number"),
+        (lambda: ap.Wall(0.0, 5.0, None), "Wall: length_metres is None; expected a number"),
+        (lambda: ap.Line(0.0, 1.0, 0.1, 2.5), "Line: count is 2.5; expected a whole number"),
+        (lambda: ap.Post(0.0, 1.0, 0.1, name=3), "Post: name is 3; expected a text"),
+        (lambda: ap.Mirror(reflection="half"), "Mirror: reflection is 'half'; expected a number"),
+        (lambda: ap.serve(3), "function is 3; expected a function of ends and radar"),
         (lambda: ap.set_threads(-1), "count is -1"),
         (lambda: ap.Examples("1").batch([-1]), "indices is -1"),
         (lambda: ap.Examples("2", layout="thinned=8").batch([0], mag_phase=True), "mag_phase is of the two ends"),
@@ -48,6 +57,18 @@ def test_an_argument_is_named(make, words):
     with pytest.raises((ValueError, OSError)) as told:
         make()
     assert words in str(told.value)
+
+
+def test_a_value_of_the_wrong_type_is_a_type_error():
+    for make in (lambda: ap.Radar(carrier=77e9), lambda: ap.Point("a", 1), lambda: ap.serve(3)):
+        with pytest.raises(TypeError):
+            make()
+
+
+def test_numbers_of_any_type_make_an_object():
+    point = ap.Point(np.float32(0.5), np.int64(2), True)
+    assert ap.Scene([point]).objects == [ap.Point(0.5, 2.0, 1.0)]
+    assert ap.Radar(carrier=None, window=None, convention=None) == ap.Radar()
 
 
 def test_a_floor_that_is_no_text_is_named():

@@ -141,6 +141,7 @@ def test_any_layout_of_memory_gives_the_same_answer():
     [
         (lambda: ap.Radar(samples=0), "radar.samples is 0"),
         (lambda: ap.Radar(carrier_hz=float("nan")), "carrier_hz"),
+        (lambda: ap.Radar(carrier_hz=77), "carrier_hz is 77.0; it must be at least 1e6, in hertz"),
         (lambda: ap.Radar(elements=65536, samples=65536), "too much memory"),
         (lambda: ap.Radar(carrier="sideways"), "one-way or two-way"),
         (lambda: ap.Radar(transmitter_x_metres=[0.0]), "expected both or neither"),

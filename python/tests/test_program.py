@@ -5,6 +5,7 @@ import shutil
 import stat
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -65,6 +66,26 @@ def test_the_window_opens_on_a_scene(tmp_path, monkeypatch):
     assert ap.Scene.load(tmp_path / "seen.toml") == scene
     with pytest.raises(FileNotFoundError, match="no such file"):
         ap.open(tmp_path / "nothing.toml")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the program is a script of a shell")
+@pytest.mark.parametrize(
+    "wait, does, stays",
+    [
+        (".wait(30)", "", False),
+        ("", "sleep 0.5", False),
+        (".wait(30)", 'sleep 0.1; echo "# saved" >> "$1"', True),
+    ],
+)
+def test_the_scene_of_a_window_is_removed_in_the_end(tmp_path, wait, does, stays):
+    script = tmp_path / "window"
+    script.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/path\n{does}\ncat "$1" > {tmp_path}/seen.toml\n')
+    script.chmod(script.stat().st_mode | stat.S_IXUSR)
+    environment = {**os.environ, "APERTURA_PROGRAM": str(script), "TMPDIR": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", f'import apertura as ap; ap.open(ap.Scene(name="seen")){wait}'], env=environment, check=True, timeout=60)
+    assert 'name = "seen"' in (tmp_path / "seen.toml").read_text()
+    scene = Path((tmp_path / "path").read_text().strip())
+    assert scene.parent.parent == tmp_path and scene.exists() == stays and scene.parent.exists() == stays
 
 
 def test_a_missing_program_is_told(tmp_path, monkeypatch):

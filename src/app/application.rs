@@ -164,7 +164,6 @@ impl App {
         }
     }
 
-    /// Draws the window; returns the commands of the user.
     fn draw(&mut self, ui: &mut egui::Ui) -> Vec<Command> {
         let (state, jobs) = (&mut self.state, &self.jobs);
         let mut commands = menu::show(ui, state);

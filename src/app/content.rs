@@ -69,7 +69,6 @@ impl Query for Nothing {
 pub struct Held<M, Q: Query> {
     content: Content<M, Q>,
     memory: M,
-    /// The panel's computed value.
     pub derived: Derived<Q>,
 }
 
@@ -100,10 +99,8 @@ pub trait AnyPanel: std::any::Any {
     /// Whether the panel draws results of an earlier scene or settings without marking them.
     fn is_fresh_but_old(&self, state: &State, jobs: &Jobs) -> bool;
 
-    /// Text in the title bar beside the panel's name, from its longest form to its shortest.
     fn caption(&self, state: &State, jobs: &Jobs, panel: Panel) -> Vec<String>;
 
-    /// Draws the panel; returns the user's commands.
     fn draw(&mut self, ui: &mut Ui, state: &mut State, jobs: &Jobs, panel: Panel) -> Vec<Command>;
 }
 
@@ -169,11 +166,9 @@ mod tests {
     use super::*;
     use crate::app::shared::Shared;
     use crate::app::state::EditCommand;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
     use crate::app::{App, Options};
     use crate::scene::Scene;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     /// The scene whose reflectors are counted.
     #[derive(Clone, PartialEq)]

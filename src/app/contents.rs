@@ -77,7 +77,6 @@ pub struct Contents<'a> {
     pub state: &'a mut State,
     pub jobs: &'a Jobs,
     pub panels: &'a mut Panels,
-    /// The user's commands so far.
     pub commands: Vec<Command>,
 }
 

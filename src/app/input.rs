@@ -102,15 +102,13 @@ pub fn read(ctx: &Context, input: Input) -> Vec<Command> {
 mod tests {
     use super::*;
     use crate::app::state::Task;
-    use egui_kittest::Harness;
+    use crate::app::widgets::seen;
 
     #[test]
     fn keys_mean_what_the_list_says() {
-        let draw = |ui: &mut eframe::egui::Ui, asked: &mut Vec<Command>| {
-            let input = Input { keys_taken: false, in_a_field: false, selected: true, bin_metres: 0.5 };
-            asked.extend(read(ui.ctx(), input));
-        };
-        let mut keys = Harness::new_ui_state(draw, Vec::new());
+        let mut keys = seen::asking([800.0, 600.0], |ui| {
+            read(ui.ctx(), Input { keys_taken: false, in_a_field: false, selected: true, bin_metres: 0.5 })
+        });
         let shift = Modifiers::COMMAND | Modifiers::SHIFT;
         for (modifiers, key) in [
             (Modifiers::ALT, Key::Num1),
@@ -178,13 +176,9 @@ mod tests {
 
     #[test]
     fn a_click_has_a_frame_of_its_own() {
-        let at = eframe::egui::pos2(1.0, 1.0);
-        let button = |pressed| Event::PointerButton {
-            pos: at,
-            button: eframe::egui::PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        };
+        let (at, primary) = (eframe::egui::pos2(1.0, 1.0), eframe::egui::PointerButton::Primary);
+        let modifiers = Modifiers::NONE;
+        let button = |pressed| Event::PointerButton { pos: at, button: primary, pressed, modifiers };
         let click = vec![text("b"), Event::PointerMoved(at), button(true), button(false), text("c")];
         let apart = [vec![text("b"), Event::PointerMoved(at)], vec![button(true), button(false)], vec![text("c")]];
         assert_eq!(frames(click), apart, "what was typed before a click stays");

@@ -2,19 +2,16 @@
 
 use super::application::App;
 use super::apply;
-use super::jobs::{BoundsRequest, ChirpQuery, DopplerQuery, PhasorsQuery};
-use super::panels::phasors::PhasorsMemory;
+use super::jobs::{BoundsRequest, DopplerQuery};
 use super::state::{Command, MapKind, MethodSlot, Panel, State};
 use super::widgets::Texture;
 use crate::bounds::PositionBound;
 use crate::engine::EngineReport;
 use crate::evaluate::Metrics;
 use crate::evaluate::rows::Row;
-use crate::evaluate::verdict::OutputVerdicts;
 use crate::maps::RangeAngleMap;
 use crate::reconstruct::Detection;
 use crate::scene::Reflector;
-use num_complex::Complex64;
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -98,27 +95,11 @@ impl App {
         self.panels.derived::<Texture, BoundsRequest>(Panel::Bounds)?.value()?.ok()?.bound.ok()
     }
 
-    /// Range bin and column of the chain of phasors on screen, and the end of the chain, if there is one.
-    pub fn phasor_sum(&self) -> Option<([usize; 2], Complex64)> {
-        self.panels
-            .derived::<PhasorsMemory, PhasorsQuery>(Panel::Phasors)?
-            .value()?
-            .ok()
-            .map(|r| (r.cell, r.measured.sum()))
-    }
-
     /// Range bin and column of the strongest cell of the range-Doppler map on screen.
     pub fn doppler_peak(&self) -> Option<(usize, usize)> {
         let decades =
             self.panels.derived::<Texture, DopplerQuery>(Panel::RangeDoppler)?.value()?.ok()?.decades.decades();
         decades.indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(cell, _)| cell)
-    }
-
-    /// The range bin in which the beat on screen is strongest, and the element of that beat.
-    pub fn beat_peak(&self) -> Option<(usize, usize)> {
-        let result = self.panels.derived::<(), ChirpQuery>(Panel::Chirp)?.value()?.ok()?;
-        let peak = (0..result.spectrum.len()).max_by(|a, b| result.spectrum[*a].total_cmp(&result.spectrum[*b]))?;
-        Some((peak, result.element))
     }
 
     /// Name of the method whose output is on screen, if there is one.
@@ -129,12 +110,6 @@ impl App {
     /// Figures of the first method's output, if there are any.
     pub fn metrics(&self) -> Option<Metrics> {
         self.jobs.pipeline.scores_in(MethodSlot::First).map(|s| s.metrics)
-    }
-
-    /// The verdict on every object in the output on screen, where the maps mark it and it is up to date.
-    pub fn verdicts(&self) -> Option<&OutputVerdicts> {
-        let (judged, current) = super::jobs::judged_output(&self.jobs.kinds, MethodSlot::First, &self.jobs.pipeline)?;
-        (current && self.state.settings.show_kinds).then_some(&judged.verdicts)
     }
 
     /// Whether a job started in a tool's panel runs.

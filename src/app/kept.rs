@@ -20,7 +20,6 @@ const VERSION_KEY: &str = "version";
 /// Largest file of settings that is read, bytes.
 const MAX_SETTINGS_BYTES: u64 = 16 << 20;
 
-/// State kept between starts.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct KeptSettings {
@@ -237,10 +236,7 @@ mod tests {
         let (kept, captions, problem) = read(Some(&storage), None);
         assert_eq!((problem, captions), (None, false));
         let settings = &kept.settings;
-        assert_eq!(
-            (settings.floor.to_string(), settings.normalisation.to_string()),
-            ("snr=17.5".into(), "db=60".into())
-        );
+        assert_eq!([settings.floor.to_string(), settings.normalisation.to_string()], ["snr=17.5", "db=60"]);
         assert_eq!((settings.method.as_str(), settings.method_eta["live"]), ("hybrid", 0.75));
         assert_eq!((settings.target_eta, settings.show_reflectors, settings.random_seed), (0.85, true, 41));
         assert_eq!(settings.cfar.unwrap().to_string(), "os:guard=2x2:training=4x8:rate=0.001");

@@ -100,11 +100,9 @@ impl<'a> Case<'a> {
 
     fn fast(&self, name: &str, algorithm: Algorithm, precision: Precision, tolerance: f64) -> Outcome {
         let mut engine = Engine::new(self.radar.clone());
-        engine.force(PlanOverrides {
-            algorithm: Some(algorithm),
-            precision: Some(precision),
-            tolerance: Some(tolerance),
-        });
+        let forced =
+            PlanOverrides { algorithm: Some(algorithm), precision: Some(precision), tolerance: Some(tolerance) };
+        engine.force(forced);
         let mut outcome = Outcome { algorithm, signal_error: 0.0 };
         for convention in CONVENTIONS {
             let MapConvention { floor, normalisation } = convention;
@@ -153,8 +151,6 @@ fn every_scene_holds(radar: &Radar, coincident: usize) {
 #[test]
 fn every_scene_holds_on_a_small_radar() {
     every_scene_holds(&small(), 300);
-    let on_an_element = [Reflector { x_metres: small().element_x_metres(16), y_metres: 0.0, reflectivity: 1.0 }];
-    assert!(scene(&on_an_element).validate(&small()).is_err());
 }
 
 #[test]
@@ -175,7 +171,7 @@ fn random_object(rng: &mut impl RngExt) -> Object {
     }
 }
 
-/// Adds, removes, replaces, reorders and moves objects at random (`seed`), and compares the engine's state with a fresh build; its caches must not grow.
+/// Edits objects at random (`seed`), and compares the engine's state with a fresh build; its caches must not grow.
 fn edits_end_at_a_fresh_build(radar: &Radar, wanted: &MapRequest, edits: usize, seed: u64) {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let mut engine = Engine::new(radar.clone());

@@ -11,14 +11,11 @@ use rayon::prelude::*;
 pub struct Ambiguity {
     pub range_metres: Vec<f64>,
     pub cos_theta: Vec<f64>,
-    /// `|<echo there, echo of the reflector>|` of echoes scaled to norm 1, `[ranges, cosines]`: 1 where the layout can't tell the two
-    /// apart, for any gains.
+    /// `|<echo there, reflector's echo>|` of echoes of norm 1, `[ranges, cosines]`: 1 where the layout can't tell them apart for any gains.
     pub likeness: Array2<f64>,
 }
 
-/// Ambiguity function of `layout` between the reflector at `centre` and the places at `ranges_metres` and `cosines`.
-///
-/// Of a layout without elements it is 0 everywhere.
+/// Ambiguity function of `layout` between a reflector at `centre` and places at `ranges_metres` and `cosines`; 0 without elements.
 pub fn ambiguity(radar: &Radar, layout: &Layout, centre: Polar, ranges_metres: &[f64], cosines: &[f64]) -> Ambiguity {
     let pairs = layout.pairs();
     let atom = |range, cos| ArrayEcho::at_pairs(radar, &pairs, range, cos);
@@ -38,21 +35,14 @@ mod tests {
     use super::*;
     use crate::radar::End;
 
-    /// Likeness along cos(theta) at the reflector's range, `steps` to each side.
-    fn cut(layout: &Layout, step: f64, steps: i32) -> Vec<f64> {
-        let centre = Polar { range_metres: 20.0, cos_theta: 0.0 };
-        let cosines: Vec<f64> = (-steps..=steps).map(|i| centre.cos_theta + f64::from(i) * step).collect();
-        ambiguity(&Radar::default(), layout, centre, &[centre.range_metres], &cosines)
-            .likeness
-            .into_raw_vec_and_offset()
-            .0
-    }
+    const CENTRE: Polar = Polar { range_metres: 20.0, cos_theta: 0.0 };
 
     #[test]
     fn two_ends_have_a_comb_of_one_tooth_an_angle_bin() {
         let radar = Radar::default();
         let bin = 2.0 / radar.elements as f64;
-        let along = cut(&Layout::two_ends(&radar), bin / 64.0, 6 * 64);
+        let cosines: Vec<f64> = (-6 * 64..=6 * 64).map(|i| f64::from(i) * bin / 64.0).collect();
+        let along = ambiguity(&radar, &Layout::two_ends(&radar), CENTRE, &[20.0], &cosines).likeness.row(0).to_vec();
         let peaks: Vec<usize> =
             (1..along.len() - 1).filter(|&i| along[i] > along[i - 1] && along[i] >= along[i + 1]).collect();
         let middle = peaks.iter().position(|i| *i == 6 * 64).expect("the reflector itself is a peak");
@@ -71,11 +61,10 @@ mod tests {
     #[test]
     fn echoes_in_other_range_bins_are_distinguishable() {
         let radar = Radar::default();
-        let centre = Polar { range_metres: 20.0, cos_theta: 0.0 };
         let far = [20.0, 20.0 + radar.range_resolution_metres()];
-        let a = ambiguity(&radar, &Layout::one_end(&radar, End::First), centre, &far, &[0.0]);
+        let a = ambiguity(&radar, &Layout::one_end(&radar, End::First), CENTRE, &far, &[0.0]);
         assert!(a.likeness[[1, 0]] < 0.05, "one bin off is a null of the range response: {}", a.likeness[[1, 0]]);
-        let none = ambiguity(&radar, &Layout::at(Vec::new()), centre, &far, &[0.0]);
+        let none = ambiguity(&radar, &Layout::at(Vec::new()), CENTRE, &far, &[0.0]);
         assert!(none.likeness.iter().all(|v| *v == 0.0));
     }
 }

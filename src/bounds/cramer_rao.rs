@@ -28,8 +28,7 @@ pub struct PositionBound {
     pub y_metres: f64,
     /// Covariance of the errors of x and y, square metres; 0 where `y_metres` is infinite.
     pub xy_covariance_metres2: f64,
-    /// Relative standard deviation of the reflector's amplitude (its reflectivity), the place being estimated too. With a gain for each half of the
-    /// layout it is that of the mean of both.
+    /// Relative standard deviation of the amplitude (reflectivity), the place being estimated too; with a gain an end, of the mean of both.
     pub amplitude: f64,
 }
 
@@ -39,8 +38,7 @@ pub enum Gains {
     /// One complex gain a reflector: all elements receive it coherently, the two ends of a sparse array included.
     #[default]
     One,
-    /// One complex gain a reflector for the elements left of the array's middle, another for the others: nothing is known of the phase
-    /// between the two ends of a sparse array.
+    /// One complex gain a reflector for each side of the array's middle: the phase between the ends of a sparse array is unknown.
     PerEnd,
 }
 
@@ -69,8 +67,7 @@ pub enum BoundsError {
     Noise,
 }
 
-/// Variance of the white complex noise that leaves this signal-to-noise ratio a sample, averaged over the samples of `layout`,
-/// for `reflector` alone.
+/// Variance of the white complex noise that leaves `reflector` alone this signal-to-noise ratio a sample, averaged over `layout`.
 pub fn noise_variance(radar: &Radar, layout: &Layout, reflector: &Reflector, snr: Decibels) -> f64 {
     let model = EchoModel::new(radar);
     let power: f64 = layout.pairs().into_iter().map(|pair| model.echo(pair, reflector).amplitude.powi(2)).sum();
@@ -208,8 +205,7 @@ impl Model {
         GAIN + 2 * self.groups
     }
 
-    /// Relative error of reflector `l`'s amplitude as a weighted sum of its parameters' errors: index and weight. Reverts the
-    /// orthogonalisation of the derivatives.
+    /// Relative error of reflector `l`'s amplitude: index and weight of parameters' errors. Reverts the derivatives' orthogonalisation.
     fn amplitude_weights(&self, l: usize) -> Vec<(usize, f64)> {
         let part = 1.0 / self.groups as f64;
         let own = |p: usize| self.own[l].iter().map(|own| part * own[p].re).sum::<f64>();

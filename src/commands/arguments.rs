@@ -26,9 +26,6 @@ impl FloorArgs {
     }
 
     /// Refuses `--floor` and `--seed`, the noise of a simulation, beside the recording at `path`.
-    ///
-    /// # Errors
-    /// [`CommandError`] names `path` and the option.
     pub fn check_unset(&self, seed: Option<u64>, path: &Path) -> Result<(), CommandError> {
         let given = [("--floor", self.floor.is_some()), ("--seed", seed.is_some())];
         given.into_iter().find(|(_, is_given)| *is_given).map_or(Ok(()), |(name, _)| {

@@ -1,20 +1,21 @@
 //! Charts as files: every figure is drawn once as SVG and once as PNG.
 
 use super::{CommandError, write_file};
+use crate::files::make_folder;
 use crate::picture::{Drawing, PictureFormat};
 use serde::Serialize;
 use std::path::Path;
 
 /// Writes `STEM.svg` and `STEM.png` into `folder`, which is made where it is missing.
 pub fn save(figure: &impl Drawing, folder: &Path, stem: &str) -> Result<(), CommandError> {
-    std::fs::create_dir_all(folder).map_err(CommandError::on(folder))?;
+    make_folder(folder).map_err(CommandError::on(folder))?;
     write(folder, stem, "svg", &PictureFormat::Svg.bytes_of(figure)?)?;
     save_bitmap(figure, folder, stem)
 }
 
 /// Writes `STEM.png` alone: for figures of so many cells that an SVG would be larger than its pixels.
 pub fn save_bitmap(figure: &impl Drawing, folder: &Path, stem: &str) -> Result<(), CommandError> {
-    std::fs::create_dir_all(folder).map_err(CommandError::on(folder))?;
+    make_folder(folder).map_err(CommandError::on(folder))?;
     write(folder, stem, "png", &PictureFormat::Png.bytes_of(figure)?)
 }
 

@@ -5,6 +5,7 @@ use super::figure::save;
 use super::{CommandError, print, write_file};
 use crate::figures::{ALL, Figure, SceneSource, by_number, pages};
 use crate::methods;
+use crate::radar::counted;
 use crate::reconstruct::Reconstructor;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -49,7 +50,7 @@ impl Args {
         if self.only.is_empty() {
             write_file(&self.output.join("figures.md"), self.page()?.as_bytes())?;
         }
-        print(&format!("wrote {drawn} figures into {}", folder.display()))
+        print(&format!("wrote {} into {}", counted(drawn, "figure", "figures"), folder.display()))
     }
 
     fn chosen(&self) -> Result<Vec<&'static Figure>, CommandError> {

@@ -22,9 +22,6 @@ pub fn frame(opened: &Recording, n: usize) -> Result<Recording, CommandError> {
 }
 
 /// Writes a GIF of all frames, each the picture (PNG) that `draw` makes of it. Beside the one that is opened, one is held at a time.
-///
-/// # Errors
-/// [`CommandError`] of the first frame that can't be read or drawn, or of the file.
 pub fn animate(
     opened: &Recording,
     path: &Path,

@@ -22,20 +22,20 @@ impl InputArgs {
 
     /// [`InputArgs::load`] with the `.cfg` of a raw capture.
     pub fn load_with(path: &Path, config: Option<&Path>) -> Result<InputArgs, CommandError> {
-        if let Some(text) = shared_text(path) {
-            return Ok(InputArgs::Scene(Box::new(SharedScene::from_text(text)?.file)));
-        }
-        if recording::file::is_recording_at(path) {
+        let shared = shared_text(path);
+        if shared.is_none() && recording::file::is_recording_at(path) {
             return Ok(InputArgs::Recording(Box::new(load_recording(path, config)?)));
         }
-        Ok(InputArgs::Scene(Box::new(file::load(path)?)))
+        let scene = match shared {
+            Some(text) => SharedScene::from_text(text)?.file,
+            None => file::load(path)?,
+        };
+        check_no_config(path, config)?;
+        Ok(InputArgs::Scene(Box::new(scene)))
     }
 }
 
 /// Refuses to write over the file `input`, or over the samples that a recording's TOML names: a measurement can't be made again.
-///
-/// # Errors
-/// [`CommandError`] names `output`.
 pub fn check_kept(input: &Path, output: &Path) -> Result<(), CommandError> {
     let Ok(there) = std::fs::canonicalize(output) else { return Ok(()) };
     let data = recording::file::data_path(input);
@@ -54,13 +54,19 @@ pub struct ConfigArg {
     pub config: Option<PathBuf>,
 }
 
+/// Refuses the `.cfg` of a raw capture beside the file `path`, which is none.
+pub fn check_no_config(path: &Path, config: Option<&Path>) -> Result<(), CommandError> {
+    let message = "--config is that of a raw capture or an array; expected one as input";
+    config.map_or(Ok(()), |_| Err(CommandError::on(path)(message)))
+}
+
 /// Reads a recording, and prints warnings about it on standard error; `config` is the `.cfg` of a raw capture.
 pub fn load_recording(path: &Path, config: Option<&Path>) -> Result<Recording, CommandError> {
+    if !recording::raw::is_raw_at(path) {
+        check_no_config(path, config)?;
+    }
     let recording = match config {
         None => recording::file::load(path),
-        Some(_) if !recording::raw::is_raw_at(path) => {
-            return Err(CommandError::on(path)("--config is that of a raw capture or an array; expected one as input"));
-        }
         Some(config) => recording::raw::open(path, Some(config)),
     }?;
     print_doubts(path, &recording.doubts);

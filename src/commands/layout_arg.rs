@@ -17,9 +17,6 @@ impl LayoutArg {
     }
 
     /// Numbers of the elements; `None` for the two ends.
-    ///
-    /// # Errors
-    /// [`CommandError`] where `radar` has no such elements.
     pub fn numbers(&self, radar: &Radar) -> Result<Option<Vec<usize>>, CommandError> {
         let wrong = |error| CommandError(format!("--layout: {error}"));
         self.other().map(|layout| layout.numbers(radar).map_err(wrong)).transpose()

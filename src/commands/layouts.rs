@@ -2,6 +2,7 @@
 
 use super::arguments::whole;
 use super::figure::save;
+use super::progress::ProgressArg;
 use super::{CommandError, print, print_json};
 use crate::bounds::{Lobes, cut, lobes};
 use crate::evaluate::{Estimate, Roc, squared_error};
@@ -29,6 +30,9 @@ pub struct Args {
     /// Scenes of each test set
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole(1..=10_000u32))]
     count: u32,
+
+    #[command(flatten)]
+    progress: ProgressArg,
 
     /// Print one JSON object instead of a table
     #[arg(long)]
@@ -64,7 +68,7 @@ impl Args {
         let layouts: Vec<(Layout, Vec<usize>)> =
             self.layout.iter().map(of).collect::<Result<_, String>>().map_err(CommandError)?;
         let mut rows: Vec<Row> = self.layout.iter().zip(&layouts).map(|(k, (l, _))| Row::new(&radar, k, l)).collect();
-        let bar = indicatif::ProgressBar::new(u64::from(self.count) * 3 * layouts.len() as u64);
+        let mut progress = self.progress.of(u64::from(self.count) * 3 * layouts.len() as u64, "maps");
         let generator = Generator::new(&radar, Reading::Program, Purpose::Test, 0);
         let request = Request::default();
         for kind in Kind::TEST_SETS {
@@ -79,7 +83,7 @@ impl Args {
                     let map = layout_matched_filter(&radar, layout, samples.view(), &request)?;
                     errors[i].push(squared_error(&target, &map));
                     rocs[i].add(&target, &map);
-                    bar.inc(1);
+                    progress.step(format_args!("now set {kind}, {}", self.layout[i]));
                 }
             }
             for ((row, errors), roc) in rows.iter_mut().zip(&errors).zip(&rocs) {
@@ -87,7 +91,7 @@ impl Args {
                 row.detection.push(roc.at_false_alarm(FALSE_ALARM_RATE).map(|p| p.detection));
             }
         }
-        bar.finish_and_clear();
+        progress.finish();
         if let Some(folder) = &self.output {
             save(&CutFigure { radar: &radar, rows: &rows }, folder, "layouts")?;
         }

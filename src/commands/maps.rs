@@ -4,7 +4,7 @@ use super::arguments::{self, FloorArgs};
 use super::input::{ConfigArg, InputArgs, check_kept};
 use super::layout_arg::LayoutArg;
 use super::own_method::OwnMethodArgs;
-use super::{CommandError, frames, picture_format, print, write_file};
+use super::{CommandError, check_no_picture, frames, picture_format, print, write_file};
 use crate::files::ends_in;
 use crate::files::npz::NpzError;
 use crate::maps::archive::{write_frames, write_maps, write_recorded_maps};
@@ -74,9 +74,9 @@ pub struct Args {
     #[command(flatten)]
     own: OwnMethodArgs,
 
-    /// Picture: colours of the maps
-    #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
-    colours: ColourMap,
+    /// Picture: colours of the maps [default: inferno]
+    #[arg(long, value_name = "inferno|viridis|grey|diverging")]
+    colours: Option<ColourMap>,
 
     /// Picture: a detector of constant false-alarm rate in place of both thresholds, as `apertura evaluate --cfar` takes it
     #[arg(long, value_name = "ca|os[:..]")]
@@ -100,6 +100,10 @@ impl Args {
         let format = picture_format(&self.output, &["npz", "gif"], ".npz, .png, .svg or .gif")?;
         check_kept(&self.input, &self.output)?;
         let of_frames = self.all_frames || ends_in(&self.output, &["gif"]);
+        if ends_in(&self.output, &["npz"]) {
+            let of_picture = [("--colours", self.colours.is_some()), ("--cfar", self.cfar.is_some())];
+            check_no_picture(&self.output, &of_picture)?;
+        }
         self.own.start()?;
         let mut input = InputArgs::load_with(&self.input, self.capture.config.as_deref())?;
         let radar = match &mut input {
@@ -235,11 +239,15 @@ impl Args {
 
     fn style(&self) -> Style {
         let (normalisation, layout) = (self.normalisation, self.layout.other().cloned());
-        Style { normalisation, layout, colours: self.colours, cfar: self.cfar, ..Style::default() }
+        let colours = self.colours.unwrap_or_default();
+        Style { normalisation, layout, colours, cfar: self.cfar, ..Style::default() }
     }
 }
 
 fn span(full: &LogMap) -> String {
+    if full.max() <= full.min() {
+        return "every cell of polar_full is the same: nothing is heard, and there is no peak".to_owned();
+    }
     let decibels = 20.0 * (full.max() - full.min());
     format!(
         "min-max Lambda of polar_full: 0 to 1 spans {decibels:.1} dB, 0.9 is {:.1} dB below the peak",

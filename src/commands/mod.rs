@@ -29,6 +29,7 @@ mod network_args;
 mod open;
 mod output;
 mod own_method;
+mod progress;
 mod radar_arg;
 mod range_doppler;
 mod reconstruct;
@@ -40,11 +41,14 @@ mod train;
 mod worsen;
 
 pub use error::CommandError;
-pub use output::{picture_format, print, print_json, write_file};
+pub use output::{check_no_picture, picture_format, print, print_json, write_file};
 
 use crate::platform::console;
 use crate::signal::simd::Simd;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// See what a 1024-element automotive radar sees, and how much of it 24 of those elements recover.
@@ -113,7 +117,12 @@ commands! {
 pub fn main() -> ExitCode {
     console::join();
     log_to_stderr();
-    let cli = Cli::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let found = command().try_get_matches_from(&arguments).and_then(|found| Cli::from_arg_matches(&found));
+    let cli = found.unwrap_or_else(|error| {
+        let mistyped = if error.use_stderr() { mistyped_command(&arguments) } else { None };
+        mistyped.unwrap_or(error).exit()
+    });
     let run = || {
         Simd::requested()?;
         cli.command.map_or_else(|| cli.open.run(), Command::run)
@@ -131,6 +140,26 @@ pub fn main() -> ExitCode {
 pub fn command() -> clap::Command {
     // A negative number is a value, so that a message names the allowed values, and not an unknown option.
     Cli::command().mut_subcommands(|command| command.allow_negative_numbers(true))
+}
+
+/// The error of a first argument that stands where a command does, and is neither one nor a file. clap takes it for the scene, and finds fault with
+/// the next argument.
+fn mistyped_command(arguments: &[OsString]) -> Option<clap::Error> {
+    let name = arguments.get(1)?.to_str()?;
+    let is_word = name.starts_with(char::is_alphanumeric) && name.chars().all(|c| c.is_alphanumeric() || c == '-');
+    let mut command = command();
+    if !is_word || name == "help" || command.find_subcommand(name).is_some() || Path::new(name).exists() {
+        return None;
+    }
+    // Where no scene may stand, clap looks for similar commands, of which the most similar comes last.
+    let alone = clap::Command::new("apertura").subcommands(command.get_subcommands().cloned());
+    let refused = alone.try_get_matches_from(["apertura", name]).err()?;
+    let similar = match refused.get(ContextKind::SuggestedSubcommand) {
+        Some(ContextValue::Strings(names)) => names.last(),
+        _ => None,
+    };
+    let advice = similar.map_or_else(String::new, |similar| format!(", did you mean \"{similar}\"?"));
+    Some(command.error(ErrorKind::InvalidSubcommand, format!("no command \"{name}\"{advice}")))
 }
 
 /// Shows warnings on standard error; `APERTURA_LOG=debug` (or any `tracing` filter) shows more.

@@ -27,17 +27,11 @@ pub struct NetworkArgs {
 
 impl NetworkArgs {
     /// Starts the commands of --method-command, which are methods then; their names.
-    ///
-    /// # Errors
-    /// [`CommandError`] for a command that is no method.
     pub fn start_own(&self) -> Result<Vec<&'static str>, CommandError> {
         self.own.start()
     }
 
     /// The methods called `names`, networks with the chosen weights and backend.
-    ///
-    /// # Errors
-    /// [`CommandError`] for an unknown name, and for weights that can't be used or that no method of `names` uses.
     pub fn methods(&self, names: &[String]) -> Result<Vec<Arc<dyn Reconstructor>>, CommandError> {
         let own = self.networks(names)?;
         names

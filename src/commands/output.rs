@@ -31,6 +31,14 @@ pub fn picture_format(path: &Path, others: &[&str], expected: &str) -> Result<Op
     PictureFormat::of_path(path).map(Some).ok_or_else(|| CommandError(format!("{}: {told}", path.display())))
 }
 
+/// Refuses options of a picture, each a name and whether it was given, beside the file at `path`, which is none.
+pub fn check_no_picture(path: &Path, options: &[(&str, bool)]) -> Result<(), CommandError> {
+    options.iter().find(|(_, is_given)| *is_given).map_or(Ok(()), |(name, _)| {
+        let message = format!("{name} is a picture's; expected the name of a picture to write to");
+        Err(CommandError::on(path)(message))
+    })
+}
+
 /// Writes a whole file, or none.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
     write_bytes(path, bytes).map_err(CommandError::on(path))

@@ -23,9 +23,6 @@ pub struct OwnMethodArgs {
 
 impl OwnMethodArgs {
     /// Starts the commands and adds them to the methods; their names.
-    ///
-    /// # Errors
-    /// [`CommandError`] for a command that is no method, and for a name that another method has.
     pub fn start(&self) -> Result<Vec<&'static str>, CommandError> {
         let mut names = Vec::new();
         for command in &self.method_command {

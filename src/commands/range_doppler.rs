@@ -2,7 +2,7 @@
 
 use super::arguments::{self, FloorArgs, real, whole};
 use super::input::{ConfigArg, InputArgs, check_kept, load_recording};
-use super::{CommandError, picture_format, print, write_file};
+use super::{CommandError, check_no_picture, picture_format, print, write_file};
 use crate::maps::Normalisation;
 use crate::maps::doppler::{RangeDopplerMap, range_doppler, write_range_doppler};
 use crate::picture::{ColourMap, PictureFormat, compose_range_doppler};
@@ -58,13 +58,13 @@ pub struct Args {
     #[command(flatten)]
     floor: FloorArgs,
 
-    /// Picture: scale of Lambda, min-max or db=RANGE (below the peak)
-    #[arg(long, value_name = "min-max|db=RANGE", default_value_t = Normalisation::DynamicRange(Decibels(60.0)))]
-    normalisation: Normalisation,
+    /// Picture: scale of Lambda, min-max or db=RANGE (below the peak) [default: db=60]
+    #[arg(long, value_name = "min-max|db=RANGE")]
+    normalisation: Option<Normalisation>,
 
-    /// Picture: colours of the map
-    #[arg(long, value_name = "inferno|viridis|grey|diverging", default_value_t = ColourMap::default())]
-    colours: ColourMap,
+    /// Picture: colours of the map [default: inferno]
+    #[arg(long, value_name = "inferno|viridis|grey|diverging")]
+    colours: Option<ColourMap>,
 
     /// Seed of the floor's noise; overrides the scene's
     #[arg(long, value_name = "S", value_parser = arguments::seed)]
@@ -75,16 +75,27 @@ const UNKNOWN_INTERVAL: &str = "Nothing says the interval of chirps: a step of v
 
 const USUAL_CHIRPS: usize = 128;
 
+const USUAL_NORMALISATION: Normalisation = Normalisation::DynamicRange(Decibels(60.0));
+
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
         let format = picture_format(&self.output, &["npz"], ".npz, .png or .svg")?;
         check_kept(&self.input, &self.output)?;
+        if format.is_none() {
+            let of_picture = [("--normalisation", self.normalisation.is_some()), ("--colours", self.colours.is_some())];
+            check_no_picture(&self.output, &of_picture)?;
+        }
         if is_recording_at(&self.input) {
             return self.of_recording(format);
         }
-        let InputArgs::Scene(file) = InputArgs::load(&self.input)? else {
+        let config = self.capture.config.as_deref();
+        let InputArgs::Scene(file) = InputArgs::load_with(&self.input, config)? else {
             return Err(CommandError::on(&self.input)("expected a scene or a raw capture"));
         };
+        if self.static_clutter_out {
+            let message = "--static-clutter-out is a recording's; expected one as input";
+            return Err(CommandError::on(&self.input)(message));
+        }
         let SceneFile { scene, mut radar } = *file;
         if let Some(microseconds) = self.interval {
             radar.chirp_interval_seconds = 1e-6 * microseconds;
@@ -142,7 +153,9 @@ impl Args {
         match format {
             None => write_range_doppler(&self.output, radar, scene, map).map_err(CommandError::on(&self.output))?,
             Some(format) => {
-                let bytes = compose_range_doppler(radar, map, self.normalisation, self.colours, format)?;
+                let normalisation = self.normalisation.unwrap_or(USUAL_NORMALISATION);
+                let colours = self.colours.unwrap_or_default();
+                let bytes = compose_range_doppler(radar, map, normalisation, colours, format)?;
                 write_file(&self.output, &bytes)?;
             }
         }

@@ -1,7 +1,7 @@
 //! `apertura reconstruct`: an estimate of the whole array's map from the samples of the two ends.
 
 use super::arguments::FloorArgs;
-use super::input::{ConfigArg, check_kept, load_recording, shared_text};
+use super::input::{ConfigArg, check_kept, check_no_config, load_recording, shared_text};
 use super::layout_arg::LayoutArg;
 use super::network_args::NetworkArgs;
 use super::radar_arg::RadarArg;
@@ -12,7 +12,7 @@ use crate::files::npz::{Npz, NpzError, NpzOutput, write_npz};
 use crate::maps::archive::{add_columns, read_radar};
 use crate::methods;
 use crate::platform::console::note;
-use crate::radar::Radar;
+use crate::radar::{Radar, counted};
 use crate::reconstruct::found::{MAX_COARSE_ELEMENTS, find};
 use crate::reconstruct::{Detection, NoisePrior, ReconstructError, Reconstructor, Request};
 use crate::recording::{self, Recording};
@@ -90,7 +90,9 @@ impl Args {
         let method = asked.map_or_else(|| self.usual(radar), Ok)?;
         let answer = answer(method.as_ref(), &input).map_err(CommandError::on(&self.input))?;
         self.write(radar, &answer).map_err(CommandError::on(&self.output))?;
-        print_echoes(&answer.found)?;
+        if let Samples::Ends(_) = input.samples {
+            print_echoes(&answer.found)?;
+        }
         if radar.elements <= MAX_COARSE_ELEMENTS && !method.lists_few_elements() {
             let name = method.name();
             note(&format!(
@@ -136,8 +138,8 @@ impl Args {
             add_found(out, &found.iter().map(|(_, echo)| echo))
         });
         written.map_err(CommandError::on(&self.output))?;
-        let echoes = found.len();
-        print(&format!("wrote {} ({}, {count} frames, {echoes} echoes)", self.output.display(), method.name()))
+        let (count, echoes) = (counted(count, "frame", "frames"), counted(found.len(), "echo", "echoes"));
+        print(&format!("wrote {} ({}, {count}, {echoes})", self.output.display(), method.name()))
     }
 
     fn method(&self, name: &str) -> Result<Arc<dyn Reconstructor>, CommandError> {
@@ -158,6 +160,7 @@ impl Args {
         if !has_samples && archive.has("all_point_x") {
             return Err(self.is_scene());
         }
+        check_no_config(&self.input, self.capture.config.as_deref())?;
         let own = read_radar(&mut archive).map_err(CommandError::on(&self.input))?;
         if self.radar.is_given() && own.as_ref().is_some_and(|own| *own != asked) {
             let message = "the archive says which radar made it, and --radar names another; leave --radar out";
@@ -284,6 +287,9 @@ fn rounded(number: f64, decimals: i32) -> f64 {
 const MAX_PRINTED_ECHOES: usize = 10;
 
 fn print_echoes(found: &[Detection]) -> Result<(), CommandError> {
+    if found.is_empty() {
+        return print("no echo found");
+    }
     for echo in found.iter().take(MAX_PRINTED_ECHOES) {
         let Detection { cos_theta, range_metres, .. } = echo;
         let range = if range_metres.is_finite() { format!("{range_metres:8.2} m") } else { "unknown range".to_owned() };

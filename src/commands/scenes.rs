@@ -3,8 +3,10 @@
 use super::arguments::{seed, whole};
 use super::radar_arg::RadarArg;
 use super::{CommandError, print};
+use crate::files::make_folder;
+use crate::platform::console::note;
 use crate::radar::counted;
-use crate::scene::file::{self, SceneFile};
+use crate::scene::file::{self, SceneFile, SceneFormat};
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use std::path::{Path, PathBuf};
 
@@ -59,13 +61,13 @@ impl Args {
         let reading = if self.thesis_text { Reading::Text } else { Reading::Program };
         let generator = Generator::new(&radar, reading, Purpose::Test, self.seed);
         if let Some(index) = self.index {
-            file::SceneFormat::of_path(&self.output)?;
+            SceneFormat::of_path(&self.output)?;
             let scene = generator.scene(self.set, index);
             let seed = scene.noise_seed;
             if let Some(folder) = self.output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                 make(folder)?;
             }
-            file::save(&self.output, &SceneFile { scene, radar })?;
+            save(&self.output, &SceneFile { scene, radar }, &mut false)?;
             return print(&format!("wrote {} (noise seed {seed})", self.output.display()));
         }
         make(&self.output)?;
@@ -75,17 +77,31 @@ impl Args {
         };
         let (prefix, what) = if self.set.test_set().is_some() { ("set", "set ") } else { ("", "") };
         let count = self.count.unwrap_or_default();
+        let mut is_told = false;
         for number in 0..count {
             let name = format!("{prefix}{}-seed{}-{number:04}.{extension}", self.set, self.seed);
             let scene = generator.scene(self.set, number);
             let file = SceneFile { scene, radar: radar.clone() };
-            file::save(&self.output.join(name), &file)?;
+            save(&self.output.join(name), &file, &mut is_told)?;
         }
         let scenes = counted(count, "scene", "scenes");
         print(&format!("wrote {scenes} of {what}{} to {}", self.set, self.output.display()))
     }
 }
 
+const BODIES_NOTE: &str =
+    "note: an archive (.npz) holds positions alone: a body becomes points, where it echoes to the middle of the array";
+
+/// Saves a scene. Before the first archive of a scene with bodies, standard error says what becomes of them.
+fn save(path: &Path, file: &SceneFile, is_told: &mut bool) -> Result<(), CommandError> {
+    let has_body = || file.scene.objects.iter().any(|object| object.body().is_some());
+    if !*is_told && SceneFormat::of_path(path)? == SceneFormat::Npz && has_body() {
+        note(BODIES_NOTE);
+        *is_told = true;
+    }
+    Ok(file::save(path, file)?)
+}
+
 fn make(folder: &Path) -> Result<(), CommandError> {
-    std::fs::create_dir_all(folder).map_err(CommandError::on(folder))
+    make_folder(folder).map_err(CommandError::on(folder))
 }

@@ -58,7 +58,6 @@ pub struct Args {
 /// A year.
 const MAX_MINUTES: f64 = 525_600.0;
 
-/// Maximum bytes of a recipe's text.
 const MAX_RECIPE_BYTES: u64 = 1 << 20;
 
 const CHECKPOINT: &str = "checkpoint";
@@ -127,8 +126,9 @@ fn go<S: TrainableNetwork>(
     let end = train::<S>(recipe, config, run, resume, watch)?;
     bar.finish_and_clear();
     let (steps, maps) = (counted(end.step, "step", "steps"), counted(end.maps, "map", "maps"));
-    let (minutes, loss, path) = (end.seconds / 60.0, end.loss, run.folder.join("weights.safetensors"));
-    print(&format!("{steps}, {maps}, {minutes:.0} minutes, loss {loss:.5}; wrote {}", path.display()))
+    let minutes = counted((end.seconds / 60.0).round(), "minute", "minutes");
+    let (loss, path) = (end.loss, run.folder.join("weights.safetensors"));
+    print(&format!("{steps}, {maps}, {minutes}, loss {loss:.5}; wrote {}", path.display()))
 }
 
 fn origin() -> Origin {

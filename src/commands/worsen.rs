@@ -4,6 +4,7 @@ use super::arguments::{FloorArgs, chosen, real, seed, whole};
 use super::network_args::NetworkArgs;
 use super::{CommandError, print};
 use crate::evaluate::worsen::{Finding, WorseningGoal, WorseningMeasure, WorseningOutcome, WorseningSearch, summary};
+use crate::files::ends_in;
 use crate::radar::counted;
 use crate::scene::Scene;
 use crate::scene::file::{self, SceneFile};
@@ -14,9 +15,9 @@ use std::time::{Duration, Instant};
 /// Search near a scene for one on which a method does worse, or for the smallest move after which it is right
 ///
 /// Objects move by at most --within, and bodies turn by up to 45 degrees. Their echoes change by up to 6 dB against each other, and new noise is drawn. The same seed gives the same
-/// scene if --tries ends the search, and not --minutes. With --repair only objects move. An output is right if it misses no object
-/// (--measure missed), has no false alarm (ghosts), or has a fifth of the squared error. Prints figures before and after. Writes OUT.toml if the search
-/// succeeds.
+/// scene if --tries ends the search, and not --minutes. With --repair only objects move. An output is right if no object is missed, merged or on a
+/// wrong tooth (--measure missed), if it has no false alarm (ghosts), or else if it has a fifth of the squared error. Prints figures before and
+/// after. Writes OUT.toml if the search succeeds.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Scene to start from (.toml or .npz)
@@ -70,7 +71,9 @@ const MAX_MINUTES: f64 = 525_600.0;
 
 impl Args {
     pub fn run(self) -> Result<(), CommandError> {
-        file::SceneFormat::of_path(&self.output)?;
+        if !ends_in(&self.output, &["toml"]) {
+            return Err(CommandError::on(&self.output)("a scene is written as TOML; expected a name ending in .toml"));
+        }
         let time = Duration::from_secs_f64(60.0 * self.minutes.unwrap_or(10.0));
         let SceneFile { scene, radar } = file::load(&self.scene)?;
         let own = self.network.start_own()?;
@@ -137,9 +140,9 @@ impl Args {
         if self.repair && outcome.tries == 0 {
             return print("nothing to repair");
         }
-        let what = if self.repair { "right" } else { "worse" };
+        let what = if self.repair { "on which the method is right" } else { "worse than this" };
         let message = format!(
-            "no scene {what} than this within {} m in {}; try a larger --within, more --tries, or another --seed",
+            "no scene {what} within {} m in {}; try a larger --within, more --tries, or another --seed",
             self.within,
             counted(outcome.tries, "try", "tries")
         );

@@ -1,5 +1,4 @@
-//! The change from the sums that the engine keeps to another scene. An object counts as changed when other objects hide it than before. A moved body is thus
-//! evaluated with the objects that it hides or reveals, and no others.
+//! The change from the sums that the engine keeps to another scene. An object also counts as changed when other objects hide it than before.
 
 use crate::scattering::ObjectWithOccluders;
 
@@ -20,8 +19,7 @@ impl SceneChange {
         active: &[ObjectWithOccluders],
         scene: &[ObjectWithOccluders],
     ) -> SceneChange {
-        // Both sums are unordered, so objects are compared as multisets. Edits touch few of them, so that few remain to be searched for after a pass over both
-        // lists in step.
+        // Both sums are unordered, so objects are compared as multisets. Edits touch few: few remain to be searched for after a pass in step.
         let mut unmatched: Vec<&ObjectWithOccluders> = Vec::new();
         let mut staying = Vec::with_capacity(rest.len());
         let mut arriving: Vec<ObjectWithOccluders> = Vec::new();

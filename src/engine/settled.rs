@@ -22,8 +22,6 @@ pub(super) struct SettledMaps {
 
 impl SettledMaps {
     /// Computes the wanted maps of `scene`, and adds the stages' times to `report`.
-    /// # Errors
-    /// [`signal::SimulationError`] when the scene can't be simulated, or `task` was cancelled.
     pub fn of(
         task: &Task,
         radar: &Radar,

@@ -58,7 +58,6 @@ impl Blobs {
 }
 
 /// The dip of Lambda between the blobs of two places in metres, below the weaker blob; 0 where the map shows one blob.
-///
 /// Each blob is the brightest cell near the place, on its own side of the middle between both.
 pub fn dip_between(radar: &Radar, map: &RangeAngleMap, places_metres: [[f64; 2]; 2]) -> f32 {
     let (rows, columns) = map.lambda.dim();

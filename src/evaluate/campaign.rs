@@ -125,8 +125,7 @@ impl Campaign {
 
     /// Rows without figures, one a set and method: only the columns that say how the rows of this campaign are made.
     /// # Errors
-    /// [`CampaignError`] for a folder whose scenes can't be read, for a kind that finds no room before the radar, and for a set or method that is
-    /// there twice.
+    /// [`CampaignError`] for an unreadable folder, a kind that finds no room before the radar, and a set or method that is there twice.
     pub fn empty_rows(
         &self,
         sets: &[SceneSet],
@@ -179,7 +178,6 @@ impl Campaign {
 
     /// [`Campaign::run`] without the rows that exist already: `is_done` tells whether the row of a set, scene and method exists. `empty` are
     /// [`Campaign::empty_rows`].
-    ///
     /// # Errors
     /// As [`Campaign::run`].
     pub fn run_rest(
@@ -237,7 +235,6 @@ impl Campaign {
     }
 
     /// Sentences, one a set and method, with the number of scenes whose noise the method was not trained on; none where that number is 0.
-    ///
     /// # Errors
     /// [`CampaignError`] names a scene that can't be read.
     pub fn untrained(&self, sets: &[SceneSet], methods: &[&dyn Reconstructor]) -> Result<Vec<String>, CampaignError> {
@@ -273,7 +270,6 @@ impl Campaign {
     }
 
     /// Reads or generates scene `index` of a set, and simulates it.
-    ///
     /// # Errors
     /// [`CampaignError`] names the scene.
     pub fn trial(&self, set: &SceneSet, generator: &Generator, index: u32) -> Result<Trial, CampaignError> {

@@ -136,8 +136,7 @@ impl Shown {
     }
 }
 
-/// For each object of `scene`, the cells in which each end, corner and glint of it stands out in `target`, the strongest first; nothing for
-/// an object that is no body.
+/// For each object of `scene`, the cells in which its ends, corners and glints stand out in `target`, strongest first; empty for no body.
 pub(super) fn of_bodies(
     radar: &Radar,
     scene: &Scene,

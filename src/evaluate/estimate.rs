@@ -21,8 +21,7 @@ impl Estimate {
         Estimate { mean, standard_error, median: median(values) }
     }
 
-    /// Standard errors from this estimate to the nearest value that is printed as `printed`, signed; rounding apart it is
-    /// `(mean - printed) / standard_error`.
+    /// Standard errors from this estimate to the nearest value printed as `printed`: `(mean - printed) / standard_error`, rounding apart.
     pub fn deviation_from(&self, printed: f64, rounding: f64) -> f64 {
         let off = self.mean - printed;
         off.signum() * (off.abs() - rounding).max(0.0) / self.standard_error

@@ -45,7 +45,6 @@ pub fn squared_error(target: &RangeAngleMap, output: &RangeAngleMap) -> f64 {
 /// SE if every cell were off by its doubt ([`Reconstruction::doubt`](crate::reconstruct::Reconstruction::doubt), `[range bins, columns]`): the
 /// sum of its squares over every cell. On scenes and over noise like those of the training nine of ten cells are nearer, so that it is mostly
 /// larger than SE.
-///
 /// The sum ranks scenes by their SE as well as the mean of doubt does, and has the unit of SE.
 pub fn squared_doubt(doubt: &RangeAngleMap) -> f64 {
     doubt.lambda.iter().map(|v| f64::from(*v).powi(2)).sum()

@@ -20,8 +20,7 @@ pub fn median_offset_metres(scene: &Scene, verdicts: &OutputVerdicts, found: &[R
     upper_median(found_points(scene, verdicts).filter_map(nearest))
 }
 
-/// The median Cramér-Rao bound, in metres, of the same points, each alone before the elements of `layout` over the noise of `floor`; `None`
-/// where no point is found or there is no noise.
+/// The median Cramér-Rao bound, metres, of these points, each alone before `layout` over `floor`; `None` without a found point or noise.
 pub fn median_bound_metres(
     (radar, layout): (&Radar, &Layout),
     scene: &Scene,

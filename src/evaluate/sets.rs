@@ -40,7 +40,6 @@ pub struct SceneList {
 
 impl SceneList {
     /// A set called `name` in rows.
-    ///
     /// # Errors
     /// [`toml::ser::Error`] for a scene that can't be written as a file.
     pub fn new(name: String, cases: Vec<SceneCase>) -> Result<SceneList, toml::ser::Error> {
@@ -80,7 +79,6 @@ impl FolderError {
 
 impl SceneFolder {
     /// Lists the scene files of `path` without reading them. Files whose names begin with a dot are left out.
-    ///
     /// # Errors
     /// [`FolderError`] where there is none.
     pub fn open(path: &Path) -> Result<SceneFolder, FolderError> {
@@ -102,7 +100,6 @@ impl SceneFolder {
     }
 
     /// The fingerprint of the files' names and contents, equal only where all are equal.
-    ///
     /// # Errors
     /// [`FolderError`] names the file that can't be read.
     pub fn fingerprint(&self) -> Result<String, FolderError> {
@@ -133,7 +130,6 @@ pub struct SceneCase {
 
 impl SceneSet {
     /// The set called `name` in rows: a kind of scenes, or else a folder.
-    ///
     /// # Errors
     /// [`FolderError`] for a folder without a scene.
     pub fn by_name(name: &str) -> Result<SceneSet, FolderError> {
@@ -158,7 +154,6 @@ impl SceneSet {
     }
 
     /// Scene `index`. `radar` and `generator` are those of generated scenes; a file names its own radar.
-    ///
     /// # Errors
     /// [`SceneFileError`] for a file that can't be read as a scene.
     pub fn case(&self, radar: &Radar, generator: &Generator, index: u32) -> Result<SceneCase, SceneFileError> {

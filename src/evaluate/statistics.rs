@@ -2,6 +2,7 @@
 
 use crate::evaluate::Estimate;
 use crate::evaluate::rows::Row;
+use crate::radar::counted;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashMap;
@@ -9,8 +10,7 @@ use std::collections::HashMap;
 /// Number of bootstrap samples of the scenes for the interval.
 pub const RESAMPLES: usize = 2000;
 
-/// Most scenes for which the interval is that of the bootstrap. With more, the mean's own distribution is close enough to normal, and drawing
-/// would take longer than a frame of the window.
+/// Most scenes for the bootstrap's interval. With more, the mean is nearly normal, and drawing would take longer than a frame of the window.
 pub const MAX_RESAMPLED_SCENES: usize = 5000;
 
 /// Distance of the ends of an interval of 95 % from the mean, in standard deviations of a normal distribution.
@@ -75,9 +75,10 @@ impl Paired {
     /// The comparison in words, with the methods' names.
     pub fn sentence(&self, first: &str, second: &str) -> String {
         let Paired { scenes, difference, interval: [low, high], first_alone, second_alone, p_value } = self;
+        let [scenes, alone] = [scenes, first_alone].map(|count| counted(*count, "scene", "scenes"));
         format!(
-            "SE of {first} less that of {second}: {difference:+.1}, 95 % interval {low:+.1} to {high:+.1} ({scenes} scenes). Every object \
-             found by {first} alone: {first_alone} scenes, by {second} alone: {second_alone} (McNemar p = {})",
+            "SE of {first} less that of {second}: {difference:+.1}, 95 % interval {low:+.1} to {high:+.1} ({scenes}). Every object found, \
+             none merged or on a wrong tooth, by {first} alone: {alone}, by {second} alone: {second_alone} (McNemar p = {})",
             p_text(*p_value)
         )
     }
@@ -146,6 +147,9 @@ mod tests {
         let merged = Row { merged: Some(1), ..of(0, "b", 1.0, 0) };
         let paired = Paired::of(&[of(0, "a", 1.0, 0), merged], "a", "b").unwrap();
         assert_eq!((paired.first_alone, paired.second_alone), (1, 0));
+        let told = paired.sentence("a", "b");
+        let counts = "none merged or on a wrong tooth, by a alone: 1 scene, by b alone: 0 (McNemar p = 1.00)";
+        assert!(told.contains("(1 scene). Every object found, ") && told.ends_with(counts), "{told}");
     }
 
     /// The true mean lies within the interval as often as claimed: of 400 samples of 60 scenes in 380, give or take 4.4. The bootstrap's

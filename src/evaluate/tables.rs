@@ -19,7 +19,6 @@ pub struct Printed {
 
 impl Printed {
     /// Half of the last printed digit of the rates, as fractions (P_D, P_FA).
-    ///
     /// All rates are printed with two decimals of a percent, except the baseline's on set 1 (12.4 % and 0.2 %).
     pub fn rate_rounding(&self) -> f64 {
         if *self == PRINTED_BASELINE[0] { 0.05e-2 } else { 0.005e-2 }
@@ -50,8 +49,7 @@ pub const PRINTED_EXPERIMENT_2: [Printed; 3] = [
 /// Largest ratio to the least SE that counts as near the best in [`part_near_best`].
 pub const MAX_NEAR_BEST_RATIO: f64 = 1.2;
 
-/// Part of the scenes on which the SE of `method` is at most [`MAX_NEAR_BEST_RATIO`] times the least SE of the other methods; `None` where no scene has
-/// another method's row. `rows` are those of one set.
+/// Part of one set's scenes where the SE of `method` is at most [`MAX_NEAR_BEST_RATIO`] times the others' least; `None` without other rows.
 pub fn part_near_best(rows: &[&Row], method: &str) -> Option<f64> {
     let is_near = |row: &&&Row| {
         let others = rows.iter().filter(|r| (r.seed, r.index) == (row.seed, row.index) && r.method != method);
@@ -145,15 +143,8 @@ mod tests {
 
     #[test]
     fn near_the_best_is_judged_scene_by_scene() {
-        let row = |index, method: &str, squared_error| Row { squared_error, ..row("1", index, method) };
-        let rows = [
-            row(0, "a", 119.0),
-            row(0, "b", 100.0),
-            row(0, "c", 130.0),
-            row(1, "a", 121.0),
-            row(1, "b", 100.0),
-            row(2, "a", 1.0),
-        ];
+        let all = [(0, "a", 119.0), (0, "b", 100.0), (0, "c", 130.0), (1, "a", 121.0), (1, "b", 100.0), (2, "a", 1.0)];
+        let rows = all.map(|(index, method, squared_error)| Row { squared_error, ..row("1", index, method) });
         let rows: Vec<&Row> = rows.iter().collect();
         assert_eq!(["a", "b", "c", "d"].map(|m| part_near_best(&rows, m)), [Some(0.5), Some(1.0), Some(0.0), None]);
         assert_eq!(part_near_best(&rows[5..], "a"), None);

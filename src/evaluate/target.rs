@@ -10,8 +10,7 @@ pub enum Target {
     Ideal,
     /// The map of the samples of the whole array, with their noise and with the errors of its elements.
     Measured,
-    /// The map of the samples that the exact array would have measured: with the noise, and without the errors of its elements. It equals the
-    /// measured one where no element is off.
+    /// The map of the samples of the exact array: with the noise, without errors of the elements. The measured one where no element is off.
     Calibrated,
 }
 

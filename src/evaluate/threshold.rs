@@ -88,7 +88,6 @@ impl ThresholdSearch {
     }
 
     /// The rates at `eta` on `count` further scenes of each kind, which did not choose it.
-    ///
     /// # Errors
     /// As [`ThresholdSearch::run`].
     pub fn try_further(
@@ -138,7 +137,6 @@ impl ThresholdSearch {
     }
 
     /// Checks the settings before any scene is tried.
-    ///
     /// # Errors
     /// [`CampaignError`] of the first setting that can't be used.
     pub fn check(&self) -> Result<(), CampaignError> {

@@ -44,7 +44,6 @@ pub struct TimedAnswer {
 
 impl Trial {
     /// Simulates `scene` over `floor`; the scene's seed picks the noise.
-    ///
     /// # Errors
     /// [`SceneError`] when the radar can't see the scene.
     pub fn new(radar: &Radar, scene: &Scene, floor: Floor, normalisation: Normalisation) -> Result<Trial, SceneError> {
@@ -52,7 +51,6 @@ impl Trial {
     }
 
     /// [`Trial::new`] with another target, and with the samples of the elements of `layout` beside those of the ends.
-    ///
     /// # Errors
     /// As [`Trial::new`].
     pub fn against(
@@ -81,7 +79,6 @@ impl Trial {
     }
 
     /// Runs `method` on the scene, and judges its answer.
-    ///
     /// # Errors
     /// [`ReconstructError`] of the method.
     pub fn ask(&self, method: &dyn Reconstructor, request: &Request) -> Result<TimedAnswer, ReconstructError> {
@@ -237,14 +234,8 @@ mod tests {
     fn the_nearest_pair_is_the_one_that_trying_all_finds() {
         let spots: Vec<Spot> =
             (0..60).map(|i| ([f64::from(i * 37 % 61) * 3.3, f64::from(i * 53 % 59) * 1.7], i as usize % 7)).collect();
-        let mut least = f64::INFINITY;
-        for (a, object) in &spots {
-            for (b, other) in &spots {
-                if object != other {
-                    least = least.min((a[0] - b[0]).hypot(a[1] - b[1]));
-                }
-            }
-        }
+        let pairs = spots.iter().flat_map(|a| spots.iter().map(move |b| (a, b))).filter(|(a, b)| a.1 != b.1);
+        let least = pairs.map(|((a, _), (b, _))| (a[0] - b[0]).hypot(a[1] - b[1])).fold(f64::INFINITY, f64::min);
         let [columns, bins] = nearest_pair(spots).unwrap();
         assert_eq!(columns.hypot(bins), least);
     }

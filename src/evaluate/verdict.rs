@@ -11,13 +11,17 @@ use super::TARGET_ETA;
 use super::blobs::Blobs;
 use super::echoes::of_bodies;
 use crate::maps::focus::map_of;
-use crate::maps::{Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform};
+use crate::maps::{
+    Aperture, LambdaScale, Mask, RangeAngleMap, RangeProfiles, angle_transform, range_transform_in_place,
+};
 use crate::radar::{BuiltArray, Radar};
 use crate::scattering::{EchoSources, ObjectWithOccluders};
 use crate::scene::{Object, Reflector, Scene};
 use crate::signal::plan::amplitude_bound;
 use crate::signal::{SynthesisPlan, beat_signal};
-use ndarray::Axis;
+use ndarray::{Array2, Axis};
+use num_complex::Complex64;
+use rayon::prelude::*;
 
 /// Least part of a footprint, 0 to 1, that must be detected for the object to count as found.
 const MIN_FOUND_PART: f64 = 0.5;
@@ -31,6 +35,8 @@ const MAX_TOOTH_ERROR_RATIO: f64 = 0.5;
 const GHOST_MARGIN_CELLS: usize = 3;
 /// Least number of cells of a ghost.
 const MIN_GHOST_CELLS: usize = 8;
+/// Objects whose footprints are computed at the same time: each holds the samples of the whole array.
+const MAX_OBJECTS_AT_ONCE: usize = 4;
 
 /// A cell of a map: range bin and column.
 pub type CellIndex = [usize; 2];
@@ -125,19 +131,19 @@ pub struct Footprints {
     places: Vec<Vec<CellIndex>>,
     /// For each object, the cells of each of its echoes that stand out, the strongest first. Empty for an object that is no body.
     echoes: Vec<Vec<Vec<CellIndex>>>,
-    /// Blobs of the target.
     target: Blobs,
 }
 
 impl Footprints {
     /// The footprints in `scene`, whose target is `target`, Lambda as `[range bins, columns]`. `scale` converts decades to its Lambda.
-    ///
     /// `scene` must have passed [`Scene::validate`].
     pub fn new(radar: &Radar, scene: &Scene, target: &RangeAngleMap, scale: LambdaScale) -> Footprints {
         let level = 10f64.powf(scale.floor + f64::from(TARGET_ETA) * (scale.peak - scale.floor));
         let echoes = of_bodies(radar, scene, target, &scale);
-        let mut objects: Vec<Vec<CellIndex>> =
-            ObjectWithOccluders::all(radar, scene).iter().map(|seen| footprint(radar, seen, level)).collect();
+        let mut objects: Vec<Vec<CellIndex>> = Vec::with_capacity(scene.objects.len());
+        for seen in ObjectWithOccluders::all(radar, scene).chunks(MAX_OBJECTS_AT_ONCE) {
+            objects.par_extend(seen.par_iter().map(|seen| footprint(radar, seen, level)));
+        }
         for (cells, echoes) in objects.iter_mut().zip(&echoes).filter(|(_, echoes)| !echoes.is_empty()) {
             cells.extend(echoes.iter().flatten());
             cells.sort_unstable();
@@ -170,9 +176,12 @@ impl Footprints {
             }
         });
         let (mut objects, mut covered): (Vec<ObjectVerdict>, Vec<f64>) = verdicts.unzip();
+        let blobs_of =
+            |blobs: &Blobs| -> Vec<Option<u32>> { self.objects.iter().map(|cells| blobs.most_of(cells)).collect() };
+        let (shown, seen) = (blobs_of(&self.target), blobs_of(&found));
         for i in 0..objects.len() {
             if objects[i] == ObjectVerdict::Found
-                && let Some(with) = self.merged_with(i, &objects, &found)
+                && let Some(with) = merged_with(i, &objects, &shown, &seen)
             {
                 objects[i] = ObjectVerdict::Merged { with };
             }
@@ -195,15 +204,6 @@ impl Footprints {
         OutputVerdicts { objects, covered, ghosts: ghosts.map(|(cells, _)| Ghost { cells: cells.clone() }).collect() }
     }
 
-    /// Index of an object that the output shows in one blob with object `i`, but the target doesn't.
-    fn merged_with(&self, i: usize, verdicts: &[ObjectVerdict], found: &Blobs) -> Option<usize> {
-        let blob = |blobs: &Blobs, of: usize| blobs.most_of(&self.objects[of]);
-        let (shown, seen) = (blob(&self.target, i)?, blob(found, i)?);
-        (0..verdicts.len())
-            .filter(|&o| o != i && matches!(verdicts[o], ObjectVerdict::Found | ObjectVerdict::Merged { .. }))
-            .find(|&o| blob(found, o) == Some(seen) && blob(&self.target, o).is_some_and(|other| other != shown))
-    }
-
     /// For each label of `found`, whether its blob is near an object that the target shows, or near a blob of the target; true for the ground.
     fn explained(&self, found: &Blobs, verdicts: &[ObjectVerdict]) -> Vec<bool> {
         let mut explained = vec![false; found.cells.len() + 1];
@@ -220,6 +220,15 @@ impl Footprints {
         }
         explained
     }
+}
+
+/// Index of an object that the output shows in one blob with object `i`, but the target doesn't. `shown` is the blob of each object in the target,
+/// `seen` that in the output.
+fn merged_with(i: usize, verdicts: &[ObjectVerdict], shown: &[Option<u32>], seen: &[Option<u32>]) -> Option<usize> {
+    let (own_shown, own_seen) = (shown[i]?, seen[i]?);
+    (0..verdicts.len())
+        .filter(|&o| o != i && matches!(verdicts[o], ObjectVerdict::Found | ObjectVerdict::Merged { .. }))
+        .find(|&o| seen[o] == Some(own_seen) && shown[o].is_some_and(|other| other != own_shown))
 }
 
 /// Labels of the cells near a cell that is moved by `shift` columns; 0 is the ground.
@@ -288,8 +297,7 @@ fn shifted_column(column: usize, by: i32, columns: usize) -> usize {
     (column as i64 + i64::from(by)).rem_euclid(columns as i64) as usize
 }
 
-/// The cells where the whole array's map of an object alone exceeds the magnitude `level`, without noise. The parts of the object that other bodies
-/// hide don't count.
+/// The cells where the noiseless map of an object alone exceeds the magnitude `level`, without parts that other bodies hide.
 fn footprint(radar: &Radar, seen: &ObjectWithOccluders, level: f64) -> Vec<CellIndex> {
     let echoing = EchoSources::of_objects(radar, std::slice::from_ref(seen));
     let amplitude = amplitude_bound(radar, &echoing);
@@ -299,17 +307,22 @@ fn footprint(radar: &Radar, seen: &ObjectWithOccluders, level: f64) -> Vec<CellI
         let map = map_of(radar, &BuiltArray::default(), &signal, Aperture::Full).cells;
         return map.indexed_iter().filter(|(_, v)| v.norm() > level).map(|((bin, column), _)| [bin, column]).collect();
     }
-    let profiles = range_transform(radar, &signal).profiles;
-    // The magnitude of a cell is at most the sum of the magnitudes of its range bin's profiles.
-    let scale = (radar.elements as f64).sqrt().recip();
-    let window = radar.window.weights(radar.elements);
-    let largest_magnitude = |bin: usize| -> f64 {
-        profiles.column(bin).iter().zip(&window).map(|(p, w)| p.norm() * w.abs()).sum::<f64>() * scale
-    };
-    let bins: Vec<usize> = (0..radar.samples).filter(|&bin| largest_magnitude(bin) > level).collect();
+    let profiles = range_transform_in_place(radar, signal).profiles;
+    let bins = loud_bins(radar, &profiles, level);
     let rows = RangeProfiles { profiles: profiles.select(Axis(1), &bins) };
     let map = angle_transform(radar, &rows, Aperture::Full);
     map.cells.indexed_iter().filter(|(_, v)| v.norm() > level).map(|((row, column), _)| [bins[row], column]).collect()
+}
+
+/// The range bins of `profiles` in which a cell may exceed the magnitude `level`. A cell is at most the sum of its bin's weighted magnitudes, and a
+/// magnitude is at most the sum of both parts' absolute values, which takes no root.
+fn loud_bins(radar: &Radar, profiles: &Array2<Complex64>, level: f64) -> Vec<usize> {
+    let mut bounds = vec![0.0; radar.samples];
+    for (profile, weight) in profiles.outer_iter().zip(radar.window.weights(radar.elements)) {
+        bounds.iter_mut().zip(profile).for_each(|(bound, p)| *bound += (p.re.abs() + p.im.abs()) * weight.abs());
+    }
+    let scale = (radar.elements as f64).sqrt().recip();
+    (0..radar.samples).filter(|&bin| bounds[bin] * scale > level).collect()
 }
 
 #[cfg(test)]

@@ -229,8 +229,10 @@ mod tests {
         format!("sh {}", path.display()).parse().unwrap()
     }
 
-    fn of(folder: &Path, rest: &str) -> ExternalMethod {
-        start(script(folder, rest), Duration::from_secs(20), &Task::default()).unwrap()
+    fn of(rest: &str) -> (tempfile::TempDir, ExternalMethod) {
+        let folder = tempfile::tempdir().unwrap();
+        let method = start(script(folder.path(), rest), Duration::from_secs(20), &Task::default()).unwrap();
+        (folder, method)
     }
 
     fn ask(method: &ExternalMethod, request: &Request) -> Result<Reconstruction, ReconstructError> {
@@ -250,8 +252,7 @@ mod tests {
 
     #[test]
     fn one_process_answers_every_request() {
-        let folder = tempfile::tempdir().unwrap();
-        let method = of(folder.path(), "cat 1.bin 2.bin 3.bin; cat > /dev/null");
+        let (folder, method) = of("cat 1.bin 2.bin 3.bin; cat > /dev/null");
         assert_eq!((method.name(), method.eta(), method.description()), ("mine", 0.25, "for tests"));
         assert_eq!(method.weights(&Radar::default()).unwrap().sha256, "0f");
         for id in 1..=3 {
@@ -262,16 +263,14 @@ mod tests {
 
     #[test]
     fn a_process_that_ends_is_told_with_its_last_words() {
-        let folder = tempfile::tempdir().unwrap();
-        let method = of(folder.path(), "echo out of memory >&2; exit 3");
+        let (_folder, method) = of("echo out of memory >&2; exit 3");
         let told = refused(&method);
         assert!(told.starts_with("mine: it ended (exit status: 3)") && told.contains("out of memory"), "{told}");
     }
 
     #[test]
     fn the_next_request_starts_it_anew() {
-        let folder = tempfile::tempdir().unwrap();
-        let method = of(folder.path(), "[ -e there ] || { touch there; exit 1; }\ncat 2.bin; cat > /dev/null");
+        let (folder, method) = of("[ -e there ] || { touch there; exit 1; }\ncat 2.bin; cat > /dev/null");
         refused(&method);
         assert_eq!(ask(&method, &Request::default()).unwrap().lambda.lambda[[0, 0]], 0.5);
         assert_eq!(starts(folder.path()), 2);
@@ -295,16 +294,14 @@ mod tests {
 
     #[test]
     fn an_answer_to_another_question_is_told() {
-        let folder = tempfile::tempdir().unwrap();
-        let told = refused(&of(folder.path(), "cat 2.bin; cat > /dev/null"));
+        let (_folder, method) = of("cat 2.bin; cat > /dev/null");
+        let told = refused(&method);
         assert!(told.contains("answers question 2; expected an answer to question 1"), "{told}");
     }
 
     #[test]
     fn what_the_process_refuses_keeps_it_alive() {
-        let folder = tempfile::tempdir().unwrap();
-        let method =
-            of(folder.path(), r#"echo '{"apertura":1,"id":1,"error":"only 3 GHz"}'; cat 2.bin; cat > /dev/null"#);
+        let (folder, method) = of(r#"echo '{"apertura":1,"id":1,"error":"only 3 GHz"}'; cat 2.bin; cat > /dev/null"#);
         assert_eq!(refused(&method), "mine: only 3 GHz");
         assert!(ask(&method, &Request::default()).is_ok());
         assert_eq!(starts(folder.path()), 1);
@@ -312,8 +309,7 @@ mod tests {
 
     #[test]
     fn a_cancelled_request_leaves_the_process_alive() {
-        let folder = tempfile::tempdir().unwrap();
-        let method = of(folder.path(), "until [ -e go ]; do sleep 0.05; done; cat 1.bin 2.bin; cat > /dev/null");
+        let (folder, method) = of("until [ -e go ]; do sleep 0.05; done; cat 1.bin 2.bin; cat > /dev/null");
         let request = Request::default();
         let task = request.task.clone();
         let waiting = std::thread::spawn(move || {

@@ -51,8 +51,6 @@ impl From<Cancelled> for ProcessFailure {
 
 impl Process {
     /// Starts the command.
-    /// # Errors
-    /// The system's error where it can't start the command.
     pub fn start(command: &CommandLine) -> io::Result<Process> {
         let [program, arguments @ ..] = command.words.as_slice() else {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "the command is empty"));

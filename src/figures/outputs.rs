@@ -106,8 +106,6 @@ pub fn cylinder_and_cube(source: &SceneSource) -> Result<Sheet, FigureError> {
 }
 
 /// A wall that hides a point from the last end and not from the first.
-/// # Errors
-/// [`FigureError::Scene`].
 fn behind_a_wall(source: &SceneSource) -> Result<Vec<SheetPanel>, FigureError> {
     let seen = source.see(hidden_from_one_end())?;
     Ok(source.panels_of(&seen, "A wall, and a point that it hides from the last end"))

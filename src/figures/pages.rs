@@ -77,11 +77,8 @@ mod tests {
     #[test]
     fn an_entry_shows_its_picture() {
         let text = entry(by_number("5-1").unwrap(), "figures");
-        assert!(
-            text.starts_with("### Figure 5-1")
-                && text.contains("(figures/5-1.png)")
-                && text.contains(" Kept as drawn.")
-        );
+        assert!(text.starts_with("### Figure 5-1") && text.contains("(figures/5-1.png)"), "{text}");
+        assert!(text.contains(" Kept as drawn."), "{text}");
     }
 
     #[test]

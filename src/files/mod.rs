@@ -53,6 +53,21 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> io::Result<()> {
     write_atomically(path, |out| out.write_all(bytes))
 }
 
+/// Makes the folder `path`, and those above it, where they are missing.
+/// # Errors
+/// An [`io::Error`]: `path` or one above it is no folder, or the system makes none.
+pub fn make_folder(path: &Path) -> io::Result<()> {
+    fs::create_dir_all(path).map_err(|error| {
+        let is_file = |part: &&Path| fs::metadata(part).is_ok_and(|found| !found.is_dir());
+        let message = match path.ancestors().find(is_file) {
+            None => return error,
+            Some(part) if part == path => "is a file; expected a folder".to_owned(),
+            Some(part) => format!("\"{}\" is a file; expected a folder", part.display()),
+        };
+        io::Error::new(io::ErrorKind::NotADirectory, message)
+    })
+}
+
 /// The error of a folder that takes no file. The system's message would name the temporary file.
 fn unwritable(folder: &Path, error: &io::Error) -> io::Error {
     io::Error::new(
@@ -130,6 +145,12 @@ mod tests {
         assert!(write_bytes(folder.path(), b"").unwrap_err().to_string().contains("folder"));
         let message = write_bytes(&folder.path().join("no/where.txt"), b"").unwrap_err().to_string();
         assert!(message.contains("there is no folder"), "{message}");
+        let file = folder.path().join("file");
+        write_bytes(&file, b"").unwrap();
+        let told = |path: &Path| make_folder(path).unwrap_err().to_string();
+        assert_eq!(told(&file), "is a file; expected a folder");
+        assert_eq!(told(&file.join("new")), format!("\"{}\" is a file; expected a folder", file.display()));
+        make_folder(&folder.path().join("new/deep")).unwrap();
     }
 
     #[cfg(unix)]

@@ -103,8 +103,7 @@ impl NpyHeader {
         self.shape.iter().try_fold(parts * kind.bytes, |product, n| product.checked_mul(*n))
     }
 
-    /// The numbers, which `file` has to its end behind the header; `None` for types that are not read: others than float16 to float64, complex64,
-    /// complex128, int8 to int64, uint16 and pairs of int16.
+    /// The numbers, to the end of `file` behind the header; `None` but for float16 to float64, complex64/128, int8 to int64, uint16 and pairs of int16.
     pub fn numbers(&self, file: impl Read) -> Option<io::Result<Numbers>> {
         self.kind().map(|(kind, parts)| self.numbers_of(file, kind, parts))
     }

@@ -176,8 +176,7 @@ impl NpzOutput<'_> {
         self.writer.add_array(key, array).map_err(write_error)
     }
 
-    /// Adds arrays `[rows, columns]` as one of `shape` `[count, rows, columns]` under `key`. `next` makes them in order, and one is held at
-    /// a time.
+    /// Adds arrays `[rows, columns]` as one of `shape` `[count, rows, columns]` under `key`. `next` makes them in order; one is held at a time.
     /// # Errors
     /// The error of `next`, an array of another shape, or [`NpzError::Io`] when the disk is full.
     pub fn add_stack<T: WritableElement + Clone>(

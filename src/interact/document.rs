@@ -189,8 +189,7 @@ impl Document {
         Ok(())
     }
 
-    /// The document over `recording`, which was reread from the same file: with the same scene, where the radar stays the same. `None` where the document
-    /// has no recording.
+    /// The document over `recording`, reread from the same file, with the same scene where the radar stays the same; `None` without a recording.
     pub fn reread(&self, recording: Recording) -> Option<Self> {
         let before = self.measured.as_ref()?;
         let is_same_radar = recording.radar == before.recording.radar;
@@ -248,8 +247,7 @@ impl Document {
         !self.saved.as_ref().is_some_and(|saved| saved.same(&self.content))
     }
 
-    /// Whether the document's file is there and has another content than was last read or written here. After a restart that content isn't known, and
-    /// the answer is false.
+    /// Whether the document's file is there with another content than was last read or written here; false after a restart, which forgets that.
     pub(super) fn is_outdated(&self) -> bool {
         let (Some(path), Some(saved)) = (self.path(), &self.saved) else { return false };
         fs::exists(path) && !Document::read(path).is_ok_and(|on_disk| on_disk.content.same(saved))
@@ -319,23 +317,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scene_without_a_file_is_called_by_its_own_name() {
-        let scene = Scene { name: "A street".into(), ..Scene::of_points([(1.0, 2.0)]) };
-        let file = SceneFile { scene, ..SceneFile::default() };
-        assert_eq!(Document::shipped(file.clone()).title(), "A street");
-        assert_eq!(Document::opened(Path::new("/there/a.toml"), file).title(), "a.toml");
-    }
-
-    #[test]
-    fn what_is_on_disk_is_not_modified() {
-        let file = || SceneFile { scene: Scene::of_points([(1.0, 2.0)]), ..SceneFile::default() };
+    fn the_title_marks_what_is_unsaved() {
+        let file = |name: &str| {
+            let scene = Scene { name: name.to_owned(), ..Scene::of_points([(1.0, 2.0)]) };
+            SceneFile { scene, ..SceneFile::default() }
+        };
         let path = Path::new("/there/a.toml");
         for (document, title) in [
             (Document::default(), "untitled"),
-            (Document::shipped(file()), "untitled"),
-            (Document::opened(path, file()), "a.toml"),
-            (Document::unsaved(Some(path), file()), "a.toml •"),
-            (Document::unsaved(None, file()), "untitled •"),
+            (Document::shipped(file("")), "untitled"),
+            (Document::shipped(file("A street")), "A street"),
+            (Document::opened(path, file("A street")), "a.toml"),
+            (Document::unsaved(Some(path), file("")), "a.toml •"),
+            (Document::unsaved(None, file("")), "untitled •"),
         ] {
             assert_eq!(document.title(), title);
         }

@@ -108,7 +108,6 @@ fn stretch(line: &mut Line, length_metres: f64) {
     }
 }
 
-/// Turns `line` about its middle so that it leads towards `to`.
 fn turn(line: &mut Line, to: Place) {
     let half_steps = line.count.saturating_sub(1) as f64 / 2.0;
     let [x, y] = line.place_metres(half_steps);
@@ -187,11 +186,10 @@ mod tests {
         let Object::Line(l) = move_grip(&line(), Grip::Turn, Place::new(9.0, 12.5)) else { panic!() };
         assert_eq!((l.count, l.spacing_metres), (11, 0.5));
         assert!(is_at([l.x_metres, l.y_start_metres], -1.5, 12.5) && is_at(l.end_metres(), 3.5, 12.5), "{l:?}");
-        let Object::Line(back) = move_grip(&Object::Line(l.clone()), Grip::Turn, Place::new(1.0, 99.0)) else {
-            panic!()
-        };
+        let turned = Object::Line(l);
+        let Object::Line(back) = move_grip(&turned, Grip::Turn, Place::new(1.0, 99.0)) else { panic!() };
         assert_eq!(back.direction_degrees, 90.0, "exactly straight ahead");
-        let Object::Line(spread) = move_grip(&Object::Line(l), Grip::Spacing, Place::new(6.0, 9.0)) else { panic!() };
+        let Object::Line(spread) = move_grip(&turned, Grip::Spacing, Place::new(6.0, 9.0)) else { panic!() };
         assert!((spread.spacing_metres - 1.0).abs() < 1e-12, "{spread:?}");
     }
 

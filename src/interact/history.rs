@@ -31,7 +31,6 @@ pub struct History {
 }
 
 impl History {
-    /// Records a step: `before` is the state before it.
     pub(super) fn push(&mut self, merge_key: Option<&str>, before: Snapshot) {
         self.undone.clear();
         let merges = !self.sealed

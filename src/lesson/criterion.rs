@@ -156,10 +156,8 @@ mod tests {
             "At most 0.601 m between the two",
         ];
         assert_eq!(of("range-and-bandwidth"), expected);
-        assert_eq!(
-            of("smooth-and-rough"),
-            ["At least 0.3 % of the cells of the target above Λ 0.5", "At most 1 object"]
-        );
+        let bright = "At least 0.3 % of the cells of the target above Λ 0.5";
+        assert_eq!(of("smooth-and-rough"), [bright, "At most 1 object"]);
         assert_eq!(of("folding-and-wrapping")[1], "An apparent range of 9.5 to 10.5 m for point 1");
         assert_eq!(of("two-ends-and-the-comb")[1], "Exactly 1 object");
         assert_eq!(of("the-floor")[1], "A reflectivity of at least 0.05 for point 2");

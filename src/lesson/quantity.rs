@@ -19,9 +19,9 @@ impl ObjectNumber {
         }
     }
 
-    /// The quantity's value, in its unit.
+    /// The object of this number.
     /// # Errors
-    /// A sentence where the quantity needs an object that is not named or not there.
+    /// As [`ObjectNumber::index`].
     pub fn of(self, scene: &Scene) -> Result<&Object, String> {
         self.index(scene.objects.len()).map(|index| &scene.objects[index])
     }
@@ -139,19 +139,13 @@ mod tests {
         assert!((of(Quantity::GratingLobeCos, None) - 2.053).abs() < 1e-3);
         // The two ends see a point at cos 0.9 and 20 m some 24 bins apart.
         assert!((of(Quantity::EndsDifferenceBins, Some(ObjectNumber(1))) - 24.0).abs() < 1.0);
-        assert!(
-            (of(Quantity::ApparentRangeMetres, Some(ObjectNumber(2))) - (60.0 - radar.max_range_metres())).abs() < 1e-9
-        );
-        let velocity = Quantity::ApparentVelocityMetresPerSecond.of(&radar, &scene, Some(ObjectNumber(1)));
-        assert_eq!(velocity, Ok(0.0), "nothing moves");
-        assert!((of(Quantity::UnambiguousVelocityMetresPerSecond, None) - 78.1).abs() < 0.1);
-        assert_eq!(
-            of(Quantity::VelocityColumnMetresPerSecond, None),
-            2.0 * of(Quantity::UnambiguousVelocityMetresPerSecond, None)
-        );
-        assert!(Quantity::ApparentRangeMetres.of(&radar, &scene, None).is_err());
-        assert!(
-            Quantity::ApparentRangeMetres.of(&radar, &scene, Some(ObjectNumber(3))).unwrap_err().contains("1 to 2")
-        );
+        let wrapped = of(Quantity::ApparentRangeMetres, Some(ObjectNumber(2)));
+        assert!((wrapped - (60.0 - radar.max_range_metres())).abs() < 1e-9);
+        let velocity = of(Quantity::ApparentVelocityMetresPerSecond, Some(ObjectNumber(1)));
+        assert_eq!(velocity, 0.0, "nothing moves");
+        let most = of(Quantity::UnambiguousVelocityMetresPerSecond, None);
+        assert!((most - 78.1).abs() < 0.1 && of(Quantity::VelocityColumnMetresPerSecond, None) == 2.0 * most);
+        let told = |o| Quantity::ApparentRangeMetres.of(&radar, &scene, o).unwrap_err();
+        assert!(!told(None).is_empty() && told(Some(ObjectNumber(3))).contains("1 to 2"));
     }
 }

@@ -61,18 +61,19 @@ pub fn by_name(name: &str) -> Result<usize, UnknownLesson> {
     if let [index] = begun[..] {
         return Ok(index);
     }
-    let may_be_meant: Vec<&str> = match begun.is_empty() {
-        true => ALL.iter().map(|lesson| lesson.id).collect(),
-        false => begun.into_iter().map(|index| ALL[index].id).collect(),
+    let (fault, may_be_meant): (_, Vec<&str>) = match begun.is_empty() {
+        true => ("names no lesson", ALL.iter().map(|lesson| lesson.id).collect()),
+        false => ("begins the names of several lessons", begun.into_iter().map(|index| ALL[index].id).collect()),
     };
-    Err(UnknownLesson { name: name.to_owned(), known: may_be_meant.join(", ") })
+    Err(UnknownLesson { name: name.to_owned(), fault, known: may_be_meant.join(", ") })
 }
 
 /// A name that is that of no lesson, or the beginning of several.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("\"{name}\" names no lesson, or several; expected one of {known}")]
+#[error("\"{name}\" {fault}; expected one of {known}")]
 pub struct UnknownLesson {
     name: String,
+    fault: &'static str,
     known: String,
 }
 
@@ -95,9 +96,11 @@ mod tests {
         assert_eq!(name("two-ends"), Ok("two-ends-and-the-comb"));
         assert_eq!(name("a-line"), Ok("a-line"), "the whole name");
         let several = name("range-and").unwrap_err().to_string();
-        assert!(several.contains("range-and-bandwidth, range-and-velocity") && !several.contains("comb"), "{several}");
+        let begun = "\"range-and\" begins the names of several lessons; expected one of range-and-bandwidth, range-and-velocity";
+        assert_eq!(several, begun);
         for none in ["", "three-ends"] {
-            assert!(name(none).unwrap_err().to_string().contains("two-ends-and-the-comb"));
+            let told = name(none).unwrap_err().to_string();
+            assert!(told.contains("names no lesson; expected") && told.contains("two-ends-and-the-comb"), "{told}");
         }
     }
 }

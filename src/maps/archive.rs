@@ -9,8 +9,7 @@ use crate::signal::{BeatSignal, LayoutSamples, TwoEnds};
 use ndarray::{Array1, Axis, Ix0, Ix1, arr0};
 use std::path::Path;
 
-/// Version of the archive's keys. Version 1, without this key, had neither axes nor constants. Version 2 has no keys of antennas, and is written for
-/// radars without transmitters apart from receivers.
+/// Version of the archive's keys. Version 1 has neither this key nor axes nor constants; version 2 is for single antennas and has no keys of pairs.
 pub const FORMAT_VERSION: i64 = 3;
 /// Version of archives of radars whose elements are single antennas.
 const MONOSTATIC_VERSION: i64 = 2;
@@ -181,7 +180,6 @@ fn places(archive: &mut Npz, keys: [&str; 2]) -> Result<[Vec<f64>; 2], NpzError>
     Ok([archive.reals::<Ix1>(keys[0])?.to_vec(), archive.reals::<Ix1>(keys[1])?.to_vec()])
 }
 
-/// The number `key` of an archive that may lack it.
 fn optional(archive: &mut Npz, key: &str) -> Result<Option<f64>, NpzError> {
     archive.has(key).then(|| number(archive, key)).transpose()
 }

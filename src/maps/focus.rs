@@ -26,8 +26,7 @@ fn off_line_metres(radar: &Radar, elements: &BuiltArray) -> Option<Vec<f64>> {
     y_metres.iter().any(|y| *y != 0.0).then_some(y_metres)
 }
 
-/// Range-angle map of a beat signal of `elements`, focused where [`Radar::focus_off_line`] says so and elements are off the line. Elsewhere it has the
-/// bits of the plain transforms.
+/// Range-angle map of a signal of `elements`, focused by [`Radar::focus_off_line`] where they are off the line, else with the plain transforms' bits.
 pub fn map_of(radar: &Radar, elements: &BuiltArray, signal: &BeatSignal, aperture: Aperture) -> ComplexMap {
     let channels = aperture.channels(radar);
     let samples = signal.samples.slice(s![channels.clone(), ..]);

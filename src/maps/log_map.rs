@@ -7,8 +7,7 @@ use ndarray::Array2;
 /// at a peak of 1e-10 it would cover the rounding floor.
 pub const LOG_GUARD: f64 = 1e-20;
 
-/// The guard of a map whose largest magnitude is `peak`: 20 decades below the peak, at most [`LOG_GUARD`]. So the map does not depend on a
-/// common factor of all reflectivities.
+/// The guard of a map of largest magnitude `peak`: 20 decades below it, so that a common factor has no effect, and at most [`LOG_GUARD`].
 pub fn guard(peak: f64) -> f64 {
     (LOG_GUARD * peak.min(1.0)).max(f64::MIN_POSITIVE)
 }

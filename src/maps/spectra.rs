@@ -34,8 +34,7 @@ impl Spectrum {
         buffer
     }
 
-    /// The transform of `values` with index `middle` at n = 0, and those before it at negative n. The phase of such a spectrum changes little from one
-    /// k to the next, so that it can be interpolated.
+    /// The transform with index `middle` of `values` at n = 0: its phase changes little from one k to the next, so that it can be interpolated.
     fn around(&self, middle: usize, values: impl Iterator<Item = Complex64>) -> Vec<Complex64> {
         let mut buffer = vec![Complex64::default(); self.len()];
         for (n, v) in values.enumerate() {

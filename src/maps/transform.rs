@@ -113,8 +113,7 @@ pub fn channels_map(radar: &Radar, samples: ArrayView2<'_, Complex64>) -> Comple
     angle_transform_of(radar, channels_range_transform(radar, samples).profiles.view())
 }
 
-/// Range-angle map of channels' profiles: windowed, padded with zeros to N_a, transformed, and rolled by N_a / 2, so that cos(theta) rises with the
-/// column.
+/// Range-angle map of channels' profiles: windowed, padded with zeros to N_a, transformed, and rolled by N_a / 2.
 pub(super) fn angle_transform_of(radar: &Radar, profiles: ArrayView2<'_, Complex64>) -> ComplexMap {
     let columns = radar.elements;
     let fft = Simd::chosen().forward_fft(columns);

@@ -1,11 +1,15 @@
 //! The radars for which a network was trained.
 
-use crate::radar::{Carrier, Radar, WindowFunction};
+use crate::radar::{Carrier, Radar, WindowFunction, counted};
 use crate::reconstruct::ReconstructError;
 use serde::{Deserialize, Serialize};
 
 /// Largest relative difference of two quantities that count as equal.
 const SAME_QUANTITY: f64 = 1e-9;
+
+/// Places behind the point of a quantity that differs: more than the least where two would look alike.
+const LEAST_PLACES: usize = 4;
+const MOST_PLACES: usize = 15;
 
 /// The radars for which a network was trained.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,7 +53,6 @@ type Difference = [String; 2];
 
 impl Domain {
     /// The domain as JSON, for an entry of a weight file.
-    ///
     /// # Errors
     /// [`serde_json::Error`] for numbers that JSON can't express.
     pub fn json(&self) -> Result<String, serde_json::Error> {
@@ -67,7 +70,6 @@ impl Domain {
     }
 
     /// Refuses a radar whose samples differ from those that `method` was trained with, since the network's answer for them has no meaning.
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] names the quantities that differ.
     pub fn check(&self, method: &'static str, radar: &Radar) -> Result<(), ReconstructError> {
@@ -93,6 +95,12 @@ impl Domain {
             Domain::Limits(limits) => limits.differences(radar),
         }
     }
+}
+
+/// Two numbers to four places behind the point, or to as many as tell them apart.
+fn told_apart(pair: [f64; 2]) -> [String; 2] {
+    let to_places = |places: usize| pair.map(|v| format!("{v:.places$}"));
+    (LEAST_PLACES..=MOST_PLACES).map(to_places).find(|[a, b]| a != b).unwrap_or_else(|| to_places(LEAST_PLACES))
 }
 
 pub(super) fn is_alike(trained: &Radar, radar: &Radar) -> bool {
@@ -132,7 +140,8 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<Difference> {
     };
     let quantity = |of: fn(&Radar) -> f64, scale: f64, what: &str| {
         let [a, b] = [trained, radar].map(of);
-        ((a - b).abs() > SAME_QUANTITY * a.abs()).then(|| [a, b].map(|v| format!("{:.4} {what}", v / scale)))
+        ((a - b).abs() > SAME_QUANTITY * a.abs())
+            .then(|| told_apart([a, b].map(|v| v / scale)).map(|v| format!("{v} {what}")))
     };
     let convention = |radar: &Radar| match radar.carrier {
         Carrier::OneWay => "the thesis' convention (one-way carrier)".to_owned(),
@@ -147,9 +156,9 @@ fn differences(trained: &Radar, radar: &Radar) -> Vec<Difference> {
         Some(degrees) => format!("elements of {degrees:.1} degrees"),
     };
     let found = [
-        named(&|radar| format!("{} elements", radar.elements)),
-        named(&|radar| format!("{} elements an end", radar.end_elements)),
-        named(&|radar| format!("{} samples", radar.samples)),
+        named(&|radar| counted(radar.elements, "element", "elements")),
+        named(&|radar| counted(radar.end_elements, "element an end", "elements an end")),
+        named(&|radar| counted(radar.samples, "sample", "samples")),
         quantity(|radar| radar.bandwidth_hz, 1e9, "GHz of bandwidth"),
         quantity(|radar| radar.carrier_hz, 1e9, "GHz of carrier"),
         quantity(|radar| radar.element_spacing_metres, 1e-3, "mm between elements"),
@@ -178,7 +187,8 @@ impl RadarLimits {
                 0.0 => format!("at most {} {what}", most / scale),
                 least => format!("{} to {} {what}", least / scale, most / scale),
             };
-            (!inside).then(|| [trained, format!("{:.4} {what}", found / scale)])
+            let near = if found < least { least } else { most };
+            (!inside).then(|| [trained, format!("{} {what}", told_apart([found, near].map(|v| v / scale))[0])])
         };
         let relative_bandwidth = radar.bandwidth_hz / radar.carrier_hz;
         let relative_spacing = radar.element_spacing_metres / radar.filled_spacing_metres();
@@ -204,31 +214,33 @@ mod tests {
     use super::*;
     use crate::radar::LinkBudget;
 
-    fn refused(domain: &Domain, radar: &Radar) -> Option<String> {
-        domain.check("live", radar).err().map(|e| e.to_string())
-    }
-
-    fn thesis() -> Domain {
-        Domain::Radar(Box::default())
+    /// The refusal of a network that was trained for table 3.1.
+    fn refused(radar: &Radar) -> Option<String> {
+        Domain::Radar(Box::default()).check("live", radar).err().map(|e| e.to_string())
     }
 
     #[test]
     fn a_louder_radar_is_no_other_radar() {
-        assert_eq!(refused(&thesis(), &Radar { transmit_power_watts: 7.0, ..Radar::default() }), None);
+        assert_eq!(refused(&Radar { transmit_power_watts: 7.0, ..Radar::default() }), None);
         let budget = Radar { chirp_seconds: 1e-3, budget: Some(LinkBudget::default()), ..Radar::default() };
-        assert_eq!(refused(&thesis(), &budget), None);
+        assert_eq!(refused(&budget), None);
     }
 
     #[test]
     fn what_differs_from_a_radar_is_named() {
-        let told = refused(&thesis(), &Radar { elements: 512, carrier: Carrier::TwoWay, ..Radar::default() }).unwrap();
+        let told = refused(&Radar { elements: 512, carrier: Carrier::TwoWay, ..Radar::default() }).unwrap();
         let expected = "trained for 1024 elements, the thesis' convention (one-way carrier); this radar has 512 elements, \
                         the physical convention (two-way carrier)";
         assert!(told.contains(expected), "{told}");
         let narrow = LinkBudget { half_power_width_degrees: Some(60.0), ..LinkBudget::default() };
-        let told = refused(&thesis(), &Radar { budget: Some(narrow), ..Radar::default() }).unwrap();
+        let told = refused(&Radar { budget: Some(narrow), ..Radar::default() }).unwrap();
         assert!(told.contains("isotropic elements; this radar has elements of 60.0 degrees"), "{told}");
-        let told = refused(&thesis(), &Radar { carrier_hz: 76e9, ..Radar::default() }).unwrap();
+        let told = refused(&Radar { carrier_hz: 76e9, ..Radar::default() }).unwrap();
         assert!(told.contains("77.0000 GHz of carrier; this radar has 76.0000 GHz"), "{told}");
+        let spaced = Radar { element_spacing_metres: 0.001_946_7, ..Radar::default() };
+        let told = refused(&spaced).unwrap();
+        assert!(told.ends_with("1.946704 mm between elements; this radar has 1.946700 mm between elements"), "{told}");
+        let told = refused(&Radar { samples: 1, ..Radar::default() }).unwrap();
+        assert!(told.ends_with("trained for 512 samples; this radar has 1 sample"), "{told}");
     }
 }

@@ -7,7 +7,6 @@ use crate::scene::generate::{Generator, Kind};
 use crate::signal::{Floor, simulate};
 
 /// Input and target of scene `number` of a kind over the thesis' floor.
-///
 /// # Errors
 /// [`TrainError`] when the scene can't be simulated or the network can't use its samples.
 pub(super) fn lesson<S: TrainableNetwork>(

@@ -68,8 +68,7 @@ pub fn live() -> Option<LiveMethod> {
     Some(live.with_other_radars(files.flatten().collect()))
 }
 
-/// Name of the live network with the weights of the file at `path`, beside the shipped ones: "live-" and the file's name without its ending, at
-/// most 40 characters.
+/// Name of the live network with the weights of the file at `path`: "live-" and the file's name without its ending, at most 40 characters.
 pub fn name_of_weights(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let plain: String =

@@ -135,7 +135,6 @@ type Check<'a> = (bool, &'static str, &'a dyn Display, &'static str);
 
 impl Recipe {
     /// Reads and checks a recipe; messages call it `name`.
-    ///
     /// # Errors
     /// [`RecipeError`] names the fault and its place.
     pub fn parse(name: &str, text: &str) -> Result<Recipe, RecipeError> {

@@ -48,7 +48,6 @@ impl ThesisConfig {
     pub const MAX_LEVELS: usize = 8;
 
     /// Checks that maps of `radar` can be halved `levels` times.
-    ///
     /// # Errors
     /// [`ReconstructError::Unusable`] where the numbers of samples or elements are no multiples of `2^levels`.
     pub(super) fn check(&self, radar: &Radar) -> Result<(), ReconstructError> {
@@ -99,8 +98,7 @@ struct Up {
     upconv: Vec<UpStage>,
 }
 
-/// The thesis' network, from `[batch, 4, range bins, columns]` to Lambda, `[batch, 1, range bins, columns]`. The input is that of
-/// [`mag_phase`].
+/// The thesis' network, from [`mag_phase`]'s `[batch, 4, range bins, columns]` to Lambda, `[batch, 1, range bins, columns]`.
 #[derive(Module, Debug)]
 pub struct Thesis {
     down: Down,
@@ -167,7 +165,6 @@ impl TrainableNetwork for Thesis {
 
 impl Thesis {
     /// Width and depth of the network whose weights are in `file`.
-    ///
     /// # Errors
     /// [`WeightsError`] when the first convolution is missing or has more than [`ThesisConfig::MAX_FILTERS`] filters.
     pub fn config_of(file: &WeightFile) -> Result<ThesisConfig, WeightsError> {
@@ -187,7 +184,6 @@ impl Thesis {
     }
 
     /// A network with the weights of `file`: a file of this crate, or the author's `MultiFilter.state_dict()`.
-    ///
     /// # Errors
     /// [`WeightsError`] when a tensor is missing or has another shape than `config` expects.
     pub fn load(file: &WeightFile, config: &ThesisConfig, device: &Device) -> Result<Self, WeightsError> {
@@ -198,7 +194,6 @@ impl Thesis {
     }
 
     /// The bytes of `file`, with this crate's tensor names in place of those of the author's PyTorch program.
-    ///
     /// # Errors
     /// [`WeightsError`] if the header can't be written again.
     pub(super) fn in_our_names(file: &WeightFile) -> Result<Vec<u8>, WeightsError> {

@@ -89,7 +89,6 @@ impl Network {
 impl ThesisMethod {
     /// The network with the weights of `file`, whose tensors decide its width and depth: computed by an engine of its own, or by burn where
     /// `backend` is not the default one.
-    ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(
@@ -110,7 +109,6 @@ impl ThesisMethod {
     }
 
     /// The U-Net of the shipped architecture with the weights of `file`, computed by `backend`.
-    ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn unet(file: WeightFile, backend: Backend) -> Result<Self, WeightsError> {

@@ -21,7 +21,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Trains by `recipe` until the recipe or a limit of `run` ends it. `resume` continues from the folder's checkpoint; `watch` is called after every step.
-///
 /// # Errors
 /// [`TrainError`].
 pub fn train<S: TrainableNetwork>(
@@ -158,17 +157,14 @@ pub(super) mod tests {
     pub fn recipe() -> (Recipe, ThesisConfig) {
         let config = ThesisConfig { filters: 2, levels: 2, alive_output: false };
         let recipe = Recipe {
-            name: "tiny".into(),
-            description: String::new(),
             seed: 5,
             epochs: 2,
             batch: 2,
-            loss: crate::network::losses::TrainingLoss::MeanSquare,
             validation_scenes: 1,
             network: Network::Thesis(config),
-            optimizer: Optimizer::Sgd { learning_rate: 0.1, momentum: 0.9 },
             decay: Some(Decay { epochs: 1, factor: 0.5 }),
             scenes: vec![KindShare { kind: Kind::Points(2), count: 6 }],
+            ..Recipe::shipped("experiment-1").unwrap().unwrap()
         };
         (recipe, config)
     }

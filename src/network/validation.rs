@@ -72,7 +72,6 @@ pub fn validate<S: TrainableNetwork>(
 }
 
 /// Writes `weights.safetensors`, with its record, into the run's folder.
-///
 /// # Errors
 /// [`TrainError::Checkpoint`] when it can't be written.
 pub fn export<S: TrainableNetwork>(

@@ -46,7 +46,6 @@ impl Provenance {
     }
 
     /// The radars of the training scenes: those of the entry [`DOMAIN_ENTRY`], else that of [`RADAR_ENTRY`], else table 3.1's.
-    ///
     /// # Errors
     /// [`WeightsError`] where an entry of the file `name` can't be read.
     pub fn domain(&self, name: &str) -> Result<Domain, WeightsError> {
@@ -104,7 +103,6 @@ pub struct WeightFile<'a> {
 
 impl<'a> WeightFile<'a> {
     /// Reads the header of the file called `name` and checks its length.
-    ///
     /// # Errors
     /// [`WeightsError`] when it isn't safetensors or is cut short.
     pub fn parse(name: &str, bytes: &'a [u8]) -> Result<Self, WeightsError> {
@@ -165,7 +163,6 @@ impl<'a> WeightFile<'a> {
     }
 
     /// Checks that `known` accepts every tensor of the file.
-    ///
     /// # Errors
     /// [`WeightsError`] names the first that it doesn't accept.
     #[cfg(feature = "network")]
@@ -185,7 +182,6 @@ impl<'a> WeightFile<'a> {
     }
 
     /// The file with other tensor names.
-    ///
     /// # Errors
     /// [`WeightsError`] if the header can't be written again.
     pub fn renamed(&self, rename: impl Fn(&str) -> String) -> Result<Vec<u8>, WeightsError> {

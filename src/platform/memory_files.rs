@@ -50,18 +50,12 @@ pub fn remove_file(path: &Path) -> io::Result<()> {
     tree().files.remove(path).map(|_| ()).ok_or_else(|| missing(path))
 }
 
-/// Makes a folder.
-///
-/// # Errors
-/// None.
+/// Makes a folder; never an error.
 pub fn create_dir(path: &Path) -> io::Result<()> {
     create_dir_all(path)
 }
 
-/// Makes a folder and those above it.
-///
-/// # Errors
-/// None.
+/// Makes a folder and those above it; never an error.
 pub fn create_dir_all(path: &Path) -> io::Result<()> {
     tree().folders.extend(path.ancestors().map(Path::to_path_buf));
     Ok(())
@@ -162,10 +156,7 @@ impl File {
         tree().files.get(path).map(|bytes| File(Cursor::new(bytes.clone()))).ok_or_else(|| missing(path))
     }
 
-    /// Kind and length of the file.
-    ///
-    /// # Errors
-    /// None.
+    /// Kind and length of the file; never an error.
     pub fn metadata(&self) -> io::Result<Metadata> {
         Ok(Metadata { bytes: Some(self.0.get_ref().len() as u64) })
     }

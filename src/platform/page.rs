@@ -97,10 +97,7 @@ pub mod fs {
     pub struct Draft(Cursor<Vec<u8>>);
 
     impl Draft {
-        /// Begins a file that will replace another.
-        ///
-        /// # Errors
-        /// None on a page.
+        /// Begins a file that will replace another; never an error on a page.
         pub fn begin(_folder: &Path, _path: &Path) -> io::Result<Draft> {
             Ok(Draft(Cursor::default()))
         }
@@ -168,9 +165,6 @@ pub mod fs {
 }
 
 /// Opens the browser's dialog for a file to read. A file to write is a download, whose name is the answer at once.
-///
-/// # Errors
-/// None on a page.
 #[cfg(feature = "app")]
 pub fn choose_file(
     question: super::FileQuestion,

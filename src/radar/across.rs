@@ -22,8 +22,7 @@ impl Radar {
         self.carrier.turns_per_wavelength() > 0.0
     }
 
-    /// Horizontal place of the middle of column `k2` (fractional), as a fraction of the map's width from its left edge; a column beyond an edge
-    /// comes in at the other.
+    /// Place of the middle of column `k2` (fractional) as a fraction of the map's width from its left edge; columns wrap around.
     pub fn across_of_column(&self, k2: f64) -> f64 {
         let from_first = (k2 + self.middle_of_first_column()) / self.elements as f64;
         (if self.columns_fall() { 1.0 - from_first } else { from_first }).rem_euclid(1.0)

@@ -149,8 +149,7 @@ impl Antennas {
         })
     }
 
-    /// Receivers two spacings apart and transmitters a whole row of receivers apart, so that the pairs make one line of
-    /// `transmitters * receivers` elements.
+    /// One line of `transmitters * receivers` elements: receivers two spacings apart, transmitters a whole row of receivers apart.
     /// # Errors
     /// The fault, where that is no array.
     pub fn filled(transmitters: usize, receivers: usize, spacing_metres: f64) -> Result<Self, String> {
@@ -216,7 +215,6 @@ impl Antennas {
         Antennas { pairs: self.pairs.iter().rev().copied().collect(), ..self.scaled(-1.0) }
     }
 
-    /// The same antennas, all places along the line `factor` times as far.
     fn scaled(&self, factor: f64) -> Self {
         let scaled = |places: &[f64]| places.iter().map(|x| x * factor).collect();
         Antennas {
@@ -343,9 +341,8 @@ mod tests {
         let told = |t: &[f64], r: &[f64]| Antennas::new(t, r).unwrap_err().to_string();
         assert!(told(&[], &[1.0]).contains("transmitter_x_metres has no numbers"));
         assert!(told(&[0.0], &[f64::NAN]).contains("receiver_x_metres has NaN"));
-        assert!(
-            told(&[0.0, 1e308], &[0.0, 1e308]).contains("transmitter_x_metres has 1e308; expected numbers from -1e12")
-        );
+        let huge = "transmitter_x_metres has 1e308; expected numbers from -1e12";
+        assert!(told(&[0.0, 1e308], &[0.0, 1e308]).contains(huge));
         assert!(told(&[0.0], &[0.5]).contains("make 1 elements; expected 2 to 65536"));
         let uneven = told(&[0.0, 1.0], &[0.0, 0.2, 0.437]);
         assert!(uneven.contains("off the even line"), "{uneven}");

@@ -206,8 +206,7 @@ impl Radar {
         gain(&self.window.weights(elements))
     }
 
-    /// The echo of an object at a range, in a direction given by the cosine of its angle off broadside. The loss between two cells is left out, and
-    /// so is the loss of a map that doesn't focus nearer than the far field.
+    /// The echo of an object at a range and an angle off broadside (cosine). Losses between cells, and of near-field maps without focus, are left out.
     pub fn link(&self, cross_section_dbsm: f64, range_metres: f64, cos_off_broadside: f64) -> LinkFigures {
         let pattern = self.pattern().map_or(0.0, |p| 40.0 * p.amplitude(cos_off_broadside).log10());
         let received = DecibelMilliwatts(self.received(cross_section_dbsm, range_metres).0 + pattern);
@@ -292,16 +291,14 @@ mod tests {
     #[test]
     fn bad_numbers_are_told_with_what_is_allowed() {
         let usual = LinkBudget::default();
+        let wide = |degrees| LinkBudget { half_power_width_degrees: Some(degrees), ..usual };
         for (budget, told) in [
             (LinkBudget { noise_figure_db: -3.0, ..usual }, "radar.budget.noise_figure_db is -3; expected 0 to 100 dB"),
             (LinkBudget { antenna_gain_dbi: f64::NAN, ..usual }, "antenna_gain_dbi is NaN; expected -50 to 100 dBi"),
             (LinkBudget { transmit_power_dbm: 151.0, ..usual }, "expected -100 to 150 dBm"),
-            (LinkBudget { half_power_width_degrees: Some(0.0), ..usual }, "is 0; expected 0.001 to below 180"),
-            (
-                LinkBudget { half_power_width_degrees: Some(1e-9), ..usual },
-                "is 0.000000001; expected 0.001 to below 180",
-            ),
-            (LinkBudget { half_power_width_degrees: Some(180.5), ..usual }, "is 180.5; expected 0.001 to below 180"),
+            (wide(0.0), "is 0; expected 0.001 to below 180"),
+            (wide(1e-9), "is 0.000000001; expected 0.001 to below 180"),
+            (wide(180.5), "is 180.5; expected 0.001 to below 180"),
         ] {
             let error = radar(budget).validate().unwrap_err();
             assert!(error.to_string().contains(told) && error.field() == "budget", "{error}");

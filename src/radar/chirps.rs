@@ -30,8 +30,7 @@ impl Radar {
         2.0 * self.unambiguous_velocity_metres_per_second() / self.chirps as f64
     }
 
-    /// The velocity that a range-Doppler map shows in the place of a radial velocity: the same where it is unambiguous, else the one
-    /// that many times [`Radar::unambiguous_velocity_metres_per_second`] away, from minus it up to but not including it.
+    /// The velocity at which a range-Doppler map shows a radial velocity: folded into -v up to but not including v, the unambiguous one.
     pub fn apparent_velocity_metres_per_second(&self, velocity_metres_per_second: f64) -> f64 {
         let most = self.unambiguous_velocity_metres_per_second();
         (velocity_metres_per_second + most).rem_euclid(2.0 * most) - most

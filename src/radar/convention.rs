@@ -19,8 +19,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Convention {
-    /// The thesis': carrier one way with minus, beat both ways with plus. It reproduces the thesis' tables. But for the mixer's sign it is
-    /// the physical one at half the carrier, 38.5 GHz for table 3.1, with a chirp that falls.
+    /// The thesis': carrier one way with minus, beat both ways with plus. It reproduces the thesis' tables.
     Thesis,
     /// The physical one, for a chirp that rises from the carrier: carrier and beat both ways with one sign.
     Physical,

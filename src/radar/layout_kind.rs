@@ -47,7 +47,6 @@ pub enum LayoutKind {
 /// Most transmitters or receivers that a name may ask for.
 const MAX_CHANNELS: usize = 64;
 
-/// Most elements that a list may name.
 const MAX_LISTED_ELEMENTS: usize = 65_536;
 
 impl LayoutKind {

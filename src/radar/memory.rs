@@ -5,15 +5,13 @@ use super::{Bytes, Radar, RadarError};
 /// Most bytes of memory that the signal and the maps of one radar may ask for: 4 GiB, some 17 million cells.
 pub const MAX_MEMORY_BYTES: u64 = 4 << 30;
 
-/// Peak bytes per cell of a map (element x sample): complex f64 signal, profiles, complex maps of the array and of both ends, decades, Lambda,
-/// and the work space of the method with the largest.
+/// Peak bytes per cell of a map (element x sample): complex f64 signal, profiles and maps, decades, Lambda, and the largest method's work space.
 const BYTES_PER_CELL: u64 = 256;
 
 /// Bytes for each pair of elements of an end: methods that whiten or look for subspaces hold complex matrices of that size.
 const BYTES_PER_END_PAIR: u64 = 256;
 
-/// Bytes for each sample of each chirp, where there are several: the complex samples of the 8 elements that a range-Doppler map is
-/// made of, their profiles, and the map.
+/// Bytes for each sample of each of several chirps: the complex samples of a range-Doppler map's 8 elements, their profiles, and the map.
 const BYTES_PER_CHIRP_SAMPLE: u64 = 18 * 16;
 
 impl Radar {
@@ -22,8 +20,7 @@ impl Radar {
         if self.chirps > 1 { all(self.chirps) } else { 0 }
     }
 
-    /// Upper bound on the bytes for signal and maps of this radar, in any command or method but networks. `tests/library/memory.rs` checks
-    /// every method.
+    /// Upper bound on the bytes for signal and maps of this radar, in any command or method but networks (`tests/library/memory.rs`).
     pub fn memory_bytes(&self) -> u64 {
         let [elements, samples, end] = [self.elements, self.samples, self.end_elements].map(|n| n as u64);
         let cells = elements.saturating_mul(samples).saturating_mul(BYTES_PER_CELL);

@@ -46,6 +46,12 @@ pub const CHIRP_SECONDS: f64 = 25.6e-6;
 /// Range of each constant of a radar, in its unit: products and squares stay finite, so that no sample is NaN.
 const CONSTANT_RANGE: RangeInclusive<f64> = 1e-30..=1e30;
 
+/// Least carrier, hertz: a smaller number is meant in another unit.
+const MIN_CARRIER_HZ: f64 = 1e6;
+
+/// Most bandwidth over the carrier. Ultra-wideband radars have up to 3, and radars that look into the ground up to 6.
+const MAX_RELATIVE_BANDWIDTH: f64 = 10.0;
+
 /// Most chirps that a radar may send one after another.
 pub const MAX_CHIRPS: usize = 4096;
 
@@ -53,12 +59,10 @@ pub const MAX_CHIRPS: usize = 4096;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Carrier {
-    /// `exp(-j 2 pi R / lambda)`: the thesis' convention, unambiguous over all of cos(theta) with half-wavelength spacing. It reproduces
-    /// the thesis' tables. The samples are those of a physical radar of half the carrier and a falling chirp ([`Convention::Thesis`]).
+    /// `exp(-j 2 pi R / lambda)`: that of [`Convention::Thesis`], unambiguous over all of cos(theta) with half-wavelength spacing.
     #[default]
     OneWay,
-    /// `exp(+j 4 pi R / lambda)`, as equation 3.1 is printed: carrier and beat count the same path with the same sign. With
-    /// half-wavelength spacing every column then stands for two directions.
+    /// `exp(+j 4 pi R / lambda)`, equation 3.1 as printed: carrier and beat with one sign. At half-wavelength spacing two directions share a column.
     TwoWay,
 }
 
@@ -121,11 +125,9 @@ pub struct Radar {
     pub carrier: Carrier,
     /// Weights of the samples and of the elements in the two transforms that make a map.
     pub window: WindowFunction,
-    /// Transmitters apart from receivers; `None` where every element sends and hears by itself. Set by [`Radar::with_antennas`], which
-    /// keeps elements and spacing those of the pairs.
+    /// Transmitters apart from receivers, else `None`: set by [`Radar::with_antennas`], which keeps elements and spacing those of the pairs.
     pub antennas: Option<Antennas>,
-    /// Whether maps bring elements that stand off the array's line into phase towards the direction of each column ([`crate::maps::focus`]);
-    /// else they take each for the nearest place on the line. No sample depends on it.
+    /// Whether maps, not samples, focus elements off the line towards each column's direction ([`crate::maps::focus`]); else they count as on it.
     pub focus_off_line: bool,
     /// Chirps that are sent one after another: 1 as in the thesis. A map of ranges and directions is made of the first.
     pub chirps: usize,
@@ -153,7 +155,7 @@ impl RadarError {
 impl Radar {
     /// Checks every field.
     /// # Errors
-    /// [`RadarError`] names the first field that is not from 1e-30 to 1e30, or a count out of range
+    /// [`RadarError`] names the first field that is not from 1e-30 to 1e30, a carrier below 1 MHz, more bandwidth than ten carriers, or a count out of range
     /// (1 to 65536 samples, 2 to 65536 elements, each end between 1 element and half the array, 1 to 4096 chirps), elements or a spacing
     /// other than those that the pairs of antennas make, a budget that can't be, or counts that together ask for more than
     /// [`MAX_MEMORY_BYTES`].
@@ -172,6 +174,7 @@ impl Radar {
                 return Err(RadarError { field, told });
             }
         }
+        self.check_frequencies()?;
         for (field, value, min, max) in [
             ("samples", self.samples, 1, 65536),
             ("elements", self.elements, 2, 65536),
@@ -193,6 +196,22 @@ impl Radar {
         self.check_memory()
     }
 
+    fn check_frequencies(&self) -> Result<(), RadarError> {
+        let Radar { carrier_hz, bandwidth_hz, .. } = *self;
+        if carrier_hz < MIN_CARRIER_HZ {
+            let told = format!(" is {carrier_hz:?}; it must be at least {MIN_CARRIER_HZ:e}, in hertz: 77 GHz is 77e9");
+            return Err(RadarError { field: "carrier_hz", told });
+        }
+        // A snapshot has no bandwidth.
+        if self.samples > 1 && bandwidth_hz > MAX_RELATIVE_BANDWIDTH * carrier_hz {
+            let told = format!(
+                " is {bandwidth_hz:?}; it must be at most {MAX_RELATIVE_BANDWIDTH} times carrier_hz, which is {carrier_hz:?}: both are in hertz"
+            );
+            return Err(RadarError { field: "bandwidth_hz", told });
+        }
+        Ok(())
+    }
+
     fn check_pairs(&self) -> Result<(), RadarError> {
         let Some(antennas) = &self.antennas else { return Ok(()) };
         let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
@@ -209,8 +228,7 @@ impl Radar {
         Ok(())
     }
 
-    /// Most elements of an end: half of all. Of three elements the middle one may be in both ends, since the outer two alone fold
-    /// directions.
+    /// Most elements of an end: half of all. Of three the middle one may be in both, since the outer two alone fold directions.
     pub fn most_end_elements(&self) -> usize {
         if self.elements == 3 { 2 } else { self.elements / 2 }
     }
@@ -272,10 +290,22 @@ mod tests {
             (Radar { carrier_hz: 1e-308, ..usual.clone() }, "radar.carrier_hz is 1e-308"),
             (Radar { bandwidth_hz: 1e308, ..usual.clone() }, "from 1e-30 to 1e30"),
             (Radar { transmit_power_watts: f64::INFINITY, ..usual.clone() }, "transmit_power_watts is inf"),
+            (Radar { carrier_hz: 77.0, ..usual.clone() }, "carrier_hz is 77.0; it must be at least 1e6, in hertz"),
+            (Radar { bandwidth_hz: 1e12, ..usual.clone() }, "at most 10 times carrier_hz, which is 77000000000.0"),
             (Radar { element_spacing_metres: 1e300, ..usual }, "element_spacing_metres is 1e300"),
         ] {
             let told = radar.validate().unwrap_err().to_string();
             assert!(told.contains(part), "{told}");
+        }
+    }
+
+    #[test]
+    fn wide_bands_and_low_carriers_are_allowed() {
+        for (carrier_hz, bandwidth_hz, samples) in
+            [(3.1e9, 7.5e9, 512), (5e8, 2.5e9, 512), (1e6, 1e6, 64), (4e7, 2e9, 1)]
+        {
+            let radar = Radar { carrier_hz, bandwidth_hz, samples, ..Radar::default() };
+            assert_eq!(radar.validate(), Ok(()), "{carrier_hz} Hz, {bandwidth_hz} Hz");
         }
     }
 }

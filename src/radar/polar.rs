@@ -31,8 +31,7 @@ impl Radar {
 
     /// cos(theta) at column `k2` of a map: `(k2 - N_a/2) / (N_a/2)` for half-wavelength spacing and the one-way carrier.
     ///
-    /// For the two-way carrier this is one of the directions the column stands for, and it falls from column to column
-    /// ([`Radar::columns_fall`]).
+    /// For the two-way carrier this is one of several directions of the column, and falls from column to column ([`Radar::columns_fall`]).
     pub fn cos_of_column(&self, k2: f64) -> f64 {
         (k2 - (self.elements / 2) as f64) * self.cos_per_column()
     }

@@ -210,18 +210,13 @@ mod tests {
         assert_eq!(read(&toml::to_string(&bent).unwrap()).unwrap(), bent);
         let straight = toml::to_string(&read(x).unwrap()).unwrap();
         assert!(!straight.contains("_y_metres") && !straight.contains("focus"), "older programs read it: {straight}");
-        for (text, told) in [
-            (format!("{x}receiver_y_metres = [0.1]"), "radar: receiver_y_metres has 1 numbers; expected 4"),
-            (
-                format!("{x}transmitter_y_metres = [0, 0, 7]"),
-                "radar: number 3 of transmitter_y_metres is 7; expected at most 1 m",
-            ),
-            (
-                "receiver_y_metres = [0.1]".to_owned(),
-                "radar.receiver_y_metres is there without radar.receiver_x_metres",
-            ),
+        let far = "radar: number 3 of transmitter_y_metres is 7; expected at most 1 m";
+        for (x, y, told) in [
+            (x, "receiver_y_metres = [0.1]", "radar: receiver_y_metres has 1 numbers; expected 4"),
+            (x, "transmitter_y_metres = [0, 0, 7]", far),
+            ("", "receiver_y_metres = [0.1]", "radar.receiver_y_metres is there without radar.receiver_x_metres"),
         ] {
-            let error = read(&text).unwrap_err();
+            let error = read(&format!("{x}{y}")).unwrap_err();
             assert!(error.contains(told), "{error}");
         }
     }

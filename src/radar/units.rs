@@ -86,7 +86,6 @@ mod tests {
     fn one_is_no_plural() {
         let told = [0u32, 1, 2].map(|n| counted(n, "step", "steps"));
         assert_eq!(told, ["0 steps", "1 step", "2 steps"]);
-        assert_eq!(counted(1usize, "try", "tries"), "1 try");
     }
 
     #[test]

@@ -45,8 +45,7 @@ impl WindowFunction {
         }
     }
 
-    /// The window for `len` points: `self` from three points on. One point or none has no weights, as in NumPy's windows, and neither have two, of
-    /// which most windows would leave nothing.
+    /// The window for `len` points: `self` from three points on. Fewer have no weights, one as in NumPy, two since most windows would leave nothing.
     pub fn for_points(self, len: usize) -> WindowFunction {
         if len < 3 { WindowFunction::Rectangular } else { self }
     }
@@ -62,9 +61,7 @@ impl WindowFunction {
     }
 }
 
-/// Symmetric Hann window of `len` points, `0.5 - 0.5 cos(2 pi n / (len - 1))`: zero at both ends (thesis section 3.1).
-///
-/// Two points or fewer give ones.
+/// Symmetric Hann window of `len` points, `0.5 - 0.5 cos(2 pi n / (len - 1))`: zero at both ends (thesis section 3.1); ones up to two points.
 pub fn hann(len: usize) -> Vec<f64> {
     WindowFunction::Hann.weights(len)
 }

@@ -16,11 +16,9 @@ pub struct Request {
     pub noise: NoisePrior,
     /// Normalisation of the map, that of the map it is compared with.
     pub normalisation: Normalisation,
-    /// Distance of the echoes of a single sample, metres, if it is known: one sample has no ranges of its own. The echoes count as plane waves
-    /// all the same. Chirps of several samples have ranges.
+    /// Distance of the echoes of a single sample, metres, if it is known: one sample has no ranges. The echoes still count as plane waves.
     pub snapshot_range_metres: Option<f64>,
-    /// Whether a method with a memory ([`Reconstructor::following`](super::Reconstructor::following)) may start from its last answer,
-    /// as while something is dragged.
+    /// Whether a method with a memory ([`Reconstructor::following`](super::Reconstructor::following)) may start from its last answer, as in a drag.
     pub may_follow: bool,
     /// Samples of another layout than the two ends, for methods that use them ([`Reconstructor::layout_support`](super::Reconstructor::layout_support)).
     pub layout_samples: Option<Arc<LayoutSamples>>,
@@ -60,10 +58,8 @@ pub struct Reconstruction {
     pub confidences: Vec<f64>,
     /// The threshold for this answer, where the method derives one from its own estimate.
     pub eta: Option<f32>,
-    /// Lambda that noise alone does not exceed in this map, where the method knows it: no threshold lies lower. [`reconstruct`] has already
-    /// raised `eta` to it.
-    ///
-    /// [`reconstruct`]: super::Reconstructor::reconstruct
+    /// Lambda that noise alone does not exceed in this map, where the method knows it: no threshold lies lower.
+    /// [`reconstruct`](super::Reconstructor::reconstruct) has already raised `eta` to it.
     pub least_eta: Option<f32>,
     /// The method's estimate of its map's error, `[range bins, columns]`: nine of ten cells are no farther than this from the true Lambda, on
     /// scenes and over noise like those of its training. `None` for methods without such an estimate.
@@ -149,8 +145,8 @@ mod tests {
     #[test]
     fn detections_are_measured_from_the_centre() {
         let radar = Radar::default();
-        let reflector = |x_metres, y_metres, reflectivity| Reflector { x_metres, y_metres, reflectivity };
-        let reflectors = vec![reflector(0.0, 20.0, -2.0), reflector(6.0, 8.0, 1.0), reflector(1.0, 1.0, 0.0)];
+        let at = Reflector::at;
+        let reflectors = vec![at([0.0, 20.0], -2.0), at([6.0, 8.0], 1.0), at([1.0, 1.0], 0.0)];
         let confidences = vec![0.25, 0.75, 1.0];
         let detections =
             Reconstruction { reflectors, confidences, ..Reconstruction::silence(&radar) }.detections(&radar);
@@ -165,8 +161,7 @@ mod tests {
     #[test]
     fn ranges_beyond_the_axis_wrap_as_the_map_does() {
         let radar = Radar::default();
-        let y_metres = radar.max_range_metres() + 1.5;
-        let reflectors = vec![Reflector { x_metres: 0.0, y_metres, reflectivity: 1.0 }];
+        let reflectors = vec![Reflector::at([0.0, radar.max_range_metres() + 1.5], 1.0)];
         let found = Reconstruction { reflectors, ..Reconstruction::silence(&radar) }.detections(&radar);
         assert!((found[0].range_metres - 1.5).abs() < 1e-9, "{found:?}");
     }
@@ -174,11 +169,10 @@ mod tests {
     #[test]
     fn what_moves_nearer_sounds_the_same() {
         let radar = Radar::default();
-        let reflectors = vec![Reflector { x_metres: 600.0, y_metres: 800.0, reflectivity: 4.0 }];
+        let reflectors = vec![Reflector::at([600.0, 800.0], 4.0)];
         let found = Reconstruction { reflectors, ..Reconstruction::silence(&radar) }.moved_to(10.0);
         let [r] = found.reflectors[..] else { panic!("{found:?}") };
-        let expected = (6.0, 8.0, 4e-4);
-        let off = [(r.x_metres, expected.0), (r.y_metres, expected.1), (r.reflectivity, expected.2)];
+        let off = [(r.x_metres, 6.0), (r.y_metres, 8.0), (r.reflectivity, 4e-4)];
         assert!(off.iter().all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{r:?}");
     }
 }

@@ -18,8 +18,7 @@ const MAP_RANGE: Decibels = Decibels(60.0);
 
 const MAX_LISTED_PEAKS: usize = 256;
 
-/// Most elements of an array whose columns are so wide that the fringes between its two ends fall between them: a peak's direction is then
-/// searched between the columns.
+/// Most elements of an array with columns wider than the fringes between its ends: a peak's direction is then searched between the columns.
 pub const MAX_COARSE_ELEMENTS: usize = 128;
 
 /// Distance within which peaks of one range bin are one, as a part of a column.

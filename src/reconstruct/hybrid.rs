@@ -15,8 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Hybrid {
     network: Arc<dyn Reconstructor>,
     settings: Settings,
-    /// The last result, for a method that may start from it. The results agree with those from scratch within the floor, but their last digits depend on
-    /// the samples before: printed figures are from scratch.
+    /// The last result, for a method that starts from it. The last digits then depend on the samples before: printed figures are from scratch.
     last: Option<Arc<Mutex<LastFound>>>,
 }
 

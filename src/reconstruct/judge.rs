@@ -14,8 +14,7 @@ use rayon::prelude::*;
 /// residual of a tenth of the power changes the cell by half a decibel.
 const RESIDUAL_DECADES: [f32; 2] = [-3.0, -1.0];
 
-/// Shift of [`RESIDUAL_DECADES`], decades of power, where a dynamic range cuts off the dark cells. In bright cells the network draws narrow lobes
-/// too dark.
+/// Shift of [`RESIDUAL_DECADES`] where a dynamic range cuts off the dark cells: in bright ones the network draws narrow lobes too dark.
 const BRIGHT_SHIFT_DECADES: f32 = 3.0;
 
 /// Bounds of the part of the shown cells that have more residual than drawn power, 0 to 1. Between them the weight of the search's map falls to
@@ -82,7 +81,6 @@ pub fn network_weight(
 
 /// Stretches two maps of one scene, `[range bins, columns]`, to one scale of Lambda, the geometric mean of their scales. The peaks stay at 1.
 /// Returns the thresholds `etas` on that scale.
-///
 /// Under min-max over noise, the smallest of all cells sets the scale by chance. The mean of the two scales has a smaller error than either.
 pub fn stretch_to_common_scale(maps: [&mut RangeAngleMap; 2], etas: [f32; 2]) -> [f32; 2] {
     let depths = maps[0].lambda.iter().zip(&maps[1].lambda).map(|(a, b)| [1.0 - f64::from(*a), 1.0 - f64::from(*b)]);
@@ -102,8 +100,7 @@ fn ramp([low, high]: [f32; 2], value: f32) -> f32 {
     ((value - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-/// Moving mean over the cells within [`MEAN_SIDE_CELLS`] of each cell, `[range bins, columns]`. Beyond its edges the map continues with the edge
-/// cells.
+/// Moving mean over the cells within [`MEAN_SIDE_CELLS`], `[range bins, columns]`. Beyond its edges the map continues with the edge cells.
 fn moving_mean(cells: &Array2<f32>) -> Array2<f32> {
     let [rows, columns] = MEAN_SIDE_CELLS;
     let mut along = cells.clone();
@@ -151,30 +148,28 @@ mod tests {
         RangeAngleMap { lambda: Array2::from_elem((40, 60), value) }
     }
 
-    fn weight(drawn: f32, network: f32, doubt: f32, left: f32) -> f32 {
+    fn weight([drawn, network, doubt, left]: [f32; 4], shown_part: f32, is_hidden: bool) -> f32 {
         let left = Array2::from_elem((40, 60), left);
-        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left, 1.0, false)[[20, 30]]
+        network_weight(&flat(drawn), &flat(network), Some(&flat(doubt)), &left, shown_part, is_hidden)[[20, 30]]
     }
 
     #[test]
     fn the_search_has_all_weight_where_no_residual_is_left() {
-        assert_eq!(weight(0.2, 0.6, 0.01, -4.0), 0.0);
+        assert_eq!(weight([0.2, 0.6, 0.01, -4.0], 1.0, false), 0.0);
     }
 
     #[test]
     fn the_network_has_all_weight_where_the_search_contradicts_it() {
+        let of = |network| weight([0.2, network, 0.1645, -0.5], 1.0, false);
         // Twice the expected error is a square of four.
-        assert_eq!(weight(0.2, 0.4, 0.1645, -0.5), 1.0);
-        assert_eq!(weight(0.2, 0.25, 0.1645, -0.5), AGREED_WEIGHT);
-        let halfway = weight(0.2, 0.2 + 0.1 * 2f32.sqrt(), 0.1645, -0.5);
+        assert_eq!([of(0.4), of(0.25)], [1.0, AGREED_WEIGHT]);
+        let halfway = of(0.2 + 0.1 * 2f32.sqrt());
         assert!((halfway - (1.0 + AGREED_WEIGHT) / 2.0).abs() < 1e-3, "{halfway}");
     }
 
     #[test]
     fn over_noise_a_contradiction_outweighs_a_zero_residual() {
-        let left = Array2::from_elem((40, 60), -9.0);
-        let over_noise =
-            |network| network_weight(&flat(0.2), &flat(network), Some(&flat(0.1645)), &left, 1.0, true)[[20, 30]];
+        let over_noise = |network| weight([0.2, network, 0.1645, -9.0], 1.0, true);
         assert_eq!([over_noise(0.25), over_noise(0.4)], [MIN_UNEXPLAINED_OVER_NOISE * AGREED_WEIGHT, 1.0]);
     }
 
@@ -210,10 +205,7 @@ mod tests {
 
     #[test]
     fn the_search_has_all_weight_in_bright_cells_up_to_the_residual() {
-        let of = |left: f32, part| {
-            let left = Array2::from_elem((40, 60), left);
-            network_weight(&flat(0.9), &flat(0.95), Some(&flat(0.2)), &left, part, false)[[20, 30]]
-        };
+        let of = |left, part| weight([0.9, 0.95, 0.2, left], part, false);
         assert_eq!([of(-0.5, 1.0), of(-0.5, 0.5), of(2.0, 0.5)], [AGREED_WEIGHT, 0.0, AGREED_WEIGHT]);
     }
 

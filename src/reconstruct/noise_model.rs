@@ -28,8 +28,7 @@ impl NoiseModel {
         NoiseModel { expected: f64::INFINITY, known: None }
     }
 
-    /// The model for the samples of `ends`: where the noise is rounding, its expected variance follows from the echoes themselves, even where
-    /// they fill every range bin.
+    /// The model for the samples of `ends`: rounding noise is expected from the echoes themselves, even where they fill every range bin.
     pub fn beneath(radar: &Radar, ends: &TwoEnds, noise: NoisePrior) -> Self {
         if noise.is_white() {
             return NoiseModel { known: noise.variance(), ..NoiseModel::any() };
@@ -82,7 +81,6 @@ mod tests {
     use crate::signal::floor::{snr_noise_variance, thesis_noise_variance};
     use crate::signal::{Floor, simulate};
 
-    /// Lines in nearly every range bin.
     fn lines() -> Scene {
         let line = |x, y, step, count| Object::Line(Line::vertical(x, y, step, count));
         Scene { objects: vec![line(-3.0, 2.0, 0.16, 100), line(6.0, 14.0, 0.2, 110)], ..Scene::default() }

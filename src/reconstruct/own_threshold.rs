@@ -83,14 +83,10 @@ mod tests {
     #[test]
     fn doubt_lowers_it_and_alarms_bound_how_far() {
         // One bright cell in a thousand over a dark map, and cells between.
-        let few = map(|i| {
-            if i % 1000 == 0 {
-                0.95
-            } else if i % 500 == 1 {
-                0.8
-            } else {
-                0.1
-            }
+        let few = map(|i| match i % 1000 {
+            0 => 0.95,
+            1 | 501 => 0.8,
+            _ => 0.1,
         });
         let with = |doubt: f32| own_threshold(&few, Some(&map(|_| doubt)));
         assert_eq!((with(0.0), with(0.05)), (MAX_ETA, 0.85));

@@ -118,16 +118,11 @@ mod tests {
     use crate::radar::Carrier;
 
     #[test]
-    fn the_centre_sees_itself() {
-        let s = polar_from(0.0, 20.0, 0.3);
-        assert!((s.range_metres - 20.0).abs() < 1e-12 && (s.cos_theta - 0.3).abs() < 1e-12);
-    }
-
-    #[test]
-    fn an_end_sees_a_place_from_where_it_is() {
-        // From 3 m to the left, a reflector 4 m ahead of the centre is 5 m away.
-        let s = polar_from(-3.0, 4.0, 0.0);
-        assert!((s.range_metres - 5.0).abs() < 1e-12 && (s.cos_theta - 0.6).abs() < 1e-12);
+    fn a_place_is_seen_from_where_the_end_is() {
+        // The centre sees itself; from 3 m to the left, a reflector 4 m ahead of the centre is 5 m away.
+        for (seen, range, cos) in [(polar_from(0.0, 20.0, 0.3), 20.0, 0.3), (polar_from(-3.0, 4.0, 0.0), 5.0, 0.6)] {
+            assert!((seen.range_metres - range).abs() < 1e-12 && (seen.cos_theta - cos).abs() < 1e-12, "{seen:?}");
+        }
     }
 
     #[test]

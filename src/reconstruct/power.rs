@@ -18,7 +18,6 @@ pub(super) fn focused_gain(radar: &Radar) -> f64 {
 /// smallest of so many noise cells. Without it a method's own dynamic range, which is unrelated to the scene, would decide the squared error.
 /// Lambda 1 is at least the expected largest of so many noise cells: an estimate of zero everywhere is a typical noise cell everywhere, and not
 /// the peak.
-///
 /// Also returns the Lambda that noise alone does not exceed.
 pub(super) fn lambda_of_power(
     radar: &Radar,

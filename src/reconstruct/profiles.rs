@@ -67,8 +67,7 @@ impl Profiles {
         phasor::<T, W, FMA>(metres * Lanes::splat(self.turns_per_metre))
     }
 
-    /// Profile of `channel` at `distance_metres`, linear between rows, without the phase of that distance. It is 1 for a reflector there whose
-    /// samples have amplitude 1.
+    /// Profile of `channel` at `distance_metres`, linear between rows, without that distance's phase: 1 for a reflector there of amplitude 1.
     pub fn at(&self, channel: usize, distance_metres: f64) -> Complex64 {
         let profile = &self.profiles[channel];
         let rows = (profile.len() - 1) as f64;

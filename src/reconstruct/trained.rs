@@ -2,8 +2,7 @@
 
 use crate::radar::Decibels;
 
-/// The noise beneath the scenes of a method's training: the rounding of the thesis' program ([`crate::signal::Floor::Thesis`]), and thermal
-/// noise in some of the scenes.
+/// The noise beneath the scenes of a method's training: the rounding of [`crate::signal::Floor::Thesis`], and thermal noise in some of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TrainedNoise {
     Rounding,

@@ -5,8 +5,7 @@ use crate::radar::Radar;
 use crate::scattering::Sources;
 use crate::signal::Floor;
 
-/// A sentence on the difference between the noise of these sources over `floor` and the noise of the training of `method`; `None` where there is
-/// none, and for methods that weren't trained.
+/// A sentence on the difference between the noise of these sources over `floor` and that of training `method`; `None` without one or training.
 pub fn untrained_noise<'a>(
     method: &dyn Reconstructor,
     radar: &Radar,

@@ -25,8 +25,7 @@ pub(super) fn subtract_mean<D: Dimension>(samples: &mut Array<Complex64, D>) {
     }
 }
 
-/// The analytic signal of real `samples` at `len` samples: the positive half of their spectrum, transformed back. Zeros where `len` is less than half
-/// their number.
+/// The analytic signal of real `samples` at `len` samples, the positive half of their spectrum; zeros where `len` is below half their number.
 pub(super) fn analytic(samples: &[Complex64], len: usize) -> Vec<Complex64> {
     let half = samples.len().div_ceil(2);
     if samples.is_empty() || len < half {

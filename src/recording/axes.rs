@@ -57,9 +57,6 @@ pub enum Join {
 }
 
 /// Selects one frame of `numbers`, the first where `frame` is `None`, and removes the axis of frames from `kinds`.
-///
-/// # Errors
-/// [`Fault`] where `kinds` are not the array's axes, or there is no such frame.
 pub(super) fn frame_of(numbers: Numbers, kinds: &mut Vec<AxisKind>, frame: Option<usize>) -> Result<Numbers, Fault> {
     let Some(place) = kinds.iter().position(|k| *k == AxisKind::Frame) else {
         return match frame {
@@ -82,9 +79,6 @@ pub(super) fn frame_of(numbers: Numbers, kinds: &mut Vec<AxisKind>, frame: Optio
 }
 
 /// Splits the axis of chirps into loops and `transmitters` that send in turn. An axis of elements becomes one of receivers.
-///
-/// # Errors
-/// [`Fault`] without an axis of chirps, with one of transmitters, or where the chirps are no multiple of `transmitters`.
 pub(super) fn split_turns(
     numbers: Numbers,
     kinds: &mut Vec<AxisKind>,
@@ -111,9 +105,6 @@ pub(super) fn split_turns(
 }
 
 /// Sorts `numbers` into `[loops, transmitters, receivers, samples]`. Loops beyond [`MAX_JOINED_NUMBERS`] are left out.
-///
-/// # Errors
-/// [`Fault`] where `kinds` are not the array's axes.
 pub(super) fn into_loops(numbers: Numbers, kinds: &[AxisKind]) -> Result<Array4<Complex64>, Fault> {
     let mut kinds = kinds.to_vec();
     check_kinds(&kinds, numbers.shape())?;
@@ -130,9 +121,6 @@ pub(super) fn into_loops(numbers: Numbers, kinds: &[AxisKind]) -> Result<Array4<
 }
 
 /// Sorts `numbers` into `[elements, samples]`. Real samples become their analytic signal of as many samples, with an empty far half of the range axis.
-///
-/// # Errors
-/// [`Fault`] where `kinds` are not the array's axes, or the array lacks `chirp`.
 pub(super) fn arrange(
     numbers: Numbers,
     kinds: &[AxisKind],
@@ -148,7 +136,6 @@ pub(super) fn arrange(
     Array2::from_shape_vec((elements, samples), sorted.iter().copied().collect()).map_err(unfit)
 }
 
-/// The error of the key `recording.axes`.
 fn unfit(message: impl Display) -> Fault {
     Fault::Data(format!("recording.axes: {message}"))
 }

@@ -18,7 +18,6 @@ const MAX_PHASE_DEGREES: f64 = 3600.0;
 
 impl Calibration {
     /// Divides the samples, `[elements, samples]`, by gain and phase of their element.
-    ///
     /// # Errors
     /// [`Fault::Key`] where a list has another length than there are elements, or a value is NaN or too large.
     pub fn divide_out(&self, samples: &mut Array2<Complex64>) -> Result<(), Fault> {

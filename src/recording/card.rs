@@ -60,7 +60,6 @@ pub struct Card {
 
 impl Card {
     /// Listens on `port` of every address of this machine, or on a free one for 0.
-    ///
     /// # Errors
     /// An error of the socket: another program may have the port.
     pub fn listen(port: u16, frame_bytes: usize) -> io::Result<Card> {
@@ -71,16 +70,13 @@ impl Card {
     }
 
     /// The port that it listens on.
-    ///
     /// # Errors
     /// An error of the socket.
     pub fn port(&self) -> io::Result<u16> {
         self.socket.local_addr().map(|address| address.port())
     }
 
-    /// Receives packets until a limit is reached, or until `take_frame` or `goes_on` ends it. `take_frame` gets each frame, and `goes_on` the counts so
-    /// far, at least ten times a second.
-    ///
+    /// Receives packets until a limit is reached, or `take_frame` (each frame) or `goes_on` (the counts, ten times a second or more) ends it.
     /// # Errors
     /// An error of the socket or of the log file.
     pub fn run(
@@ -121,7 +117,6 @@ impl Card {
         }
     }
 
-    /// Writes a frame at its place in the log.
     fn write(&mut self, frame: &CardFrame) -> io::Result<()> {
         let Some(log) = &mut self.log else { return Ok(()) };
         log.seek(SeekFrom::Start(frame.number * self.frame_bytes as u64))?;

@@ -10,9 +10,6 @@ impl<T: Read + Seek> Source for T {}
 pub(super) type Open<'a> = &'a dyn Fn(&str) -> io::Result<Box<dyn Source>>;
 
 /// Opens `first` alone, or as one file with the `more` files that continue it, or with those of the other `chips` of a cascade.
-///
-/// # Errors
-/// The error of `open`, or of a file whose size can't be read.
 pub(super) fn open_joined<T>(
     first: &T,
     more: &[T],
@@ -63,7 +60,6 @@ impl Seek for Chain {
     }
 }
 
-/// The position after a seek by `to` from the position `at`, in a file of `bytes` bytes.
 fn position_after(to: SeekFrom, at: u64, bytes: u64) -> io::Result<u64> {
     let position = match to {
         SeekFrom::Start(at) => Some(at),
@@ -78,8 +74,7 @@ const CHIP_BYTES: u64 = 16;
 /// Most samples of a chip that are read at once.
 const MAX_READ_SAMPLES: u64 = 4096;
 
-/// Files of the chips of a cascade, each with four interleaved receivers, as one file with all receivers interleaved. `samples` of each receiver; `at`
-/// is the position in bytes.
+/// Files of a cascade's chips, four interleaved receivers each, as one of all receivers interleaved: `samples` a receiver, `at` in bytes.
 struct Chips {
     files: Vec<Box<dyn Source>>,
     samples: u64,

@@ -2,7 +2,7 @@
 
 use crate::files::hdf5::Hdf5Error;
 use crate::files::npz::NpzError;
-use crate::radar::RadarError;
+use crate::radar::{RadarError, counted};
 use crate::scene::file::SceneTextError;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -46,14 +46,13 @@ impl Fault {
         Fault::Key { key: key.to_owned(), found: found.into(), expected: expected.into() }
     }
 
-    /// The error of `found` elements, samples or pairs (`what`) in an array of this shape.
-    pub(super) fn count(what: &str, found: usize, expected: &str, (elements, samples): (usize, usize)) -> Fault {
-        Fault::Data(format!(
-            "holds {found} {what}; expected {expected} (it is read as {elements} elements by {samples} samples)"
-        ))
+    /// The error of `found` elements, samples or pairs (the noun for one, and for many) in an array of this shape.
+    pub(super) fn count([one, many]: [&str; 2], found: usize, expected: &str, shape: (usize, usize)) -> Fault {
+        let (elements, samples) = (counted(shape.0, "element", "elements"), counted(shape.1, "sample", "samples"));
+        let found = counted(found, one, many);
+        Fault::Data(format!("holds {found}; expected {expected} (it is read as {elements} by {samples})"))
     }
 
-    /// The error about the file `path`.
     pub(super) fn of(self, path: &Path) -> RecordingError {
         RecordingError { path: path.to_owned(), fault: self }
     }

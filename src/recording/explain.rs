@@ -21,8 +21,7 @@ const SHARED_GAIN_RIDGE: f64 = 1e-10;
 /// A recording explained by reflectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explanation {
-    /// Complex gain of each reflector: the factor of the echo of a reflector of reflectivity 1 at its place. Its magnitude is the reflectivity in the
-    /// recording's unit.
+    /// Complex gain of each reflector: the factor of a unit reflector's echo there. Its magnitude is the reflectivity in the recording's unit.
     pub gains: Vec<Complex64>,
     /// Part of the recording's power in the reflectors' echoes, 0 to 1.
     pub explained: f64,
@@ -46,7 +45,6 @@ pub enum ExplainError {
 
 /// Fits complex gains `g` of the echoes `a` of `scene`'s reflectors by least squares over all recorded samples `y`, and subtracts the echoes:
 /// y = sum of `g_l a_l` + residual. The scene's reflectivities have no influence.
-///
 /// # Errors
 /// [`ExplainError`] where the scene can't be seen by the recording's radar, or has too many reflectors.
 pub fn explain(recording: &Recording, scene: &Scene) -> Result<Explanation, ExplainError> {

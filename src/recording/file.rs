@@ -4,8 +4,10 @@ use super::raw;
 use super::recording_text::{RecordingText, open_file, open_in, read_text};
 use super::{Fault, Origin, ReadingOption, Recording, RecordingError};
 use crate::files::ends_in;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
+
+pub use super::recording_text::data_path;
 
 /// Whether `text` is the TOML of a recording: it has a table `[recording]`.
 pub fn is_recording(text: &str) -> bool {
@@ -22,16 +24,7 @@ fn is_toml_at(path: &Path) -> bool {
     ends_in(path, &["toml"]) && open_file(path).is_ok_and(|file| read_text(file).is_ok_and(|text| is_recording(&text)))
 }
 
-/// Path of the samples of the recording whose TOML is `path`; `None` where that is no such TOML.
-pub fn data_path(path: &Path) -> Option<PathBuf> {
-    let text = read_text(open_file(path).ok()?).ok()?;
-    let table: toml::Table = text.parse().ok()?;
-    let name = table.get("recording")?.get("file")?.as_str()?;
-    Some(path.parent().unwrap_or(Path::new("")).join(name))
-}
-
 /// Reads a recording: the TOML `path` with the files that it names, or a raw capture ([`raw::open`]).
-///
 /// # Errors
 /// [`RecordingError`] names the file, the key or the array, and what was expected of it.
 pub fn load(path: &Path) -> Result<Recording, RecordingError> {

@@ -33,11 +33,7 @@ const MAX_CELLS: usize = 1 << 12;
 /// Most levels of structs and cells that are searched.
 const MAX_DEPTH: usize = 4;
 
-/// Reads the array called `key`: a variable, a member of a struct (`radar.adcData`), or a cell array. Cells must have one shape and are stacked along
-/// a first axis.
-///
-/// # Errors
-/// [`Fault`] names the array and the expected content. It is returned for a file of another format, a damaged one, and one without such an array.
+/// Reads the array called `key`: a variable, a member of a struct (`radar.adcData`), or cells of one shape, stacked along a first axis.
 pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
     let mut search = Search { key: Some(key), ..Search::default() };
     read_variables(file, &mut search)?;
@@ -47,9 +43,6 @@ pub(super) fn read_mat(file: impl Read, key: &str) -> Result<Numbers, Fault> {
 }
 
 /// Names and shapes of all arrays of numbers, those in structs and cells too.
-///
-/// # Errors
-/// [`Fault`] for a file of another format or a damaged one.
 pub(super) fn shapes(file: impl Read) -> Result<Vec<(String, Vec<usize>)>, Fault> {
     let mut search = Search::default();
     read_variables(file, &mut search)?;
@@ -273,12 +266,10 @@ struct Tag {
 }
 
 struct Element {
-    /// Type of the data (miINT8 and so on).
     kind: u32,
     bytes: Vec<u8>,
 }
 
-/// Reader of one element after another.
 struct Elements<'a> {
     file: &'a mut dyn Read,
     is_big_endian: bool,

@@ -113,8 +113,7 @@ impl Recording {
         self.radar.samples == 1
     }
 
-    /// Whether it can be shown with `radar`. Window, focusing, chirp duration and link budget may differ from the recording's, and so may the number of
-    /// end elements where every element was recorded.
+    /// Whether it can be shown with `radar`, which may differ in window, focusing, chirp duration, budget, and, with every element recorded, ends.
     pub fn fits(&self, radar: &Radar) -> bool {
         let end_elements = if self.signal().is_some() { radar.end_elements } else { self.radar.end_elements };
         let Radar { window, chirp_seconds, budget, focus_off_line, .. } = *radar;

@@ -17,8 +17,7 @@ impl Numbers {
         }
     }
 
-    /// Restores the sign of 16-bit integers that were stored as unsigned: 65535 becomes -1. These are whole numbers from 0 to 65535, some above 32767.
-    /// Returns a sentence on it, `None` for other numbers.
+    /// Restores the sign of 16-bit integers stored as unsigned (whole numbers up to 65535, some above 32767). Returns a sentence on it, or `None`.
     pub(super) fn restore_signs(&mut self) -> Option<String> {
         let is_word = |v: f64| v.fract() == 0.0 && (0.0..=65535.0).contains(&v);
         let are_words = self.parts().all(|v| is_word(*v));
@@ -42,7 +41,6 @@ pub(super) fn bounded_count(shape: &[usize]) -> Option<usize> {
     shape.iter().try_fold(1usize, |n, len| n.checked_mul(*len)).filter(|n| *n <= MAX_NUMBERS)
 }
 
-/// The error of an array of more than [`MAX_NUMBERS`].
 pub(super) fn too_large(what: &str, shape: &[usize]) -> Fault {
     Fault::Data(format!("{what} has shape {shape:?}; expected at most {MAX_NUMBERS} numbers"))
 }

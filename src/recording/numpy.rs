@@ -6,7 +6,6 @@ use crate::files::npy::NpyHeader;
 use crate::files::npz::Npz;
 use std::io::{self, Read, Seek};
 
-/// Reads the array `key` of an archive.
 pub(super) fn read_npz(file: impl Read + Seek, key: &str) -> Result<Numbers, Fault> {
     read_array(Npz::of(file)?.entry(key)?, &format!("array \"{key}\""))
 }
@@ -19,7 +18,6 @@ pub(super) fn shapes(file: impl Read + Seek) -> Result<Vec<(String, Vec<usize>)>
     Ok(keys.into_iter().filter_map(shape).collect())
 }
 
-/// Reads the one array of an `.npy` file.
 pub(super) fn read_npy(file: impl Read) -> Result<Numbers, Fault> {
     read_array(file, "the array")
 }

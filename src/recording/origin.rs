@@ -50,7 +50,6 @@ impl Origin {
     }
 
     /// The same file read another way, or another frame of it.
-    ///
     /// # Errors
     /// As [`Origin::recording`].
     pub fn with(&self, taken: usize, frame: u64) -> Result<Recording, RecordingError> {
@@ -58,7 +57,6 @@ impl Origin {
     }
 
     /// Reads the recording the way that is used.
-    ///
     /// # Errors
     /// [`RecordingError`] names the file, the key or the array.
     pub fn recording(&self) -> Result<Recording, RecordingError> {
@@ -66,7 +64,6 @@ impl Origin {
     }
 
     /// The recording of a frame, with `bytes` in place of the file's.
-    ///
     /// # Errors
     /// As [`Origin::recording`].
     pub fn recording_of(&self, bytes: &[u8]) -> Result<Recording, RecordingError> {
@@ -79,12 +76,11 @@ impl Origin {
     }
 
     /// Every loop of the frame, for a range-Doppler map.
-    ///
     /// # Errors
     /// As [`Origin::recording`], and where the file holds no loops.
     pub fn loops(&self) -> Result<FrameLoops, RecordingError> {
-        let (path, open) = (self.data.with_extension("toml"), open_in(self.folder()));
-        RecordingText::parse(self.toml(), &path, &open, Some(self.frame))?.loops()
+        let open = open_in(self.folder());
+        RecordingText::parse(self.toml(), &self.data, &open, Some(self.frame))?.loops()
     }
 
     fn folder(&self) -> &Path {
@@ -92,8 +88,7 @@ impl Origin {
     }
 
     fn read(&self, open: Open<'_>) -> Result<Recording, RecordingError> {
-        let path = self.data.with_extension("toml");
-        let mut recording = RecordingText::parse(self.toml(), &path, open, Some(self.frame))?.recording()?;
+        let mut recording = RecordingText::parse(self.toml(), &self.data, open, Some(self.frame))?.recording()?;
         let own_doubts = recording.doubts.clone();
         recording.doubts.splice(0..0, self.doubts.iter().filter(|d| !own_doubts.contains(d)).cloned());
         recording.origin = Some(Arc::new(self.clone()));

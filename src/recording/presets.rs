@@ -38,7 +38,6 @@ pub const ALL: &[Preset] = &[preset!("cascade-86", "cascade-86.mat"), preset!("c
 
 impl Preset {
     /// The recording.
-    ///
     /// # Errors
     /// None for the presets of [`ALL`]: a test reads each of them.
     pub fn load(&self) -> Result<Recording, RecordingError> {

@@ -39,7 +39,6 @@ pub(super) fn radar_of_table(mut table: toml::Table, profile: Option<&RadarProfi
     Ok(radar)
 }
 
-/// The error of a key that is `found`, but `expected` by the `.cfg`.
 fn contradiction(key: &str, found: &toml::Value, expected: impl Display) -> Fault {
     Fault::key(&format!("radar.{key}"), format!("is {found}"), format!("{expected}, as the .cfg says, or no such key"))
 }

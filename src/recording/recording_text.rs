@@ -15,7 +15,7 @@ use crate::scene::file::SceneTextError;
 use crate::signal::ChirpSamples;
 use serde::Deserialize;
 use std::io::{self, BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const MAX_TEXT_BYTES: u64 = 1 << 20;
 
@@ -65,6 +65,14 @@ pub(super) fn read_config_text(file: impl Read) -> Result<String, Fault> {
     read_bounded(file, "the .cfg", "the commands that set a radar up").map(|bytes| config_text(&bytes))
 }
 
+/// Path of the samples of the recording whose TOML is `path`; `None` where that is no such TOML.
+pub fn data_path(path: &Path) -> Option<PathBuf> {
+    let text = read_text(open_file(path).ok()?).ok()?;
+    let table: toml::Table = text.parse().ok()?;
+    let name = table.get("recording")?.get("file")?.as_str()?;
+    Some(folder_of(path).join(name))
+}
+
 /// Refuses a text of a later format. Its unknown keys would give a worse message.
 fn check_format(text: &str) -> Result<(), Fault> {
     #[derive(Deserialize)]
@@ -82,7 +90,7 @@ fn check_format(text: &str) -> Result<(), Fault> {
 
 /// The TOML of a recording, read and checked, and its `.cfg`. The samples are not read yet.
 pub(super) struct RecordingText<'a> {
-    /// File of the TOML. Names of files in it are relative to its folder.
+    /// File of the TOML, or that of the samples where the TOML is in memory. Names of files in it are relative to its folder.
     path: &'a Path,
     pub open: Open<'a>,
     format: u32,
@@ -132,7 +140,6 @@ impl<'a> RecordingText<'a> {
         Ok(RecordingText { path, open, format, name, notes, table, radar, profile, signs, has_interval })
     }
 
-    /// Reads the samples.
     pub fn recording(&self) -> Result<Recording, RecordingError> {
         let RecordingText { radar, table, .. } = self;
         // Keys are in the TOML, those about other files too.

@@ -15,8 +15,7 @@ use num_complex::Complex64;
 use std::collections::HashSet;
 
 impl RecordingText<'_> {
-    /// Reads the samples with all corrections of the table, and sentences on doubts about them. The radar has the expected numbers of elements and
-    /// samples.
+    /// Reads the samples, as many as the radar has, with all corrections of the table, and sentences on doubts about them.
     pub fn samples(&self) -> Result<(Recorded, Vec<String>), Fault> {
         let table = &self.table;
         let (mut rows, notes) = match &table.capture {
@@ -47,7 +46,7 @@ impl RecordingText<'_> {
         let (transmitters, receivers) = (antennas.transmitter_x_metres().len(), antennas.receiver_x_metres().len());
         if rows.nrows() != transmitters * receivers {
             let expected = format!("{transmitters} by {receivers}, as many as radar says places of antennas");
-            return Err(Fault::count("pairs of antennas", rows.nrows(), &expected, rows.dim()));
+            return Err(Fault::count(["pair of antennas", "pairs of antennas"], rows.nrows(), &expected, rows.dim()));
         }
         let mut ordered = Array2::zeros((self.radar.elements, rows.ncols()));
         for (mut element, pair) in ordered.outer_iter_mut().zip(antennas.pairs()) {
@@ -126,7 +125,8 @@ impl RecordingText<'_> {
                 let (last, last_notes) = self.array_of(Some(last), axes.clone())?;
                 if first.dim() != last.dim() {
                     let expected = format!("as many as \"first\" has, {} by {}", first.nrows(), first.ncols());
-                    return Err(Fault::count("numbers in \"last\"", last.len(), &expected, last.dim()));
+                    let numbers = ["number in \"last\"", "numbers in \"last\""];
+                    return Err(Fault::count(numbers, last.len(), &expected, last.dim()));
                 }
                 notes.extend(last_notes);
                 notes.dedup();
@@ -214,7 +214,7 @@ impl RecordingText<'_> {
         let RecordingText { table, radar, .. } = self;
         if rows.ncols() != radar.samples {
             let expected = format!("{} as radar.samples says", radar.samples);
-            return Err(Fault::count("samples", rows.ncols(), &expected, rows.dim()));
+            return Err(Fault::count(["sample", "samples"], rows.ncols(), &expected, rows.dim()));
         }
         let covered = table.covered_elements(radar);
         let missing: HashSet<usize> = table.missing.iter().copied().collect();
@@ -228,7 +228,7 @@ impl RecordingText<'_> {
                 "radar.end_elements says for two ends"
             };
             let expected = format!("{} as {source}{}", covered.len(), fewer.unwrap_or_default());
-            Fault::count("elements", rows.nrows(), &expected, rows.dim())
+            Fault::count(["element", "elements"], rows.nrows(), &expected, rows.dim())
         })?;
         let mut samples = Array2::zeros((radar.elements, radar.samples));
         for (element, row) in places.iter().zip(rows.outer_iter()).filter(|(element, _)| !missing.contains(element)) {

@@ -47,9 +47,6 @@ impl Signs {
 
 impl RecordingTable {
     /// The changes by the keys of the table. `radar` has the carrier of the text, or that of the `.cfg` in the middle of the samples.
-    ///
-    /// # Errors
-    /// [`Fault::Key`] names the key that is missing or contradicts the others.
     pub fn signs(&self, format: u32, radar: &Radar, has_profile: bool) -> Result<Signs, Fault> {
         let RecordingTable { carrier_at, beat_sign, sweep, conjugate, .. } = *self;
         let key = |name: &str| format!("recording.{name}");

@@ -193,8 +193,7 @@ impl Body {
             }
     }
 
-    /// Places that echo to an antenna at `from_metres`, with no other body in between: feet of perpendiculars on the faces, ends of the faces that
-    /// are seen, a post's nearest point. (x, y) in metres.
+    /// Places, (x, y) in metres, that echo freely to an antenna: feet of perpendiculars on faces, ends of faces that are seen, a post's nearest point.
     pub fn echo_places_metres(&self, from_metres: [f64; 2]) -> Vec<[f64; 2]> {
         if let Shape::Circle { centre_metres: c, radius_metres } = self.shape {
             let away = (from_metres[0] - c[0]).hypot(from_metres[1] - c[1]);

@@ -37,7 +37,7 @@ pub struct Reflector {
 }
 
 impl Reflector {
-    /// A question with the name and folder of `path`.
+    /// A reflector at (x, y), metres.
     pub fn at([x_metres, y_metres]: [f64; 2], reflectivity: f64) -> Self {
         Reflector { x_metres, y_metres, reflectivity }
     }

@@ -29,8 +29,7 @@ pub fn read(path: &Path) -> Result<Scene, NpzError> {
     Ok(Scene::of_points(x.into_iter().zip(y)))
 }
 
-/// Writes the reflectors of a scene, and the echoes of bodies at the array's middle as points. The format has no reflectivities, names,
-/// shadows, lines, clusters or bodies.
+/// Writes the reflectors' positions, and the echoes of bodies at the array's middle as points; all else of a scene is lost.
 /// # Errors
 /// [`NpzError::Io`] when the file can't be written.
 pub fn write(path: &Path, scene: &Scene) -> Result<(), NpzError> {

@@ -90,14 +90,10 @@ mod tests {
     fn every_preset_has_notes() {
         let mut names = HashSet::new();
         for preset in ALL {
-            let file = preset.load().unwrap_or_else(|e| panic!("{}: {e}", preset.id));
-            assert!(
-                names.insert(file.scene.name.clone()) && !file.scene.name.is_empty(),
-                "{}: its own name",
-                preset.id
-            );
-            assert!(file.scene.notes.len() > 80, "{}: notes say what to look for", preset.id);
-            assert_eq!(file.scene.objects.is_empty(), preset.id == "empty", "{}", preset.id);
+            let scene = preset.load().unwrap_or_else(|e| panic!("{}: {e}", preset.id)).scene;
+            assert!(scene.notes.len() > 80, "{}: notes say what to look for", preset.id);
+            assert_eq!(scene.objects.is_empty(), preset.id == "empty", "{}", preset.id);
+            assert!(!scene.name.is_empty() && names.insert(scene.name), "{}: its own name", preset.id);
         }
         assert!(!default_scene().scene.objects.is_empty());
     }

@@ -109,17 +109,17 @@ pub fn add_interference(radar: &Radar, array: &BuiltArray, interferer: &Interfer
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::radar::{Decibels, ElementError, LinkBudget};
     use crate::scene::{Mirror, Object, Point, Post, Reflector, Wall};
     use crate::signal::simulate;
 
-    fn small() -> Radar {
+    pub fn small() -> Radar {
         Radar { elements: 64, ..Radar::default() }
     }
 
-    fn two_points() -> Scene {
+    pub fn two_points() -> Scene {
         Scene::of_points([(2.0, 11.0), (-6.0, 19.0)])
     }
 

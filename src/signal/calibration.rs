@@ -68,18 +68,11 @@ impl Calibration {
 
 #[cfg(test)]
 mod tests {
+    use super::super::built::tests::{small, two_points};
     use super::*;
     use crate::radar::Tolerances;
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate, simulate_built};
-
-    fn small() -> Radar {
-        Radar { elements: 64, ..Radar::default() }
-    }
-
-    fn two_points() -> Scene {
-        Scene::of_points([(2.0, 11.0), (-6.0, 19.0)])
-    }
 
     #[test]
     fn calibration_removes_the_errors_of_elements() {

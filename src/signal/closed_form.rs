@@ -1,5 +1,4 @@
-//! Range profiles of few reflectors without samples or transform: the windowed transform of a single beat in closed form, on the rows where it
-//! exceeds the tolerance.
+//! Range profiles of few reflectors in closed form, without samples or transform, on the rows where they exceed the tolerance.
 //!
 //! The symmetric Hann window is a constant and two cosines, so a reflector's windowed range profile is three Dirichlet kernels, `N/(N-1)`
 //! bins apart. With `d` the distance from its range to the bin in bins, `x = pi d / N` and `a = pi / (N-1)` they add up to
@@ -27,8 +26,7 @@ const MIN_SAMPLES: usize = 8;
 /// Bins on each side of the peak that contain the kernels' centres.
 const PEAK_BINS: f64 = 1.5;
 
-/// Bins on each side of a reflector's range in which its profile exceeds a quarter of `tolerance` times its peak. A quarter, since the errors of many
-/// reflectors may add up in phase.
+/// Bins on each side of a reflector's range where its profile exceeds a quarter of `tolerance` times its peak: the errors of many add up.
 pub fn reach(tolerance: f64) -> usize {
     (PI / 4.0 * tolerance.max(1e-18)).cbrt().recip().ceil() as usize + 1
 }
@@ -84,8 +82,7 @@ impl<T: Real> ClosedForm<T> {
         }
     }
 
-    /// Bins on each side of an echo's range in which it exceeds the tolerance, where an echo below the amplitude `quiet` has the error allowed to one of
-    /// `quiet`; `None` where it exceeds it nowhere.
+    /// Bins on each side of an echo's range where it exceeds the tolerance times its amplitude, or times `quiet` if larger; `None` for nowhere.
     #[inline(always)]
     fn reach_of<const W: usize>(&self, amplitude: &Lanes<f64, W>, quiet: f64) -> Option<usize> {
         let strongest = amplitude.0.iter().fold(0.0f64, |m, a| m.max(a.abs()));
@@ -105,8 +102,7 @@ impl<T: Real> ClosedForm<T> {
         rows.insert_wrapped((bins(nearest) - margin).floor(), (bins(farthest) + margin).ceil());
     }
 
-    /// Adds the range profiles of `echoes` to `cells`, `[range bins]`. The error of each is at most the tolerance times its amplitude, or times `quiet`
-    /// where that is larger: a weak echo has few rows.
+    /// Adds the range profiles of `echoes` to `cells`, `[range bins]`; errors are at most the tolerance times the amplitude, or `quiet` if larger.
     #[inline(always)]
     pub(super) fn add_block<const W: usize, const FMA: bool>(
         &self,
@@ -361,11 +357,8 @@ mod tests {
         let reflectors = Scene::of_points([(0.0, 15.0)]).reflectors();
         let mut out = BlockProfiles::<f64, LANES_F64>::silence(&radar);
         for (tolerance, most) in [(1e-3, 36), (1e-6, 236), (1e-12, 512)] {
-            Synthesis::new(&radar, plan(tolerance, Simd::best())).range_profiles(
-                &reflectors,
-                &mut out,
-                &Task::default(),
-            );
+            let synthesis = Synthesis::new(&radar, plan(tolerance, Simd::best()));
+            synthesis.range_profiles(&reflectors, &mut out, &Task::default());
             assert!(out.touched.count() <= most, "{tolerance:e}: {}", out.touched.count());
             for element in [0, 500, 1023] {
                 for (bin, cell) in out.profile(element).unwrap().iter().enumerate() {

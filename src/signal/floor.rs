@@ -58,8 +58,7 @@ impl Floor {
         matches!(self, Floor::Level(_) | Floor::Thermal)
     }
 
-    /// The signal-to-noise ratio of a scene over this floor, per sample over the whole array; `None` where the floor is not thermal
-    /// noise, or nothing reflects.
+    /// SNR of a scene over this floor, per sample over the whole array; `None` where the floor is no thermal noise, or nothing reflects.
     pub fn snr<'a>(self, radar: &Radar, sources: impl Into<Sources<'a>>) -> Option<Decibels> {
         let sources = sources.into();
         let reflects = !sources.scatterers.is_empty() || sources.points.iter().any(|r| r.reflectivity != 0.0);

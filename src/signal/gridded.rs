@@ -50,8 +50,7 @@ impl SpreadingKernel {
         frequencies.map(transform).collect()
     }
 
-    /// Coefficients, lowest first, of the polynomial in `t` in [-1, 1] through the kernel at Chebyshev points, where
-    /// `x = t/2 + 1/2 - width/2 + cell`.
+    /// Coefficients, lowest first, of the polynomial through the kernel at Chebyshev points, in `t` of [-1, 1]: `x = t/2 + 1/2 - width/2 + cell`.
     fn polynomial(&self, cell: usize, terms: usize) -> Vec<f64> {
         let x = |t: f64| t / 2.0 + 0.5 - self.width as f64 / 2.0 + cell as f64;
         let angle = |node: usize| PI * (node as f64 + 0.5) / terms as f64;
@@ -124,8 +123,7 @@ impl<T: Real> Gridding<T> {
 
 /// Reflectors in a partial sum in f64: sums of partial sums have smaller rounding errors than one long sum.
 const PARTIAL_SUM_TERMS: usize = 64;
-/// Most reflectors whose sum meets f32's tolerance even where all rounding errors agree, as for coincident points. Longer sums keep the rounding
-/// errors and add them at the end (Kahan, Commun. ACM 8, 1965).
+/// Most reflectors whose sum meets f32's tolerance even if all rounding errors agree; longer sums add these at the end (Kahan, Commun. ACM 8, 1965).
 const MAX_UNCORRECTED_TERMS: usize = 16;
 
 /// Beat signal of `echoes`, written to `out`, one vector a sample.

@@ -1,5 +1,4 @@
-//! Fourier transforms of several channels at once, one lane an element. Powers of two are transformed by Stockham's radix-4 algorithm, other lengths
-//! by rustfft, lane by lane.
+//! Fourier transforms of several channels at once, one lane an element: Stockham's radix-4 for powers of two, else rustfft lane by lane.
 
 use super::simd::{ComplexLanes, Real, Simd};
 use num_complex::Complex;

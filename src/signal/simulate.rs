@@ -87,11 +87,8 @@ mod tests {
         for (radar, scene) in cases {
             for floor in [Floor::Thesis, Floor::Exact, Floor::Snr(Decibels(20.0)), Floor::Snr(Decibels(60.0))] {
                 let whole = simulate(&radar, &scene, floor, 3).unwrap().two_ends(&radar);
-                assert_eq!(
-                    simulate_ends_for(&Task::default(), &radar, &scene, floor, 3).unwrap(),
-                    whole,
-                    "{scene:?} over {floor}"
-                );
+                let ends = simulate_ends_for(&Task::default(), &radar, &scene, floor, 3).unwrap();
+                assert_eq!(ends, whole, "{scene:?} over {floor}");
             }
         }
     }

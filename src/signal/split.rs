@@ -98,7 +98,6 @@ pub fn fill_factors<T: Real, const W: usize, const FMA: bool>(
     fill_with::<T, W, FMA>(&model.echo_lanes::<W, FMA>(pairs, r), rows, columns);
 }
 
-/// Phasors of an echo, see [`Factors`].
 #[inline(always)]
 fn fill_with<T: Real, const W: usize, const FMA: bool>(
     echo: &EchoLanes<W>,

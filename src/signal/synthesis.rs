@@ -17,8 +17,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Windowed range profiles of the whole array in blocks of `W` elements: `[block][range bin]`, one lane an element. Lanes past the last element
-/// are meaningless.
+/// Windowed range profiles of the whole array, `[block of W elements][range bin]`: one lane an element, meaningless past the last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockProfiles<T, const W: usize> {
     pub bins: usize,
@@ -166,8 +165,7 @@ impl<T: Real, const W: usize> Kernel for AddProfiles<'_, '_, T, W> {
 }
 
 impl<T: Real, const W: usize> Synthesis<T, W> {
-    /// Prepares `plan` for `radar`. [`Algorithm::Gridded`] grids and [`Algorithm::ClosedForm`] makes profiles directly; every other
-    /// algorithm is evaluated by phasor split.
+    /// Prepares `plan` for `radar`; algorithms other than [`Algorithm::Gridded`] and [`Algorithm::ClosedForm`] are evaluated by phasor split.
     pub fn new(radar: &Radar, plan: SynthesisPlan) -> Self {
         let scale = (radar.samples as f64).sqrt().recip();
         Synthesis {

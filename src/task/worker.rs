@@ -56,8 +56,7 @@ enum Place<Q, T> {
     Here(RefCell<Step<Q, T>>),
 }
 
-/// A thread that turns requests `Q` into results `T`, the latest request first. Dropping it stops the thread. On a page without threads the work is done when
-/// replies are asked for.
+/// A thread that turns requests `Q` into results `T`, the latest first, until dropped. A page without threads works when replies are asked for.
 pub struct Worker<Q, T> {
     shared: Arc<Shared<Q, T>>,
     place: Place<Q, T>,

@@ -70,8 +70,7 @@ impl Profile {
         }
     }
 
-    /// Fine steps to, and height of, the first side lobe on one side: the highest point beyond the first valley below half power. Higher
-    /// valleys are ripples of the near field.
+    /// Fine steps to, and height of, one side's first side lobe, beyond the first valley below half power: higher valleys are near-field ripples.
     fn side_lobe(&self, upward: bool) -> Option<(f64, f64)> {
         let half = self.cells.len() / 2;
         let at = |step: usize| self.at(step, upward);
@@ -144,8 +143,7 @@ fn maximum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     (low + high) / 2.0
 }
 
-/// The path of a reflector's blob as the array hears it from one element of `aperture` to the next: `points` cells, from the first
-/// element to the last.
+/// The path of a reflector's blob as the elements of `aperture` hear it: `points` cells, from the first element to the last.
 pub(super) fn path(radar: &Radar, reflector: &Reflector, aperture: Aperture, points: usize) -> Vec<MapPlace> {
     let elements = aperture.channels(radar);
     let (left, right) =
@@ -167,7 +165,6 @@ pub(super) mod tests {
 
     /// Cells of a fine map to a cell of the map.
     const PARTS: usize = 4;
-    const APERTURES: [Aperture; 3] = [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)];
 
     /// A small valid radar of any kind, and a reflector no nearer than its array is long, ranges beyond the last bin included.
     pub fn any_place_of_any_radar() -> impl Strategy<Value = (Radar, Reflector)> {
@@ -265,8 +262,7 @@ pub(super) mod tests {
             beyond.map_or(self.half() as f64, |i| i as f64 - 0.5) / FINE_PARTS as f64
         }
 
-        /// Compares predicted half-power widths with the measured ones, to half a cell. Where the row runs level within two percent of half power,
-        /// any place of that run will do.
+        /// Holds half-power widths to half a cell; of a row level within two percent of half power any place will do.
         fn hold_widths(&self, predicted: [f64; 2]) -> Result<(), TestCaseError> {
             let level = self.at(0) * std::f64::consts::FRAC_1_SQRT_2;
             for (side, predicted) in [-1, 1].into_iter().zip(predicted) {
@@ -332,16 +328,15 @@ pub(super) mod tests {
             window: WindowFunction::Rectangular,
             ..Radar::default()
         };
-        let reflector =
-            Reflector { x_metres: -0.836_824_449_514_143_4, y_metres: 1.323_439_071_373_973_2, reflectivity: 1.0 };
-        APERTURES.into_iter().try_for_each(|aperture| hold(&radar, &reflector, aperture))
+        let reflector = Reflector::at([-0.836_824_449_514_143_4, 1.323_439_071_373_973_2], 1.0);
+        Aperture::ALL.into_iter().try_for_each(|aperture| hold(&radar, &reflector, aperture))
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(6))]
         #[test]
         fn blobs_stand_where_the_map_has_them((radar, reflector) in any_place_of_any_radar()) {
-            for aperture in APERTURES {
+            for aperture in Aperture::ALL {
                 hold(&radar, &reflector, aperture)?;
             }
         }
@@ -352,7 +347,7 @@ pub(super) mod tests {
         let radar = Radar::default();
         for (range, cos) in [(5.0, 0.0), (8.0, 0.5), (12.0, -0.832), (20.0, 0.9), (35.0, -0.3)] {
             let r = at(range, cos);
-            for aperture in APERTURES {
+            for aperture in Aperture::ALL {
                 let blob = Blob::of(&radar, &r, aperture).unwrap();
                 let (bins, columns) = blob_cell(&radar, r.x_metres, r.y_metres, aperture).offset_to(&blob.peak, &radar);
                 assert!(bins.abs() < 0.5 && columns.abs() < 1.0, "{range} m, {cos}, {aperture:?}: {bins} {columns}");
@@ -363,18 +358,16 @@ pub(super) mod tests {
     #[test]
     fn a_ripple_far_beneath_every_floor_is_no_side_lobe() {
         let radar = Radar::default();
-        for (x_metres, y_metres) in [(0.0, 5.0), (0.0, 10.0), (0.0, 20.0), (4.0, 12.0), (-6.0, 18.0), (8.0, 30.0)] {
-            let reflector = Reflector { x_metres, y_metres, reflectivity: 1.0 };
-            let blob = Blob::of(&radar, &reflector, Aperture::Full).unwrap();
+        for place in [[0.0, 5.0], [0.0, 10.0], [0.0, 20.0], [4.0, 12.0], [-6.0, 18.0], [8.0, 30.0]] {
+            let blob = Blob::of(&radar, &Reflector::at(place, 1.0), Aperture::Full).unwrap();
             for lobe in blob.side_lobes.into_iter().flatten() {
-                assert!(lobe.level.0 > -100.0, "{lobe:?} at ({x_metres}, {y_metres})");
+                assert!(lobe.level.0 > -100.0, "{lobe:?} at {place:?}");
             }
         }
     }
 
     #[test]
     fn what_has_no_echo_has_no_blob() {
-        let silent = Reflector { x_metres: 1.0, y_metres: 5.0, reflectivity: 0.0 };
-        assert_eq!(Blob::of(&Radar::default(), &silent, Aperture::End(End::First)), None);
+        assert_eq!(Blob::of(&Radar::default(), &Reflector::at([1.0, 5.0], 0.0), Aperture::End(End::First)), None);
     }
 }

@@ -53,8 +53,7 @@ impl ChirpShape {
         (beat_hz * self.duration_seconds).rem_euclid(self.samples as f64)
     }
 
-    /// Frequency of an interferer above the one that is sent, hertz: through 0 at its crossing, and one turn a sample further for every
-    /// `duration` of a chirp.
+    /// Frequency of an interferer above the sent one, hertz: 0 at its crossing, and one turn a sample further for every `duration` of a chirp.
     pub fn interferer_above_hz(&self, interferer: &Interferer, seconds: f64) -> f64 {
         let sample_hz = self.samples as f64 / self.duration_seconds;
         sample_hz * (seconds / self.duration_seconds - interferer.crossing) / interferer.duration
@@ -96,7 +95,6 @@ mod tests {
         // 2 GHz in 25.6 us, 20 m away: 40 m of way are 133.4 ns.
         let beat = 2e9 / 25.6e-6 * (2.0 * 20.0 / 299_792_458.0);
         assert!((chirp.beat_hz(20.0) / beat - 1.0).abs() < 1e-12);
-        assert!((chirp.beat_hz(20.0) - 10.423e6).abs() < 1e3, "{}", chirp.beat_hz(20.0));
         assert!((chirp.range_bin(beat) - radar.bin_of_range(20.0)).abs() < 1e-9);
         let longer = ChirpShape::of(&Radar { chirp_seconds: 1e-3, ..radar.clone() });
         assert!((longer.range_bin(longer.beat_hz(20.0)) - radar.bin_of_range(20.0)).abs() < 1e-9);

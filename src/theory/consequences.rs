@@ -18,11 +18,9 @@ pub struct Consequences {
     pub full_beam: BeamWidth,
     /// Half-power beam width of one end.
     pub end_beam: BeamWidth,
-    /// Columns from a blob to its first grating lobe: the angle transform repeats after one turn from element to element, which is the
-    /// width of the map at any spacing.
+    /// Columns from a blob to its first grating lobe: one turn from element to element, the map's width at any spacing.
     pub grating_columns: f64,
-    /// `grating_columns` in cos(theta): below 2 some directions have a grating lobe among the others (M. I. Skolnik, "Introduction to Radar Systems",
-    /// on arrays).
+    /// The same in cos(theta): below 2 some directions have a grating lobe (M. I. Skolnik, "Introduction to Radar Systems", on arrays).
     pub grating_cos: f64,
     /// Columns between cos(theta) = -1 and 1: fewer than the map has where elements stand close together.
     pub visible_columns: f64,
@@ -30,8 +28,7 @@ pub struct Consequences {
     pub full_far_field_metres: f64,
     /// `full_far_field_metres` for one end, its elements taken for antennas that send and hear ([`Radar::plane_beyond_metres`]).
     pub end_far_field_metres: f64,
-    /// Largest change of range across the whole array, in bins: beyond one, a blob off broadside migrates through range bins. With a common
-    /// transmitter it would be half.
+    /// Largest change of range across the whole array, bins: beyond one, blobs off broadside migrate. A common transmitter would halve it.
     pub migration_bins: f64,
     /// Cosine at which a blob stands over the true one ([`Radar::squint`]).
     pub squint_factor: f64,

@@ -9,8 +9,7 @@ pub struct DopplerBlob {
     pub velocity_metres_per_second: f64,
     /// The velocity that the map shows, metres a second.
     pub apparent_velocity_metres_per_second: f64,
-    /// The range that the map shows, metres: that of the middle of the frame, moved by the velocity ([`Radar::doppler_range_shift_metres`])
-    /// and wrapped.
+    /// The range that the map shows, metres: the frame's middle, moved by the velocity ([`Radar::doppler_range_shift_metres`]) and wrapped.
     pub apparent_range_metres: f64,
 }
 

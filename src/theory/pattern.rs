@@ -41,8 +41,7 @@ impl WindowPattern {
             + if c == 0.0 { 0.0 } else { c * pair(2.0 * apart) }
     }
 
-    /// Width of the main lobe between the points `down` below its top, in bins of the window's own length; `None` where it never falls so
-    /// low (a window of one weight receives all directions equally).
+    /// Width of the main lobe `down` below its top, in bins of the window's own length; `None` where it never falls so low (one weight).
     pub fn main_lobe_bins(&self, down: Decibels) -> Option<f64> {
         let level = self.at(0.0) / 10f64.powf(down.amplitude_decades());
         let outside = self.first(|at| self.at(at) < level)?;

@@ -6,8 +6,7 @@ use ndarray::ArrayView2;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Contributions of the elements of an aperture to one cell of its range-angle map (thesis section 3.1). Under the aperture's window they sum to
-/// the cell of [`crate::maps::angle_transform`].
+/// Contributions of an aperture's elements to one cell (thesis section 3.1), that of [`crate::maps::angle_transform`] under the window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phasors {
     /// The first element of the aperture.
@@ -60,8 +59,7 @@ impl Phasors {
         self.contributions.iter().sum()
     }
 
-    /// Each contribution times the conjugate phase of `of_point`'s, which straightens the chain of a near point. Zeros in `of_point` turn
-    /// nothing.
+    /// Each contribution times the conjugate phase of `of_point`'s, which straightens the chain of a near point; zeros there turn nothing.
     pub fn focused(&self, of_point: &Phasors) -> Phasors {
         let turned = self.contributions.iter().zip(&of_point.contributions).map(|(own, point)| {
             let length = point.norm();
@@ -80,7 +78,7 @@ fn turn(k: usize, n: usize) -> Complex64 {
 mod tests {
     use super::*;
     use crate::maps::{angle_transform, range_transform};
-    use crate::radar::{Convention, End};
+    use crate::radar::Convention;
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
 
@@ -94,7 +92,7 @@ mod tests {
         let scene = Scene::of_points([(0.2, 0.9), (-0.5, 1.6)]);
         let signal = simulate(&radar, &scene, Floor::Thesis, 3).unwrap();
         let profiles = range_transform(&radar, &signal);
-        for aperture in [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)] {
+        for aperture in Aperture::ALL {
             let map = angle_transform(&radar, &profiles, aperture);
             let peak = map.cells.iter().map(|c| c.norm()).fold(0.0, f64::max);
             for cell in [[0, 0], [12, 40], [21, 19], [31, 63]] {
@@ -115,13 +113,12 @@ mod tests {
 
     #[test]
     fn chains_look_as_the_lesson_phasors_says() {
-        let physical = Radar::default().in_convention(Convention::Physical);
-        let short = Radar { elements: 96, ..physical.clone() };
+        let whole = Radar::default().in_convention(Convention::Physical);
+        let short = Radar { elements: 96, ..whole.clone() };
         let bin = short.bin_of_range(20.0).round() as usize;
         let [blob, _] = straightness(&short, (0.0, 20.0), [bin, 48]);
         let [null, _] = straightness(&short, (0.0, 20.0), [bin, 50]);
         assert!(blob > 0.98 && null < 0.03, "{blob} {null}");
-        let whole = physical;
         let bin = whole.bin_of_range(5.0).round() as usize;
         let [spiral, focused] = straightness(&whole, (0.0, 5.0), [bin, 512]);
         assert!(spiral < 0.3 && focused > 0.999, "{spiral} {focused}");

@@ -82,7 +82,6 @@ impl ResponseRow {
 mod tests {
     use super::super::blob::tests::{any_place_of_any_radar, simulated};
     use super::*;
-    use crate::radar::End;
     use proptest::prelude::*;
 
     proptest! {
@@ -90,7 +89,7 @@ mod tests {
 
         #[test]
         fn every_cell_is_that_of_the_map((radar, reflector) in any_place_of_any_radar()) {
-            for aperture in [Aperture::Full, Aperture::End(End::First), Aperture::End(End::Last)] {
+            for aperture in Aperture::ALL {
                 let map = simulated(&radar, &reflector, aperture);
                 let peak = map.iter().fold(0.0f64, |m, v| m.max(*v));
                 let response = Response::new(&radar, &reflector, aperture);

@@ -10,8 +10,7 @@ use super::{MapPlace, centre_metres};
 use crate::maps::Aperture;
 use crate::radar::Radar;
 
-/// Place of a reflector's blob on the map of an aperture, for a reflector at (`x_metres`, `y_metres`): the range from the aperture's middle, and the
-/// squinted cosine seen from there.
+/// Place of a reflector's blob on the map of an aperture: the range from the aperture's middle, and the squinted cosine seen from there.
 ///
 /// It is the middle of a near reflector's streak. The peak ([`super::Blob`]) lies up to half a bin and one column beside it for table 3.1,
 /// where the reflector is much nearer than the aperture's far field.

@@ -53,10 +53,7 @@ proptest! {
                 1 => s.settle(),
                 _ => {
                     let began = Instant::now();
-                    while began.elapsed() < GRACE {
-                        s.app.step();
-                        std::thread::sleep(Duration::from_millis(10));
-                    }
+                    step_until(&mut s, "the grace passes", |_| began.elapsed() > GRACE);
                 }
             }
             if then > 0 {

@@ -2,42 +2,21 @@
 
 use crate::session::*;
 use apertura::app::{Compare, Layout, MethodSlot};
-use apertura::maps::RangeAngleMap;
-use egui_kittest::Node;
-
-fn with_capon() -> Session {
-    Session::with_methods(vec![Arc::new(Baseline), Arc::new(CAPON)])
-}
-
-fn trial(s: &Session) -> Trial {
-    Trial::new(s.state().radar(), s.editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
-}
-
-fn text_of(node: &Node<'_>) -> String {
-    let node = node.accesskit_node();
-    node.label().or(node.value()).unwrap_or_default()
-}
-
-fn largest_difference(a: &RangeAngleMap, b: &RangeAngleMap) -> f32 {
-    assert_eq!(a.lambda.dim(), b.lambda.dim());
-    a.lambda.iter().zip(&b.lambda).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
-}
 
 #[test]
 fn the_second_outputs_figures_are_those_of_the_command_line() {
-    let mut s = with_capon();
-    assert!(s.state().jobs.pipeline.method(MethodSlot::Second).output().is_none(), "nobody looks at it");
+    let mut s = Session::with_methods(with_capon());
+    assert!(s.state().jobs.pipeline.method(MethodSlot::Second).output().is_none(), "it is out of sight");
     s.ask(WindowCommand::OpenPanel(Panel::Compare));
     for round in 0..2 {
-        let trial = trial(&s);
-        let answer = trial.ask(&CAPON, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
+        let answer = s.trial().ask(&CAPON, &Request { noise: Floor::Thesis.into(), ..Request::default() }).unwrap();
         let shown = &s.state().jobs.pipeline.method(MethodSlot::Second).output().expect("capon's output").pair.output;
-        assert!(largest_difference(shown, &answer.found.lambda) < 1e-5, "round {round}");
+        let apart = (&shown.lambda - &answer.found.lambda.lambda).fold(0.0, |most: f32, v| most.max(v.abs()));
+        assert!(apart < 1e-5, "round {round}");
         let scores = s.state().jobs.pipeline.scores_in(MethodSlot::Second).expect("its figures");
         assert_eq!(scores.metrics, answer.metrics, "round {round}");
         assert_eq!(s.state().shown_method(), Some("baseline"), "beside the first");
-        let at = s.handle("point 1: move");
-        s.drag(at, vec2(14.0, 9.0), 5);
+        s.drag(s.handle("point 1: move"), vec2(14.0, 9.0), 5);
     }
     s.ask(ViewCommand::SetCompare(Box::new(Compare { second: "baseline".into(), ..Compare::default() })));
     let [first, second] = MethodSlot::BOTH.map(|slot| s.state().jobs.pipeline.scores_in(slot).map(|s| s.metrics));
@@ -58,7 +37,7 @@ fn the_second_method_works_only_while_the_panel_is_open() {
     second.milliseconds.store(900, SeqCst);
     s.app.state_mut().ask(DocumentCommand::RandomScene(Kind::Set2));
     step_until(&mut s, "the second output is told to be old", |s| {
-        s.app.query_all_by_label_contains("(updating)").any(|node| text_of(&node).starts_with("stub"))
+        s.painted().iter().any(|text| text.starts_with("stub") && text.contains("(updating)"))
     });
     s.settle();
     assert!(!s.shows("(updating)"));
@@ -80,7 +59,7 @@ fn a_second_method_that_refuses_leaves_the_first() {
 
 #[test]
 fn one_key_flips_two_maps_in_place() {
-    let mut s = with_capon();
+    let mut s = Session::with_methods(with_capon());
     s.press(Modifiers::NONE, Key::X);
     assert!(s.state().arrangement.is_open(Panel::Compare));
     s.ask(WindowCommand::Maximise(Panel::Compare));

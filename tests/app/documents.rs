@@ -86,7 +86,7 @@ fn what_another_program_wrote_is_replaced_after_a_question() {
     let path = s.path("scene.toml");
     s.ask(EditCommand::Add(NewObject::Point, None));
     s.ask(DocumentCommand::Save);
-    assert_eq!((title(&s).as_str(), points(&path)), ("scene.toml", 3), "nobody else was there");
+    assert_eq!((title(&s).as_str(), points(&path)), ("scene.toml", 3), "no other program was there");
     write(&s, "scene.toml", 7);
     let answer = |s: &mut Session, button: &str| {
         s.ask(EditCommand::Add(NewObject::Point, None));
@@ -99,12 +99,7 @@ fn what_another_program_wrote_is_replaced_after_a_question() {
     assert_eq!((title(&s).as_str(), points(&path)), ("scene.toml •", 7));
     answer(&mut s, "Save as…");
     assert_eq!(points(&path), 7);
-    let name = s.app.get_by_label("Name");
-    name.focus();
-    s.app.step();
-    s.press(Modifiers::COMMAND, Key::A);
-    s.app.event(eframe::egui::Event::Text("mine.toml".to_owned()));
-    s.settle();
+    s.enter("Name", "mine.toml");
     s.click("Save");
     let mine = s.path("mine.toml");
     assert_eq!((title(&s).as_str(), points(&mine), points(&path)), ("mine.toml", 5, 7));
@@ -122,19 +117,13 @@ fn a_start_with_a_file_loses_neither_file_nor_unsaved_scene() {
     s.ask(EditCommand::Add(NewObject::Point, None));
     let unsaved = s.editor().scene().clone();
     s.wait_for_autosave();
-    let Session { app, folder } = s;
-    drop(app);
     // Twice: closing the window with the file on screen must not lose it either.
     for _ in 0..2 {
-        let app = harness(folder.path(), Some("b.toml"), baseline(), USUAL_SIZE);
-        let mut s = Session { app, folder: tempdir().unwrap() };
-        s.settle();
-        assert_eq!(title(&s), "b.toml");
-        assert_eq!(s.editor().left().len(), 1);
-        assert_eq!(s.editor().left()[0].scene(), &unsaved);
+        s = s.reopened(Some("b.toml"), baseline());
+        assert_eq!((title(&s).as_str(), points(&b)), ("b.toml", 5));
+        let [left] = s.editor().left() else { panic!("one unsaved scene") };
+        assert_eq!((left.title().as_str(), left.scene()), ("scene.toml •", &unsaved));
     }
-    let mut s = Session::opened(folder, Some("b.toml"), baseline(), USUAL_SIZE);
-    assert_eq!((s.editor().left()[0].title().as_str(), points(&b)), ("scene.toml •", 5));
     for label in ["File", "Unsaved scenes", "scene.toml (3 objects)", "Bring back"] {
         s.click(label);
     }
@@ -152,7 +141,7 @@ fn a_window_with_a_scene_not_kept_closes_at_the_second_try() {
     s.ask(EditCommand::Add(NewObject::Point, None));
     assert!(stays_open(&mut s));
     s.app.get_by_label_contains("can't be autosaved");
-    assert!(!stays_open(&mut s), "whoever closes it again means it");
+    assert!(!stays_open(&mut s), "closed again, it is meant");
 }
 
 fn stays_open(s: &mut Session) -> bool {

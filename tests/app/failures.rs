@@ -5,13 +5,9 @@ use apertura::evaluate::rows::Row;
 use apertura::evaluate::sets::SceneFolder;
 use apertura::evaluate::worsen::WorseningSearch;
 
-fn methods() -> Vec<Arc<dyn Reconstructor>> {
-    vec![Arc::new(Baseline), Arc::new(CAPON)]
-}
-
 fn tried() -> Session {
-    let mut s = Session::with_methods(methods());
-    s.ask_and_wait(Command::Rows(RowsCommand::Try(choice(vec![Kind::Set2], false))));
+    let mut s = Session::with_methods(with_capon());
+    s.ask_and_wait(RowsCommand::Try(choice(vec![Kind::Set2], false)));
     assert_eq!(s.state().rows().len(), 6);
     s
 }
@@ -25,16 +21,9 @@ fn name(row: &Row) -> String {
 }
 
 fn listed(s: &Session) -> Vec<String> {
-    let mut rows: Vec<(f32, String)> = s
-        .state()
-        .rows()
-        .iter()
-        .map(name)
-        .filter_map(|name| {
-            let top = s.app.query_by_label(&name)?.rect().top();
-            Some((top, name))
-        })
-        .collect();
+    let top = |name: &str| s.app.query_by_label(name).map(|row| row.rect().top());
+    let rows = s.state().rows().iter().map(name);
+    let mut rows: Vec<(f32, String)> = rows.filter_map(|name| Some((top(&name)?, name))).collect();
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     rows.into_iter().map(|(_, name)| name).collect()
 }
@@ -45,13 +34,6 @@ fn worst(s: &Session) -> (usize, Row) {
     (worst.0, worst.1.clone())
 }
 
-fn write(s: &mut Session, text: &str) {
-    s.app.get_by_label("Filter").focus();
-    s.app.step();
-    s.app.get_by_label("Filter").type_text(text);
-    s.settle();
-}
-
 #[test]
 fn the_worst_row_can_be_found_changed_kept() {
     let mut s = tried();
@@ -60,20 +42,16 @@ fn the_worst_row_can_be_found_changed_kept() {
     let (index, row) = worst(&s);
     assert_eq!((listed(&s).len(), &listed(&s)[0]), (6, &name(&row)));
 
-    write(&mut s, "method = 'capon' & objcts > 1");
+    s.enter("Filter", "method = 'capon' & objcts > 1");
     let told = s.shows("column 20:");
     assert!(told && listed(&s).len() == 6, "a mistake is pointed at, and the rows stay");
-    s.app.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    s.settle();
-    write(&mut s, "squared_error >= capon.squared_error & method = 'baseline'");
+    s.enter("Filter", "squared_error >= capon.squared_error & method = 'baseline'");
     let rows = s.state().rows();
     let of_capon = |row: &Row| rows.iter().find(|r| r.index == row.index && r.method == "capon").unwrap();
     let worse = |row: &&Row| row.method == "baseline" && row.squared_error >= of_capon(row).squared_error;
     assert_eq!(listed(&s).len(), rows.iter().filter(worse).count());
-    s.app.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    s.settle();
-    s.app.key_press(Key::Delete);
-    s.settle();
+    s.press(Modifiers::COMMAND, Key::A);
+    s.press(Modifiers::NONE, Key::Delete);
 
     let before = s.editor().document().clone();
     s.click(&name(&row));
@@ -90,8 +68,7 @@ fn the_worst_row_can_be_found_changed_kept() {
     let verdicts = s.app.query_all_by_label_contains(&missed).count();
     assert!(row.missed == 0 || verdicts == 2, "those of the row, and those of now: {verdicts}");
 
-    let at = s.handle("point 1: move");
-    s.drag(at, vec2(25.0, 10.0), 5);
+    s.drag(s.handle("point 1: move"), vec2(25.0, 10.0), 5);
     assert!(s.editor().is_modified() && s.state().metrics() != Some(m));
     let file = s.editor().document().to_file();
     s.ask(RowsCommand::KeepScene("Moved a little.".to_owned()));
@@ -99,7 +76,7 @@ fn the_worst_row_can_be_found_changed_kept() {
     let kept = apertura::scene::file::load(SceneFolder::open(&own).unwrap().file(0).unwrap()).unwrap();
     assert_eq!((kept.scene.objects, kept.radar), (file.scene.objects, file.radar));
     assert_eq!(kept.scene.notes, "Moved a little.");
-    s.ask_and_wait(Command::Rows(RowsCommand::Try(choice(Vec::new(), true))));
+    s.ask_and_wait(RowsCommand::Try(choice(Vec::new(), true)));
     assert_eq!(s.state().rows().len(), 8, "it is a test set at once");
 
     s.ask(EditCommand::Undo);
@@ -113,23 +90,17 @@ fn one_undo_takes_a_walk_through_rows_back() {
     let before = (s.editor().document().id(), s.state().settings.method.clone());
     s.ask(ViewCommand::SetFloor(Floor::Exact));
     s.ask(WindowCommand::OpenPanel(Panel::Failures));
-    let mut last = None;
-    let first = s.handle(&name(&s.state().rows()[0]));
-    s.drag(first, vec2(0.0, 0.0), 1);
-    assert_eq!(
-        s.state().opened_row(),
-        Some(0),
-        "by the pointer, as a person would: the rows have the keys from then on"
-    );
+    // By the pointer: the rows have the keys from then on.
+    s.drag(s.handle(&name(&s.state().rows()[0])), vec2(0.0, 0.0), 1);
+    assert_eq!(s.state().opened_row(), Some(0));
     for step in 1..4 {
         s.press(Modifiers::NONE, Key::ArrowDown);
         assert_eq!(s.state().opened_row(), Some(step));
         let row = &s.state().rows()[step];
         assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error);
         assert_eq!(s.state().settings.floor, Floor::Thesis, "as the rows were made");
-        last = s.state().metrics();
     }
-    assert!(last.is_some() && s.editor().left().is_empty(), "a walk leaves nothing behind");
+    assert!(s.editor().left().is_empty(), "a walk leaves nothing behind");
     s.ask(EditCommand::Undo);
     let after = (s.editor().document().id(), s.state().settings.method.clone());
     assert_eq!((after, s.state().settings.floor), (before, Floor::Exact));
@@ -150,8 +121,8 @@ fn rows_outlive_a_restart() {
     s.ask(RowsCommand::Clear);
     s.ask(RowsCommand::OpenTable(path.clone()));
     assert_eq!(s.state().rows(), rows, "as when the file is dropped on the window");
-    let (_, row) = worst(&s);
-    s.ask(RowsCommand::Show(rows.iter().position(|r| *r == row).unwrap()));
+    let (index, row) = worst(&s);
+    s.ask(RowsCommand::Show(index));
     s.ask(WindowCommand::ClosePanel(Panel::Failures));
     assert_eq!(s.state().metrics().unwrap().squared_error, row.squared_error, "the radar is that of the rows");
     std::fs::write(&path, "not,rows\n1,2\n").unwrap();
@@ -159,7 +130,7 @@ fn rows_outlive_a_restart() {
     s.ask(RowsCommand::OpenFile(path));
     assert!(s.state().notices.list.len() > messages && s.state().rows() == rows, "it is told, and the rows stay");
     step_until(&mut s, "they are kept", |s| s.state().jobs.failures.is_kept());
-    let s = s.reopened(Some("scene.toml"), methods());
+    let s = s.reopened(Some("scene.toml"), with_capon());
     assert_eq!(s.state().rows(), rows);
 }
 

@@ -30,27 +30,22 @@ fn on_the_command_line(scene: &Path) -> Figures {
 
 #[test]
 fn one_scene_has_one_set_of_figures() {
-    let mut s = Session::start();
+    let s = Session::start();
     let file = s.path("figures.toml");
     std::fs::write(&file, SCENE).unwrap();
     let expected = on_the_command_line(&file);
 
-    let app = harness(s.folder.path(), Some("figures.toml"), baseline(), USUAL_SIZE);
-    let mut fresh = Session { app, folder: tempdir().unwrap() };
-    fresh.settle();
+    let fresh = s.reopened(Some("figures.toml"), baseline());
     assert_eq!(on_screen(&fresh), expected, "after a fresh start");
-    drop(fresh);
 
-    let at = s.handle("point 1: move");
-    s.drag(at, vec2(30.0, 12.0), 20);
+    let mut s = fresh.reopened(Some("scene.toml"), baseline());
+    s.drag(s.handle("point 1: move"), vec2(30.0, 12.0), 20);
     s.ask(DocumentCommand::RandomScene(Kind::Set2));
     s.ask(DocumentCommand::OpenPath(file));
     assert_eq!(on_screen(&s), expected, "after other scenes");
 
-    let at = s.handle("point 2: move");
-    s.drag(at, vec2(25.0, -9.0), 20);
+    s.drag(s.handle("point 2: move"), vec2(25.0, -9.0), 20);
     let moved = s.path("moved.toml");
-    Document::read(&s.path("figures.toml")).expect("it is still there");
     let scene = s.editor().document().to_file();
     apertura::scene::file::save(&moved, &scene).unwrap();
     let expected = on_the_command_line(&moved);
@@ -127,7 +122,6 @@ fn at_rest_the_answer_is_that_from_scratch() {
     s.app.drop_at(at + vec2(18.0, 6.0));
     s.settle();
     assert_eq!(count(0), scratch + 1);
-    let trial = Trial::new(s.state().radar(), s.editor().scene(), Floor::Thesis, Normalisation::MinMax);
-    let answer = trial.unwrap().ask(hybrid.as_ref(), &Request::default()).unwrap();
+    let answer = s.trial().ask(hybrid.as_ref(), &Request::default()).unwrap();
     assert_eq!(s.state().metrics(), Some(answer.metrics));
 }

@@ -4,8 +4,7 @@ use crate::session::*;
 use apertura::evaluate::Target;
 
 fn session() -> Session {
-    let methods: [Arc<dyn Reconstructor>; 3] = [Arc::new(Baseline), Arc::new(MatchedFilter::Coherent), Arc::new(IAA)];
-    let mut s = Session::with_methods(methods.into());
+    let mut s = Session::with_methods(vec![Arc::new(Baseline), Arc::new(MatchedFilter::Coherent), Arc::new(IAA)]);
     s.ask(ViewCommand::Method("baseline"));
     s
 }
@@ -44,8 +43,7 @@ fn a_layout_that_the_radar_has_not_is_let_go() {
     let mut s = session();
     s.ask(ViewCommand::Hear(Some(nested())));
     let told = s.state().notices.list.len();
-    let radar = Radar { elements: 64, end_elements: 6, ..s.state().radar().clone() };
-    s.ask(RadarCommand::Set(Box::new(radar)));
+    s.ask(RadarCommand::Set(Box::new(Radar { elements: 64, end_elements: 6, ..s.state().radar().clone() })));
     assert_eq!((&s.state().settings.view.layout, s.state().notices.list.len()), (&None, told + 1));
     assert!(s.state().pictures().contains(&MapKind::Input1) && s.state().refusal().is_none());
 }

@@ -173,14 +173,12 @@ fn a_shown_solution_is_unsolved_until_the_step_is_begun_again() {
     let mut s = Session::start();
     begin(&mut s, "range-and-bandwidth", 5);
     let is_met = |s: &Session| s.state().progress.record("range-and-bandwidth", 4).challenge_met;
-    let measured = |s: &Session| s.shows("(now ") && !s.shows("not met yet");
     s.ask(LessonCommand::ShowSolution);
-    step_until(&mut s, "the solution is measured", measured);
+    step_until(&mut s, "the solution is measured", |s| s.shows("(now ") && !s.shows("not met yet"));
     assert!(!is_met(&s) && s.shows("counts as unsolved"));
     s.click("Start this step again");
     step_until(&mut s, "the step is as it was", |s| s.shows("not met yet"));
-    let radar = Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() };
-    s.ask(RadarCommand::Set(Box::new(radar)));
+    s.ask(RadarCommand::Set(Box::new(Radar { bandwidth_hz: 0.95e9, ..s.state().radar().clone() })));
     step_until(&mut s, "it is solved", |s| s.shows("Solved. "));
     assert!(is_met(&s));
 }
@@ -222,8 +220,7 @@ fn undo_stops_at_the_scene_of_the_step() {
 #[test]
 fn the_end_of_a_lesson_gives_the_zoom_back() {
     let mut s = Session::start();
-    let over = s.app.get_by_label("Target map").rect().center();
-    s.app.hover_at(over);
+    s.app.hover_at(s.handle("Target map"));
     s.app.step();
     s.app.event(Event::Zoom(1.5));
     s.app.run_steps(30);

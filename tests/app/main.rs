@@ -1,7 +1,6 @@
 //! Drives the whole app without a display: pointer, keys, files; asserts on state and on the work that was done and not done.
 
 mod age;
-mod bodies;
 mod compare;
 mod detection;
 mod documents;
@@ -14,7 +13,6 @@ mod lessons;
 mod monkey;
 mod motion;
 mod names;
-mod narrow;
 mod older_files;
 mod panels;
 mod pictures;

@@ -14,7 +14,8 @@ fn moving() -> Session {
 #[test]
 fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
     let mut s = moving();
-    assert_eq!(s.state().panels.requests(Panel::RangeDoppler), 0, "a closed panel costs nothing");
+    let requests = |s: &Session| s.state().panels.requests(Panel::RangeDoppler);
+    assert_eq!(requests(&s), 0, "a closed panel costs nothing");
     s.ask(WindowCommand::OpenPanel(Panel::RangeDoppler));
     let radar = s.state().radar().clone();
     let (_, column) = s.state().doppler_peak().expect("a map");
@@ -22,19 +23,15 @@ fn a_closed_range_doppler_map_or_one_chirp_costs_nothing() {
     // The nearer of the two is the louder one.
     let expected = s.objects()[1].radial_velocity_metres_per_second();
     assert!((velocity - expected).abs() < 0.6 * radar.velocity_resolution_metres_per_second(), "{velocity}");
-    let asked = s.state().panels.requests(Panel::RangeDoppler);
+    let asked = requests(&s);
     s.undo();
-    assert_eq!(
-        (s.state().radar().chirps, s.state().panels.requests(Panel::RangeDoppler)),
-        (1, asked),
-        "chirps are undone"
-    );
+    assert_eq!((s.state().radar().chirps, requests(&s)), (1, asked), "chirps are undone");
     s.ask(RadarCommand::Set(Box::new(radar)));
     assert_eq!(s.state().radar().chirps, 64);
     s.ask(WindowCommand::TogglePanel(Panel::RangeDoppler));
-    let asked = s.state().panels.requests(Panel::RangeDoppler);
+    let asked = requests(&s);
     s.ask(EditCommand::SetField(Field::VelocityY, FieldChange::To(3.0)));
-    assert_eq!(s.state().panels.requests(Panel::RangeDoppler), asked);
+    assert_eq!(requests(&s), asked);
 }
 
 #[test]
@@ -46,7 +43,6 @@ fn maps_follow_time_but_the_document_stays() {
     s.ask(ViewCommand::SetTime(0.5));
     assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().work_done().0 > requested);
     assert_eq!(s.state().scene().objects[0].centre_metres(), [0.0, 25.0]);
-    // A press in the scene goes back; the next drag edits.
     s.drag(at, vec2(30.0, 0.0), 3);
     assert!(Arc::ptr_eq(s.editor().scene(), &document) && s.state().timeline.seconds == 0.0);
     s.ask(ViewCommand::SetTime(0.5));

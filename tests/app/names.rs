@@ -1,14 +1,10 @@
-//! Names for screen readers, and the window at twice the size.
+//! Names for screen readers, and windows at twice the size or as narrow as a telephone.
 
 use crate::session::*;
 
-fn has_to_be_named(role: Role) -> bool {
-    is_used(role) || matches!(role, Role::Image | Role::Canvas)
-}
-
 fn nameless(s: &Session, what: &str) -> Vec<String> {
     let nodes = s.app.root().children_recursive().map(|node| node.accesskit_node()).collect::<Vec<_>>();
-    let named = nodes.iter().filter(|n| has_to_be_named(n.role()));
+    let named = nodes.iter().filter(|n| is_used(n.role()) || matches!(n.role(), Role::Image | Role::Canvas));
     assert!(named.clone().count() > 5, "{what}");
     let silent = named.filter(|n| n.label().is_none_or(|label| label.trim().is_empty()));
     silent.map(|n| format!("{what}: {:?}, value {:?}", n.role(), n.value())).collect()
@@ -59,12 +55,11 @@ fn captions_name_every_map_until_the_first_drag() {
         assert!(s.painted().iter().any(|t| t.starts_with(wanted)), "{wanted}: {:?}", s.painted());
     }
     assert!(s.painted().iter().any(|t| t.starts_with("Drag a reflector")), "{:?}", s.painted());
-    let at = s.handle("point 1: move");
-    s.drag(at, eframe::egui::vec2(30.0, 0.0), 3);
+    s.drag(s.handle("point 1: move"), vec2(30.0, 0.0), 3);
     assert!(!s.state().shows_captions() && !s.painted().iter().any(|t| t.starts_with("Target: all")));
     s.ask(Command::Window(WindowCommand::ToggleCaptions));
     assert!(s.state().shows_captions(), "Help brings them back");
-    s.ask(Command::Edit(apertura::app::EditCommand::Select(vec![0], SelectionMode::Replace)));
+    s.select(0);
     s.press(Modifiers::NONE, Key::ArrowRight);
     assert!(!s.state().shows_captions(), "arrow keys move it as a drag does");
 }
@@ -84,12 +79,11 @@ fn maps_bend_into_cartesian_ones_at_once() {
 #[test]
 fn nothing_is_cut_off_at_twice_the_size() {
     let mut s = Session::opened(tempdir().unwrap(), None, baseline(), [720.0, 450.0]);
-    s.ask(Command::Window(WindowCommand::ClosePanel(Panel::Controls)));
-    let cut = wider_than_their_place(&s);
-    assert!(cut.is_empty(), "{cut:?}");
-    s.ask(Command::Window(WindowCommand::Maximise(Panel::Map(MapKind::Target))));
-    let cut = wider_than_their_place(&s);
-    assert!(cut.is_empty(), "{cut:?}");
+    for command in [WindowCommand::ClosePanel(Panel::Controls), WindowCommand::Maximise(Panel::Map(MapKind::Target))] {
+        s.ask(command);
+        let cut = wider_than_their_place(&s);
+        assert!(cut.is_empty(), "{cut:?}");
+    }
 }
 
 /// Texts that reach beyond the left or the right end of the drawable area: no scrolling brings them into sight.
@@ -99,6 +93,16 @@ fn wider_than_their_place(s: &Session) -> Vec<String> {
     };
     let cut = s.texts().into_iter().filter(|(clip, text)| is_cut(*clip, text.visual_bounding_rect()));
     cut.map(|(_, text)| text.galley.text().to_owned()).filter(|text| !text.trim().is_empty()).collect()
+}
+
+#[test]
+fn a_narrow_window_has_scene_output_and_target_in_one_column() {
+    let Session { app, folder } = Session::start();
+    drop(app);
+    let s = Session::opened(folder, Some("scene.toml"), baseline(), [390.0, 844.0]);
+    let titles = ["Scene", "Output", "Target"].map(|title| s.app.get_by_role_and_label(Role::Label, title).rect());
+    assert!(titles.windows(2).all(|pair| pair[1].min.y - pair[0].max.y > 200.0), "{titles:?}");
+    assert!(titles[2].max.y + 150.0 < 844.0, "all three are on screen: {titles:?}");
 }
 
 #[test]

@@ -1,5 +1,4 @@
-//! An unsaved scene and rows from a window of version 0.1.0 are there in this one. The files stand in `tests/data/program-0.1.0` and must never be
-//! rewritten.
+//! An unsaved scene and rows of version 0.1.0 are there in this window. `tests/data/program-0.1.0` must never be rewritten.
 
 use crate::session::*;
 use apertura::evaluate::rows::FORMAT;

@@ -42,10 +42,9 @@ fn hidden_panels_are_not_computed() {
     s.ask(WindowCommand::ClosePanel(Panel::Roc));
     assert_eq!(s.state().pictures(), [MapKind::Input0, MapKind::Target, MapKind::TargetAbove]);
     s.ask(DocumentCommand::RandomScene(Kind::Set2));
-    let report = s.state().report().unwrap();
-    assert!(report.ran(EngineStage::FirstMap) && report.ran(EngineStage::FullMap));
-    let holds = !report.ran(EngineStage::LastMap) && !report.ran(EngineStage::Ends);
-    assert!(holds, "nobody looks at input 1 or an output");
+    let ran = |stage| s.state().report().unwrap().ran(stage);
+    assert!(ran(EngineStage::FirstMap) && ran(EngineStage::FullMap));
+    assert!(!ran(EngineStage::LastMap) && !ran(EngineStage::Ends), "input 1 and every output are out of sight");
     s.ask(WindowCommand::TogglePanel(Panel::Map(MapKind::Input1)));
     assert!(s.state().pictures().contains(&MapKind::Input1));
 }
@@ -56,10 +55,8 @@ fn a_maximised_map_is_the_only_one_computed() {
     s.ask(WindowCommand::Maximise(Panel::Map(MapKind::Input0)));
     assert_eq!(s.state().pictures(), [MapKind::Input0]);
     s.ask(DocumentCommand::RandomScene(Kind::Set1));
-    let report = s.state().report().unwrap();
-    assert!(
-        report.ran(EngineStage::FirstMap) && !report.ran(EngineStage::FullMap) && !report.ran(EngineStage::LastMap)
-    );
+    let ran = |stage| s.state().report().unwrap().ran(stage);
+    assert!(ran(EngineStage::FirstMap) && !ran(EngineStage::FullMap) && !ran(EngineStage::LastMap));
     s.press(Modifiers::NONE, Key::Escape);
     assert_eq!(s.state().pictures().len(), 6);
 }
@@ -67,22 +64,19 @@ fn a_maximised_map_is_the_only_one_computed() {
 #[test]
 fn bounds_follow_the_selected_reflector() {
     let mut s = Session::start();
-    assert_eq!(s.state().panels.requests(Panel::Bounds), 0);
+    let requests = |s: &Session| s.state().panels.requests(Panel::Bounds);
+    assert_eq!(requests(&s), 0);
     s.ask(WindowCommand::OpenPanel(Panel::Bounds));
     let before = s.state().position_bound().expect("of the first reflector");
-    let at = s.handle("point 2: move");
-    s.drag(at, vec2(0.0, 20.0), 4);
-    let after = s.state().position_bound().unwrap();
-    assert_ne!(before, after);
+    s.drag(s.handle("point 2: move"), vec2(0.0, 20.0), 4);
+    assert_ne!(s.state().position_bound().unwrap(), before);
     s.ask(WindowCommand::TogglePanel(Panel::Bounds));
-    let asked = s.state().panels.requests(Panel::Bounds);
-    let at = s.handle("point 2: move");
-    s.drag(at, vec2(0.0, 20.0), 4);
-    assert_eq!(s.state().panels.requests(Panel::Bounds), asked);
+    let asked = requests(&s);
+    s.drag(s.handle("point 2: move"), vec2(0.0, 20.0), 4);
+    assert_eq!(requests(&s), asked);
 }
 
 fn press_in_the_guide(s: &mut Session, name: &str) {
-    use eframe::egui::accesskit::Role;
     while s.app.query_by_role_and_label(Role::Button, name).is_none() {
         s.app.get_by_role_and_label(Role::Button, "Next").click();
         s.settle();

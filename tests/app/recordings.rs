@@ -9,8 +9,7 @@ const CASCADE: usize = 0;
 const CHIP: usize = 1;
 
 fn with_iaa() -> Session {
-    let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(IAA), Arc::new(Baseline)];
-    Session::with_methods(methods)
+    Session::with_methods(vec![Arc::new(IAA), Arc::new(Baseline)])
 }
 
 fn copied(s: &Session, name: &str) -> PathBuf {
@@ -26,8 +25,7 @@ fn copied(s: &Session, name: &str) -> PathBuf {
 fn the_scene_before_a_recording_is_one_undo_away() {
     let mut s = Session::start();
     s.ask(EditCommand::Add(NewObject::Point, None));
-    let path = copied(&s, "chip-8.toml");
-    s.ask(DocumentCommand::OpenPath(path));
+    s.ask(DocumentCommand::OpenPath(copied(&s, "chip-8.toml")));
     assert_eq!(s.editor().document().title(), "chip-8.toml");
     assert_eq!(s.editor().left().len(), 1, "the unsaved scene is kept");
     s.undo();
@@ -44,8 +42,7 @@ fn reflectors_laid_over_a_recording_explain_part_of_it() {
     s.ask(DocumentCommand::Recording(CHIP));
     s.ask(WindowCommand::OpenPanel(Panel::Map(MapKind::Unexplained)));
     assert_eq!(s.state().explained(), Some(0.0));
-    let strongest = s.state().found().unwrap()[0];
-    let at = strongest.reflector();
+    let at = s.state().found().unwrap()[0].reflector();
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(at.x_metres, at.y_metres))));
     let one = s.state().explained().unwrap();
     assert!(one > 1e-3 && one < 1.0, "{one}");
@@ -87,7 +84,6 @@ fn what_is_laid_over_a_recording_never_replaces_it() {
     assert_eq!(s.objects().len(), 2);
     assert_eq!(s.editor().document().recording().map(|r| r.radar.elements), Some(8));
     assert_eq!(apertura::scene::file::load(&post).unwrap().radar.elements, 8, "commands see a scene");
-    // Another radar's recording explains nothing, and one that is gone is missed.
     std::fs::write(&post, text.replace("chip-8.toml", "cascade-86.toml")).unwrap();
     let error = Document::read(&post).unwrap_err().to_string();
     assert!(error.contains("its radar is another"), "{error}");
@@ -117,8 +113,7 @@ fn a_recordings_constants_cannot_be_edited() {
 #[test]
 fn an_overlay_comes_back_over_its_recording_after_a_kill() {
     let mut s = Session::start();
-    let path = copied(&s, "chip-8.toml");
-    s.ask(DocumentCommand::OpenPath(path));
+    s.ask(DocumentCommand::OpenPath(copied(&s, "chip-8.toml")));
     s.ask(EditCommand::Add(NewObject::Point, Some(Place::new(0.5, 3.0))));
     s.wait_for_autosave();
     let s = s.reopened(None, vec![Arc::new(CAPON)]);
@@ -129,15 +124,13 @@ fn an_overlay_comes_back_over_its_recording_after_a_kill() {
 #[test]
 fn a_recording_is_opened_at_the_start() {
     let mut s = Session::start();
-    let path = copied(&s, "cascade-86.toml");
-    let text = std::fs::read_to_string(&path).unwrap();
+    let text = std::fs::read_to_string(copied(&s, "cascade-86.toml")).unwrap();
     std::fs::write(s.path("broken.toml"), text.replace("cascade-86.mat", "gone.mat")).unwrap();
     s.ask(DocumentCommand::OpenPath(s.path("broken.toml")));
     assert_eq!((s.state().notices.list.len(), s.state().radar().elements), (1, 128));
     let s = s.reopened(Some("cascade-86.toml"), vec![Arc::new(CAPON)]);
     assert_eq!(s.state().radar().elements, 86);
-    let found = s.state().arrangement.is_open(Panel::Found);
-    assert!(found, "what was found is in sight");
+    assert!(s.state().arrangement.is_open(Panel::Found), "what was found is in sight");
 }
 
 #[test]
@@ -155,9 +148,7 @@ fn disturbances_are_edits_of_the_scene() {
     let saved = Document::read(&path).unwrap();
     assert_eq!(saved.scene(), s.editor().scene());
     assert!(saved.scene().disturbances.elements.elements[3].dead);
-    // Fewer elements keep the errors of those that stay.
-    let radar = Radar { elements: 64, ..s.state().radar().clone() };
-    s.ask(RadarCommand::Set(Box::new(radar)));
+    s.ask(RadarCommand::Set(Box::new(Radar { elements: 64, ..s.state().radar().clone() })));
     assert_eq!(s.editor().scene().disturbances.elements.elements.len(), 64);
     for _ in 0..4 {
         s.undo();
@@ -166,8 +157,7 @@ fn disturbances_are_edits_of_the_scene() {
     assert_eq!(s.state().metrics(), before);
 }
 
-/// A capture of two frames of I Q pairs with its `.cfg`, in the session's folder: one transmitter, four receivers, four loops; an echo in range
-/// bin 11.
+/// A capture of two frames with its `.cfg`, in the session's folder: one transmitter, four receivers, four loops; an echo in range bin 11.
 fn captured(s: &Session) -> PathBuf {
     let sample = |n: usize| {
         let turns = std::f64::consts::TAU * (11.0 * (n % 64) as f64 / 64.0 + 0.15 * (n / 64 % 4) as f64);
@@ -186,8 +176,7 @@ fn captured(s: &Session) -> PathBuf {
 #[test]
 fn a_capture_is_opened_and_reread() {
     let mut s = with_iaa();
-    let path = captured(&s);
-    s.ask(DocumentCommand::OpenPath(path));
+    s.ask(DocumentCommand::OpenPath(captured(&s)));
     assert!(s.state().arrangement.is_open(Panel::Recording));
     let origin = |s: &Session| s.editor().document().recording().unwrap().origin.clone().unwrap();
     assert_eq!((origin(&s).frames, origin(&s).taken, s.state().radar().elements), (2, 0, 4));

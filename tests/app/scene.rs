@@ -1,4 +1,4 @@
-//! Editing, files, and documents after a crash.
+//! Objects under the pointer, the keys and the clipboard, and files that are damaged.
 
 use crate::session::*;
 
@@ -27,8 +27,7 @@ fn a_drag_moves_one_object_from_its_first_pixel() {
 fn keys_edit_what_a_box_selected() {
     let mut s = Session::start();
     let (a, b) = (s.handle("point 1: move"), s.handle("point 2: move"));
-    let corner = a.min(b) - vec2(25.0, 25.0);
-    let far = a.max(b) + vec2(25.0, 25.0);
+    let (corner, far) = (a.min(b) - vec2(25.0, 25.0), a.max(b) + vec2(25.0, 25.0));
     s.drag(corner, far - corner, 8);
     assert_eq!(s.editor().selection().len(), 2);
     s.press(Modifiers::NONE, Key::ArrowRight);
@@ -49,13 +48,11 @@ fn objects_travel_through_the_clipboard_as_toml() {
     s.undo();
     let text = s.editor().copy().unwrap();
     assert!(text.contains("[[object]]") && text.contains("kind = \"point\""));
-    s.app.event(Event::Paste(text));
-    s.settle();
-    assert_eq!(s.objects().len(), 4);
-    s.app.event(Event::Paste("not a scene".to_owned()));
-    s.settle();
-    assert_eq!(s.objects().len(), 4);
-    assert_eq!(s.state().notices.list.len(), 1, "and says why");
+    for (text, notices) in [(text, 0), ("not a scene".to_owned(), 1)] {
+        s.app.event(Event::Paste(text));
+        s.settle();
+        assert_eq!((s.objects().len(), s.state().notices.list.len()), (4, notices));
+    }
 }
 
 #[test]
@@ -96,4 +93,22 @@ fn a_double_click_adds_a_point_where_it_was() {
     s.settle();
     assert_eq!(s.objects().len(), 3);
     assert!(s.place(2)[0] < 0.0 && (s.place(2)[1] - 20.0).abs() < 0.2);
+}
+
+#[test]
+fn the_status_bar_names_the_echo_under_the_pointer() {
+    let mut s = Session::start();
+    s.press(Modifiers::COMMAND, Key::A);
+    s.press(Modifiers::NONE, Key::Delete);
+    s.ask(EditCommand::Add(NewObject::Post, Some(Place::new(6.0, 20.0))));
+    s.ask(EditCommand::Add(NewObject::Wall, Some(Place::new(0.0, 12.0))));
+    for (handle, points_below, echo, is_told) in [
+        ("wall 2: move", 0.0, "glint of wall 2", true),
+        ("post 1: move", 0.0, "post of post 1", true),
+        ("wall 2: move", 80.0, "glint of wall 2", false),
+    ] {
+        s.app.hover_at(s.handle(handle) + vec2(0.0, points_below));
+        s.app.run_steps(3);
+        assert_eq!(s.shows(echo), is_told, "{echo}, {points_below} points below {handle}");
+    }
 }

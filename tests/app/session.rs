@@ -20,8 +20,6 @@ pub use eframe::egui::accesskit::Role;
 pub use eframe::egui::{Event, Key, Modifiers, OutputCommand, PointerButton, Pos2, Shape, pos2, vec2};
 pub use egui_kittest::Harness;
 pub use egui_kittest::kittest::{NodeT, Queryable};
-pub use ndarray::Array2;
-pub use num_complex::Complex64;
 pub use rand::RngExt;
 pub use std::collections::BTreeSet;
 pub use std::path::{Path, PathBuf};
@@ -40,6 +38,10 @@ pub type Methods = Vec<Arc<dyn Reconstructor>>;
 
 pub fn baseline() -> Methods {
     vec![Arc::new(Baseline)]
+}
+
+pub fn with_capon() -> Methods {
+    vec![Arc::new(Baseline), Arc::new(CAPON)]
 }
 
 pub struct Session {
@@ -124,6 +126,11 @@ impl Session {
         &self.editor().scene().objects
     }
 
+    /// The scene on screen over the thesis' floor, as a command judges it.
+    pub fn trial(&self) -> Trial {
+        Trial::new(self.state().radar(), self.editor().scene(), Floor::Thesis, Normalisation::MinMax).unwrap()
+    }
+
     pub fn select(&mut self, object: usize) {
         self.ask(EditCommand::Select(vec![object], SelectionMode::Replace));
     }
@@ -133,6 +140,15 @@ impl Session {
         self.app.step();
         self.app.drag_at(at);
         self.app.step();
+    }
+
+    /// Replaces what the field called `label` holds.
+    pub fn enter(&mut self, label: &str, text: &str) {
+        self.app.get_by_label(label).focus();
+        self.app.step();
+        self.press(Modifiers::COMMAND, Key::A);
+        self.app.event(Event::Text(text.to_owned()));
+        self.settle();
     }
 
     /// Every text of the last frame with its drawable area, those without a screen reader's node included.
@@ -172,7 +188,7 @@ impl Session {
     }
 
     pub fn place(&self, object: usize) -> [f64; 2] {
-        self.state().editor.scene().objects[object].centre_metres()
+        self.objects()[object].centre_metres()
     }
 
     pub fn handle(&self, label: &str) -> Pos2 {
@@ -251,18 +267,4 @@ impl Reconstructor for Stub {
 pub fn is_used(role: Role) -> bool {
     use Role::*;
     matches!(role, Button | CheckBox | RadioButton | SpinButton | Slider | ComboBox | TextInput | Link)
-}
-
-/// Writes samples with a text that says which radar they are of, between `head` and `tail`; the text's path.
-pub fn write_recording(folder: &Path, radar: &Radar, heard: &Array2<Complex64>, [head, tail]: [&str; 2]) -> PathBuf {
-    ndarray_npy::write_npy(folder.join("recorded.npy"), heard).unwrap();
-    let Radar { carrier_hz, bandwidth_hz, element_spacing_metres, elements, end_elements, samples, .. } = radar;
-    let carrier = if radar.carrier == Carrier::TwoWay { "two-way" } else { "one-way" };
-    let text = format!(
-        "{head}[radar]\ncarrier = \"{carrier}\"\ncarrier_hz = {carrier_hz:?}\nbandwidth_hz = {bandwidth_hz:?}\n\
-         element_spacing_metres = {element_spacing_metres:?}\nelements = {elements}\nend_elements = {end_elements}\n\
-         samples = {samples}\n[recording]\nfile = \"recorded.npy\"\naxes = [\"element\", \"sample\"]\n{tail}"
-    );
-    std::fs::write(folder.join("recorded.toml"), text).unwrap();
-    folder.join("recorded.toml")
 }

@@ -21,7 +21,7 @@ fn an_evaluation_runs_beside_the_app() {
 }
 
 #[derive(Debug)]
-struct Dropped(std::path::PathBuf);
+struct Dropped(PathBuf);
 
 impl egui::DroppedFile for Dropped {
     fn path(&self) -> &Path {
@@ -160,10 +160,6 @@ fn an_edit_does_not_wait_for_a_heavy_scene_to_come_to_rest() {
 #[test]
 fn the_window_exports_what_apertura_maps_writes() {
     exports_agree(Session::start(), &["--method", "baseline"]);
-}
-
-#[test]
-fn an_export_of_a_layout_is_what_apertura_maps_writes() {
     let mut s = Session::with_methods(vec![Arc::new(MatchedFilter::Coherent)]);
     s.ask(ViewCommand::Hear(Some(LayoutKind::Thinned { step: 9 })));
     let keys = exports_agree(s, &["--method", "matched-filter", "--layout", "thinned=9"]);
@@ -178,17 +174,17 @@ fn exports_agree(mut s: Session, arguments: &[&str]) -> BTreeSet<String> {
     command.arg("maps").arg(s.path("scene.toml")).arg("-o").arg(&by_command);
     assert!(command.args(arguments).status().unwrap().success());
     let [mut window, mut command] = [by_window, by_command].map(|path| Npz::open(&path).unwrap());
-    let keys = |archive: &Npz| archive.keys().iter().cloned().collect::<BTreeSet<_>>();
-    assert_eq!(keys(&window), keys(&command));
-    for key in keys(&window) {
-        match window.reals::<IxDyn>(&key) {
-            Ok(array) => assert_eq!(array, command.reals::<IxDyn>(&key).unwrap(), "{key}"),
+    let [keys, expected] = [&window, &command].map(|archive| archive.keys().iter().cloned().collect::<BTreeSet<_>>());
+    assert_eq!(keys, expected);
+    for key in &keys {
+        match window.reals::<IxDyn>(key) {
+            Ok(array) => assert_eq!(array, command.reals::<IxDyn>(key).unwrap(), "{key}"),
             Err(_) => {
-                let array = window.complexes::<IxDyn>(&key).unwrap();
-                assert_eq!(array, command.complexes::<IxDyn>(&key).unwrap(), "{key}");
+                let array = window.complexes::<IxDyn>(key).unwrap();
+                assert_eq!(array, command.complexes::<IxDyn>(key).unwrap(), "{key}");
             }
         }
     }
-    assert!(keys(&window).contains("cos_theta") && keys(&window).contains("output"));
-    keys(&window)
+    assert!(keys.contains("cos_theta") && keys.contains("output"));
+    keys
 }

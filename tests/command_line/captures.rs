@@ -1,5 +1,6 @@
 //! Raw captures on the command line: described, imported, and opened as they are.
 
+use super::rows::json;
 use crate::cli::*;
 use crate::made_captures::{Echo, RISING, STILL, cfg, samples, two_lanes};
 
@@ -15,17 +16,15 @@ fn with_capture() -> TempDir {
 #[test]
 fn an_import_says_what_it_found_with_why() {
     let folder = with_capture();
-    let mut command = apertura(&folder);
     let told = contains("I I Q Q as two lanes send them, 4 receivers one after another, 128 samples a chirp")
         .and(contains("Every receiver sees the same echoes"))
         .and(contains("One whole frame fills the file"))
         .and(contains("the choice is sure"))
         .and(contains("xWR1843"))
         .and(contains("wrote room.toml"));
-    command.args(["import", "room.bin", "-o", "room.toml"]).assert().success().stdout(told);
+    call(&folder, "import room.bin -o room.toml").assert().success().stdout(told);
     call(&folder, "maps room.toml -o m.npz").assert().success();
-    let output = call(&folder, "import room.bin --json").assert().success().get_output().stdout.clone();
-    let found: serde_json::Value = serde_json::from_slice(&output).unwrap();
+    let found = json(&folder, "import room.bin --json");
     assert_eq!((&found["certainty"], &found["layouts"][0]["parts"]), (&"sure".into(), &"two-lanes".into()));
     assert!(found["toml"].as_str().unwrap().contains("format = 3"));
 }
@@ -47,10 +46,8 @@ fn a_raw_capture_gives_the_place_of_its_echo() {
 #[test]
 fn a_raw_capture_has_a_range_doppler_map() {
     let folder = with_capture();
-    call(&folder, "range-doppler room.bin --static-clutter-out -o d.npz")
-        .assert()
-        .success()
-        .stdout(contains("of 8 velocities"));
+    let made = call(&folder, "range-doppler room.bin --static-clutter-out -o d.npz").assert().success();
+    made.stdout(contains("of 8 velocities"));
     let mut map = Npz::open(&folder.path().join("d.npz")).unwrap();
     let power = map.reals::<Ix2>("power").unwrap();
     let velocity = map.reals::<Ix1>("velocity_metres_per_second").unwrap();
@@ -62,18 +59,18 @@ fn a_raw_capture_has_a_range_doppler_map() {
 #[test]
 fn what_does_not_belong_to_a_capture_is_told() {
     let folder = with_capture();
-    let told = |arguments: &[&str], part: &'static str| {
-        apertura(&folder).args(arguments).assert().failure().stderr(contains(part));
-    };
-    told(&["import", "room.bin", "--board", "abc"], "no such board is known; expected xWR1642");
-    told(&["import", "room.bin", "-o", "room.txt"], "expected a name ending in .toml");
-    told(&["import", "room.bin", "-o", "no/room.toml"], "beside the capture");
-    told(&["range-doppler", "room.bin", "-o", "d.npz", "--time", "1"], "--time is a scene's");
-    told(&["range-doppler", "room.bin", "-o", "d.npz", "--seed", "1"], "--seed is a scene's");
-    told(&["maps", "room.bin", "-o", "m.npz", "--floor", "snr=20"], "--floor is a scene's");
-    told(&["reconstruct", "room.bin", "-o", "o.npz", "--floor", "exact"], "--floor is a scene's");
-    std::fs::write(folder.path().join("s.toml"), "").unwrap();
     std::fs::write(folder.path().join("wrong.bin"), [0; 5000]).unwrap();
-    told(&["maps", "wrong.bin", "-o", "m.npz"], "wrong.bin");
-    told(&["import", "no.bin"], "no.bin");
+    for (arguments, part) in [
+        ("import room.bin --board abc", "no such board is known; expected xWR1642"),
+        ("import room.bin -o room.txt", "expected a name ending in .toml"),
+        ("import room.bin -o no/room.toml", "beside the capture"),
+        ("import no.bin", "no.bin"),
+        ("range-doppler room.bin -o d.npz --time 1", "--time is a scene's"),
+        ("range-doppler room.bin -o d.npz --seed 1", "--seed is a scene's"),
+        ("maps room.bin -o m.npz --floor snr=20", "--floor is a scene's"),
+        ("maps wrong.bin -o m.npz", "wrong.bin"),
+        ("reconstruct room.bin -o o.npz --floor exact", "--floor is a scene's"),
+    ] {
+        call(&folder, arguments).assert().failure().stderr(contains(part));
+    }
 }

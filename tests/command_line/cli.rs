@@ -1,5 +1,6 @@
 //! The command line from outside: good input, bad input, and nothing half-written.
 
+use super::rows::json;
 pub use apertura::evaluate::campaign::Campaign;
 pub use apertura::evaluate::rows::read_rows;
 pub use apertura::evaluate::sets::SceneSet;
@@ -28,13 +29,6 @@ pub use tempfile::TempDir;
 pub fn apertura(folder: &TempDir) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
     command.current_dir(folder).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
-    command
-}
-
-/// The program with its arguments, where it reads and writes nothing in the folder.
-pub fn program(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_apertura"));
-    command.args(arguments);
     command
 }
 
@@ -72,11 +66,7 @@ fn a_range_doppler_map_is_written_as_numbers_or_a_picture() {
     let small = "[radar]\nelements = 64\nsamples = 64\nconvention = \"physical\"\n";
     let moving = TWO_POINTS.replacen("y_metres = 12.0", "y_metres = 2.0\nvelocity_y_metres_per_second = 90.0", 1);
     std::fs::write(folder.path().join("scene.toml"), format!("{small}{moving}")).unwrap();
-    let to = |name: &str| {
-        let mut command = apertura(&folder);
-        command.args(["range-doppler", "scene.toml", "-o", name, "--chirps", "32"]);
-        command
-    };
+    let to = |name: &str| call(&folder, &format!("range-doppler scene.toml -o {name} --chirps 32"));
     to("map.npz").assert().success().stderr(contains("beyond the unambiguous 37.5 m/s"));
     let mut archive = Npz::open(&folder.path().join("map.npz")).unwrap();
     assert_eq!(archive.reals::<Ix2>("power").unwrap().dim(), (64, 32));
@@ -93,15 +83,11 @@ fn a_range_doppler_map_is_written_as_numbers_or_a_picture() {
 fn the_environment_picks_the_instructions_or_is_refused() {
     let folder = folder();
     std::fs::write(folder.path().join("scene.toml"), TWO_POINTS).unwrap();
-    let with = |set: &str| {
-        let mut command = apertura(&folder);
-        command.env("APERTURA_SIMD", set).args(["maps", "scene.toml", "-o", "maps.npz"]);
-        command
-    };
-    with("portable").assert().success();
-    std::fs::remove_file(folder.path().join("maps.npz")).unwrap();
-    with("sse2").assert().failure().stderr(contains("\"sse2\"; expected portable, avx2 or avx512"));
-    assert_eq!(names(folder.path()), ["scene.toml"]);
+    let with =
+        |set: &str, to: &str| call(&folder, &format!("maps scene.toml -o {to}")).env("APERTURA_SIMD", set).assert();
+    with("portable", "a.npz").success();
+    with("sse2", "b.npz").failure().stderr(contains("\"sse2\"; expected portable, avx2 or avx512"));
+    assert_eq!(names(folder.path()), ["a.npz", "scene.toml"]);
 }
 
 #[test]
@@ -172,10 +158,7 @@ fn a_start_without_display_draws_the_scene_that_was_asked_for() {
 fn scenes_are_the_same_for_the_same_seed_in_both_formats() {
     let folder = folder();
     for (dir, format) in [("a", "toml"), ("b", "toml"), ("c", "npz")] {
-        apertura(&folder)
-            .args(["scenes", "--set", "3", "--count", "2", "--seed", "5", "-o", dir, "--format", format])
-            .assert()
-            .success();
+        call(&folder, &format!("scenes --set 3 --count 2 --seed 5 -o {dir} --format {format}")).assert().success();
     }
     let path = |dir: &str, name: &str| folder.path().join(dir).join(name);
     assert_eq!(names(&folder.path().join("a")), ["set3-seed5-0000.toml", "set3-seed5-0001.toml"]);
@@ -188,12 +171,35 @@ fn scenes_are_the_same_for_the_same_seed_in_both_formats() {
 }
 
 #[test]
+fn bodies_saved_as_positions_are_told_once_a_run() {
+    let folder = folder();
+    for (arguments, lines) in [
+        ("scenes --set bodies --index 0 -o b.npz", 1),
+        ("scenes --set bodies --count 2 --format npz -o b", 1),
+        ("scenes --set bodies --index 0 -o b.toml", 0),
+        ("scenes --set 2 --index 0 -o p.npz", 0),
+    ] {
+        let done = call(&folder, arguments).assert().success();
+        let told = String::from_utf8(done.get_output().stderr.clone()).unwrap();
+        let is_of_bodies = told.lines().all(|line| line.contains("a body becomes points"));
+        assert!(told.lines().count() == lines && is_of_bodies, "{arguments}: {told}");
+    }
+}
+
+#[test]
+fn an_empty_scene_has_neither_peak_nor_echo() {
+    let folder = folder();
+    std::fs::write(folder.path().join("empty.toml"), "name = \"empty\"\n").unwrap();
+    let maps = call(&folder, "maps empty.toml -o in.npz").assert().success();
+    maps.stdout(contains("there is no peak").and(contains("spans").not()));
+    let found = call(&folder, "reconstruct in.npz -o out.npz --method iaa").assert().success();
+    found.stdout(contains("no echo found"));
+}
+
+#[test]
 fn evaluate_prints_the_documented_object() {
     let (folder, start) = (folder(), std::time::Instant::now());
-    let run = || {
-        let out = call(&folder, "evaluate --method baseline --set 1 --count 2 --seed 3 --json").assert().success();
-        serde_json::from_slice::<serde_json::Value>(&out.get_output().stdout).unwrap()
-    };
+    let run = || json(&folder, "evaluate --method baseline --set 1 --count 2 --seed 3 --json");
     let (first, second) = (run(), run());
     assert_eq!((&first["count"], &first["seed"], &first["floor"]), (&2.into(), &3.into(), &"thesis".into()));
     let set = &first["sets"][0];
@@ -214,8 +220,7 @@ fn evaluate_prints_the_documented_object() {
     assert!((1e-3..1e3 * start.elapsed().as_secs_f64()).contains(&milliseconds), "{milliseconds}");
 }
 
-/// Mean P_D of the baseline on the first two scenes of set 1, seed 3, each at a threshold `above` the one that as many of the dark cells
-/// exceed as the rate says.
+/// Mean P_D of the baseline on the first two scenes of set 1, seed 3, each `above` the threshold that as many dark cells exceed as the rate says.
 fn detection_by_hand(false_alarm: f64, above: f32) -> f64 {
     let campaign = Campaign { seed: 3, ..Campaign::default() };
     let of_scene = |index| {
@@ -233,12 +238,8 @@ fn detection_by_hand(false_alarm: f64, above: f32) -> f64 {
 
 #[test]
 fn evaluate_shows_ours_beside_the_printed() {
-    let folder = folder();
-    call(&folder, "evaluate --set 2 --count 2")
-        .assert()
-        .success()
-        .stdout(contains("Table 4.2").and(contains("11334.99")).and(contains("1341.22")).and(contains("baseline")))
-        .stderr("");
+    let told = contains("Table 4.2").and(contains("11334.99")).and(contains("1341.22")).and(contains("baseline"));
+    call(&folder(), "evaluate --set 2 --count 2").assert().success().stdout(told).stderr("");
 }
 
 #[test]
@@ -249,7 +250,10 @@ fn bad_input_leaves_no_file() {
     write("key.toml", "[[object]]\nkind = \"point\"\nx_metres = 1\nz_metres = 2\n");
     write("text.npz", "not an archive");
     write("scene.yaml", TWO_POINTS);
+    write("recording.toml", "[recording]\nfile = \"a.npz\"\n");
     write_npz(&folder.path().join("half.npz"), |out| out.add("all_point_x", &array![1.0])).unwrap();
+    std::fs::create_dir(folder.path().join("empty")).unwrap();
+    call(&folder, "evaluate --count 1 --set 1 --rows good.csv").assert().success();
     let before = names(folder.path());
     for (arguments, part) in [
         ("maps missing.toml -o out.npz", "No such file"),
@@ -263,9 +267,29 @@ fn bad_input_leaves_no_file() {
         ("maps good.toml -o out.npz --carrier sideways", "one-way"),
         ("maps good.toml -o out.png --method magic", "baseline"),
         ("scenes --set 4 --count 1 -o d", "1, 2 or 3"),
-        ("scenes --set 1 --count 1 -o good.toml", "good.toml"),
+        ("maps good.toml -o out.png --config a.cfg", "good.toml: --config is that of a raw capture"),
+        ("maps good.toml -o out.npz --cfar ca", "out.npz: --cfar is a picture's"),
+        ("maps good.toml -o out.npz --colours grey", "--colours is a picture's"),
+        ("range-doppler good.toml -o out.png --config a.cfg", "--config is that of a raw capture"),
+        ("range-doppler good.toml -o out.npz --normalisation db=40", "--normalisation is a picture's"),
+        ("range-doppler good.toml -o out.npz --static-clutter-out", "--static-clutter-out is a recording's"),
+        ("budget recording.toml", "recording.toml: line 1, column 1: this is a recording; expected a scene"),
+        ("worsen recording.toml --method baseline -o w.toml", "this is a recording; expected a scene"),
+        ("scenes --set 1 --count 1 -o good.toml", "good.toml: is a file; expected a folder"),
+        ("scenes --set 1 --index 1 -o good.toml/a.toml", "good.toml: is a file; expected a folder"),
+        ("scenes --set 1 -o s", "--count"),
         ("evaluate --method magic", "baseline"),
         ("evaluate --set 1,9", "1, 2 or 3"),
+        ("evaluate --merge good.csv good.csv", "stands in good.csv and in good.csv"),
+        ("evaluate --merge missing.csv", "missing.csv"),
+        ("evaluate --scenes empty", "no scene in this folder"),
+        ("evaluate --scenes missing", "missing"),
+        ("evaluate --count 2 --shard 3/4", "has no scene"),
+        ("evaluate --rows no/where.csv --count 1 --set 1", "where.csv"),
+        ("worsen missing.toml --method baseline -o w.toml", "missing.toml"),
+        ("worsen good.csv --method baseline -o w.toml", "good.csv"),
+        ("worsen good.toml --method baseline -o w.npz", "expected a name ending in .toml"),
+        ("bench --others missing.py", "missing.py: "),
     ] {
         call(&folder, arguments).assert().failure().stdout("").stderr(contains(part));
     }

@@ -58,21 +58,18 @@ fn rows_of_something_else_are_not_written_over() {
     std::fs::write(folder.path().join("wide.csv"), wide).unwrap();
     std::fs::write(folder.path().join("notes.csv"), "day,what\n1,rain\n").unwrap();
     for (arguments, part) in [
-        ("--set 1 --count 1 --floor exact --rows rows.csv", "floor is thesis there and exact here"),
-        ("--set 1 --count 1 --seed 4 --rows rows.csv", "seed is 0 there and 4 here"),
-        ("--set 1 --count 2 --rows rows.csv", "whole is 1 x 1 there and 1 x 2 here"),
-        ("--set 1 --count 1 --method bartlett --rows rows.csv", "rows of set 1 by baseline"),
-        ("--set 1 --count 1 --rows old.csv", "an older program wrote them"),
-        (
-            "--set 1 --count 1 --rows format-1.csv",
-            "version is 1 there and 2 here: the floor \"thesis\" is 1.8 dB quieter",
-        ),
-        ("--set 1 --count 1 --rows notes.csv", "there is no column"),
-        ("--set 1 --count 1 --rows wide.csv", "its columns are not those"),
+        ("--count 1 --floor exact --rows rows.csv", "floor is thesis there and exact here"),
+        ("--count 1 --seed 4 --rows rows.csv", "seed is 0 there and 4 here"),
+        ("--count 2 --rows rows.csv", "whole is 1 x 1 there and 1 x 2 here"),
+        ("--count 1 --method bartlett --rows rows.csv", "rows of set 1 by baseline"),
+        ("--count 1 --rows old.csv", "an older program wrote them"),
+        ("--count 1 --rows format-1.csv", "version is 1 there and 2 here: the floor \"thesis\" is 1.8 dB quieter"),
+        ("--count 1 --rows notes.csv", "there is no column"),
+        ("--count 1 --rows wide.csv", "its columns are not those"),
     ] {
         let name = arguments.split_whitespace().last().unwrap();
         let before = std::fs::read(folder.path().join(name)).unwrap();
-        let refused = call(&folder, &format!("evaluate {arguments}")).assert().failure().stdout("");
+        let refused = call(&folder, &format!("evaluate --set 1 {arguments}")).assert().failure().stdout("");
         refused.stderr(contains(part).and(contains("--overwrite")));
         assert_eq!(std::fs::read(folder.path().join(name)).unwrap(), before);
     }

@@ -7,6 +7,7 @@ fn numbers_out_of_range_say_what_is_allowed() {
     let folder = folder();
     for (arguments, allowed) in [
         ("robustness --phase-degrees -5", "'--phase-degrees <DEGREES>': expected a number from 0 to 180"),
+        ("robustness --phase-degrees 200", "expected a number from 0 to 180"),
         ("robustness --scale 1,x", "expected a number from 0 to 180"),
         ("robustness --set 4", "expected test set 1, 2 or 3, or clusters"),
         ("robustness --count 0", "expected a whole number from 1 to 10000"),
@@ -19,6 +20,12 @@ fn numbers_out_of_range_say_what_is_allowed() {
         ("layouts --count 1.5", "expected a whole number from 1 to 10000"),
         ("bounds --monte-carlo 0", "expected a whole number from 1 to 100000"),
         ("bounds --snr 500", "expected decibels between -200 and 200"),
+        ("bounds --layout three-ends", "three-ends"),
+        ("bounds --layout random=2000", "1 to 1024"),
+        ("bounds --at 5,-1", "Y above 0"),
+        ("bounds --apart 1e6", "expected columns from -649 to 374"),
+        ("layouts --layout mimo=3x3 --count 1", "own grid"),
+        ("budget --range -1", "expected metres from 0.001"),
         ("bench --reflectors 10,20000", "expected a whole number from 1 to 10000"),
         ("bench --repeats -1", "expected a whole number from 1 to 1000"),
         ("bench --methods --count 2000", "expected a whole number from 1 to 1000"),
@@ -36,13 +43,31 @@ fn numbers_out_of_range_say_what_is_allowed() {
 }
 
 #[test]
+fn a_mistyped_command_is_named_with_the_one_meant() {
+    let folder = folder();
+    std::fs::write(folder.path().join("scene"), "").unwrap();
+    for (arguments, says, is_of_clap) in [
+        ("mpas s.toml", "no command \"mpas\", did you mean \"maps\"?", false),
+        ("range-dopler s.toml -o d.png", "no command \"range-dopler\", did you mean \"range-doppler\"?", false),
+        ("xyzzy s.toml", "no command \"xyzzy\"\n", false),
+        ("s.toml maps", "'maps' cannot be used with", true),
+        ("scene maps", "'maps' cannot be used with", true),
+        ("maps s.toml --bogus", "unexpected argument '--bogus'", true),
+        ("help mpas", "'mpas'", true),
+    ] {
+        let told = call(&folder, arguments).assert().code(2).stderr(contains(says));
+        if is_of_clap {
+            told.stderr(contains("no command").not());
+        }
+    }
+    call(&folder, "--help").assert().code(0);
+}
+
+#[test]
 fn what_is_no_archive_of_samples_is_named() {
     let folder = folder();
-    let run = |name: &str| {
-        let mut command = apertura(&folder);
-        command.args(["reconstruct", name, "-o", "out.npz", "--method", "baseline"]);
-        command.assert().failure()
-    };
+    let run =
+        |name: &str| call(&folder, &format!("reconstruct {name} -o out.npz --method baseline")).assert().failure();
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
     call(&folder, "scenes --set 2 --index 0 -o s.toml").assert().success();
     call(&folder, "scenes --set 2 --index 0 -o s.npz").assert().success();
@@ -64,14 +89,10 @@ fn what_is_no_archive_of_samples_is_named() {
 #[test]
 fn the_folder_of_one_scene_is_made() {
     let folder = folder();
-    let run = |output: &str| {
-        let mut command = apertura(&folder);
-        command.args(["scenes", "--set", "1", "--index", "4", "-o", output]);
-        command.assert()
-    };
+    let run = |output: &str| call(&folder, &format!("scenes --set 1 --index 4 -o {output}")).assert();
     run("new/deep/s.toml").success();
     assert!(folder.path().join("new/deep/s.toml").exists());
-    run("other/s.png").failure().stderr(contains("s.png"));
+    run("other/s.png").failure().stderr(contains("s.png").and(contains(".toml or .npz")));
     assert!(!folder.path().join("other").exists(), "no folder for a file that can't be written");
 }
 
@@ -79,11 +100,8 @@ fn the_folder_of_one_scene_is_made() {
 #[test]
 fn what_is_no_weight_file_is_named() {
     let folder = folder();
-    let run = |name: &str| {
-        let mut command = apertura(&folder);
-        command.args(["evaluate", "--set", "1", "--count", "1", "--method", "thesis", "--weights", name]);
-        command.assert().failure()
-    };
+    let evaluate = "evaluate --set 1 --count 1 --method thesis --weights";
+    let run = |name: &str| call(&folder, &format!("{evaluate} {name}")).assert().failure();
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
     write("m.onnx", b"\x08\x08\x12\x07pytorch");
     run("m.onnx").stderr(contains("it is an ONNX model; expected weights as safetensors, or PyTorch's .pt"));
@@ -118,12 +136,9 @@ fn files_of_a_later_version_say_so() {
 fn a_full_disk_is_told_in_one_sentence() {
     let folder = folder();
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let run = || {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
-        command.current_dir(folder.path()).args(["scenes", "--set", "1", "--count", "1", "-o", "scenes"]);
-        command
-    };
-    let done = run().stdout(full).output().unwrap();
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_apertura"));
+    command.current_dir(folder.path()).args(["scenes", "--set", "1", "--count", "1", "-o", "scenes"]);
+    let done = command.stdout(full).output().unwrap();
     let told = String::from_utf8(done.stderr).unwrap();
     assert_eq!((done.status.code(), told.lines().count()), (Some(1), 1), "{told}");
     assert!(told.contains("standard output: No space left on device"), "{told}");

@@ -86,10 +86,8 @@ fn echoes_of_bodies_stand_in_rows_tables_and_json() {
     assert!(sum.there.iter().skip(1).sum::<usize>() > 0, "weak echoes count: {sum:?}");
     assert!(same(&of(1)["detection"], sum.part().unwrap()));
     let weakest = format!("{} of {}", sum.found[5], sum.there[5]);
-    call(&folder, "evaluate --merge rows.csv")
-        .assert()
-        .success()
-        .stdout(contains("echoes found").and(contains(weakest)));
+    let told = contains("echoes found").and(contains(weakest));
+    call(&folder, "evaluate --merge rows.csv").assert().success().stdout(told);
 }
 
 #[test]
@@ -97,7 +95,6 @@ fn the_part_of_cells_within_doubt_is_that_of_the_rows() {
     let folder = folder();
     let names = "set,index,seed,method,eta,squared_error,detection,false_alarm,detection_at_printed,milliseconds,objects,reflectors,\
                  missed,ghosts,nearest_pair_columns,nearest_pair_bins,min_range_metres,strongest_over_weakest_db,doubt,within_doubt\n";
-    // Nine of ten cells in the mean.
     let part = |i: u32| if i.is_multiple_of(2) { 0.875 } else { 0.925 };
     let row = |i: u32| format!("1,{i},0,live,0.8,{i},0.9,0.01,,5,3,3,0,0,,,5,0,{i},{}\n", part(i));
     let rows: String = (0..20).map(row).collect();
@@ -146,31 +143,20 @@ fn a_row_can_be_reproduced_by_hand_to_the_last_digit() {
 }
 
 #[test]
-fn what_is_wrong_with_rows_is_named() {
-    let folder = folder();
-    std::fs::create_dir(folder.path().join("empty")).unwrap();
-    call(&folder, "evaluate --count 1 --set 1 --rows good.csv").assert().success();
-    for (arguments, part) in [
-        ("evaluate --merge good.csv good.csv", "stands in good.csv and in good.csv"),
-        ("evaluate --merge missing.csv", "missing.csv"),
-        ("evaluate --scenes empty", "no scene in this folder"),
-        ("evaluate --scenes missing", "missing"),
-        ("evaluate --count 2 --shard 3/4", "has no scene"),
-        ("evaluate --rows no/where.csv --count 1 --set 1", "where.csv"),
-        ("scenes --set 1 --index 1 -o s.gif", ".toml or .npz"),
-        ("scenes --set 1 -o s", "--count"),
-        ("worsen missing.toml --method baseline -o w.toml", "missing.toml"),
-        ("worsen good.csv --method baseline -o w.toml", "good.csv"),
-    ] {
-        call(&folder, arguments).assert().failure().stdout("").stderr(contains(part));
-    }
-}
-
-#[test]
 fn without_a_terminal_lines_tell_the_progress() {
     let folder = folder();
-    let told = call(&folder, "evaluate --set 1 --count 3 --progress 0").assert().success();
-    told.stderr(contains("1 of 3 maps, now set 1;").and(contains("2 of 3 maps")).and(contains("left")));
+    for (command, lines) in [
+        ("evaluate --set 1 --count 3", ["1 of 3 maps, now set 1;", "2 of 3 maps"]),
+        ("layouts --layout two-ends --count 1", ["1 of 3 maps, now set 1, two-ends;", "2 of 3 maps, now set 2"]),
+        ("bounds --layout two-ends --snr 20,40 --monte-carlo 1", ["1 of 2 ratios, the last 20 dB;", "left"]),
+        (
+            "bench --algorithms plan --reflectors 10 --repeats 1",
+            [" of 100 percent, the last plan of 10 reflectors;", "left"],
+        ),
+    ] {
+        let told = call(&folder, &format!("{command} --progress 0")).assert().success();
+        told.stderr(contains(lines[0]).and(contains(lines[1])).and(contains("so far, about")));
+    }
 }
 
 #[test]
@@ -184,10 +170,8 @@ fn a_networks_rows_say_which_weights_it_had() {
     assert_eq!((methods[0]["weights"].as_str(), of_row.len()), (Some(&*of_row), 12));
     let text = std::fs::read_to_string(folder.path().join("rows.csv")).unwrap();
     std::fs::write(folder.path().join("other.csv"), text.replace(&*of_row, "0123456789ab")).unwrap();
-    call(&folder, "evaluate --merge rows.csv other.csv")
-        .assert()
-        .failure()
-        .stderr(contains("weights is").and(contains("0123456789ab in other.csv")));
+    let told = contains("weights is").and(contains("0123456789ab in other.csv"));
+    call(&folder, "evaluate --merge rows.csv other.csv").assert().failure().stderr(told);
     let table = call(&folder, "evaluate --merge rows.csv").assert().success();
     table.stdout(contains("live (AdamW; eta 0.").and(contains("at each scene's own")).and(contains("  median")));
 }

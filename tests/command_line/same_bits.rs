@@ -21,15 +21,10 @@ fn with_a_past(scene: &Scene) -> Engine {
 #[test]
 fn a_scene_at_rest_has_the_bits_of_the_command_line() {
     let scene = Scene::of_points([(3.0, 12.0), (-4.0, 20.0), (7.5, 7.0), (0.2, 31.0), (1.0, 18.0)]);
-    let folder = tempfile::tempdir().unwrap();
-    let text: String = scene
-        .reflectors()
-        .iter()
-        .map(|r| format!("[[object]]\nkind = \"point\"\nx_metres = {:?}\ny_metres = {:?}\n", r.x_metres, r.y_metres))
-        .collect();
-    std::fs::write(folder.path().join("scene.toml"), text).unwrap();
-    let mut program = Command::new(env!("CARGO_BIN_EXE_apertura"));
-    program.current_dir(&folder).args(["maps", "scene.toml", "-o", "maps.npz"]).assert().success();
+    let folder = folder();
+    let file = file::SceneFile { scene: scene.clone(), ..Default::default() };
+    file::save(&folder.path().join("scene.toml"), &file).unwrap();
+    call(&folder, "maps scene.toml -o maps.npz").assert().success();
     let mut written = Npz::open(&folder.path().join("maps.npz")).unwrap();
 
     let frame = with_a_past(&scene).settle(&scene, &MapRequest::default()).unwrap();

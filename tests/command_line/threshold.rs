@@ -1,14 +1,12 @@
 //! `apertura threshold` from outside.
 
-use super::cli::program as apertura;
+use super::rows::json;
+use crate::cli::*;
 
 #[test]
 fn a_threshold_keeps_the_rate_on_the_scenes_that_chose_it() {
-    let run = apertura(&["threshold", "--method", "baseline", "--false-alarm", "40", "--set", "1,2", "--count", "2"])
-        .args(["--check", "1", "--json"])
-        .assert()
-        .success();
-    let report: serde_json::Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    let threshold = "threshold --method baseline --false-alarm 40 --set 1,2 --count 2 --check 1 --json";
+    let report = json(&folder(), threshold);
     let number = |name: &str| report[name].as_f64().unwrap();
     assert_eq!((number("scenes"), number("wanted")), (4.0, 0.4));
     assert!((4.0 * number("false_alarm") + 1.0) / 5.0 <= 0.4, "{report}");

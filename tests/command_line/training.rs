@@ -11,21 +11,9 @@ epochs = 1
 batch = 1
 loss = \"mean-square\"
 validation_scenes = 0
-
-[network]
-kind = \"thesis\"
-filters = 1
-levels = 1
-alive_output = true
-
-[optimizer]
-kind = \"sgd\"
-learning_rate = 0.01
-momentum = 0.9
-
-[[scenes]]
-kind = { points = 1 }
-count = 2
+network = { kind = \"thesis\", filters = 1, levels = 1, alive_output = true }
+optimizer = { kind = \"sgd\", learning_rate = 0.01, momentum = 0.9 }
+scenes = [{ kind = { points = 1 }, count = 2 }]
 ";
 
 #[test]
@@ -36,9 +24,8 @@ fn a_run_goes_on_by_its_own_recipe() {
     run("train tiny.toml --output r --steps 1").success().stdout(contains("1 step, 1 map,"));
     std::fs::remove_file(folder.path().join("tiny.toml")).unwrap();
     run("train --resume r").success().stdout(contains("2 steps, 2 maps,"));
-    run("train --resume nowhere")
-        .failure()
-        .stderr(contains("nowhere").and(contains("expected it in the folder of a run")));
+    let told = contains("nowhere").and(contains("expected it in the folder of a run"));
+    run("train --resume nowhere").failure().stderr(told);
     run("train").failure().stderr(contains("<RECIPE"));
 }
 

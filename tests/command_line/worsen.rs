@@ -23,3 +23,13 @@ fn worsen_writes_a_scene_as_bad_as_it_says() {
     let after = text.lines().find(|l| l.starts_with("after")).unwrap();
     assert!(after.contains(&format!("SE {:.1},", error_by_hand(folder.path()))), "{text}");
 }
+
+#[test]
+fn a_repair_without_success_says_so_in_a_sentence() {
+    let folder = folder();
+    call(&folder, "scenes --set 2 --seed 3 --index 1 -o s.toml").assert().success();
+    let repair = "worsen s.toml --method baseline --repair --within 0.001 --tries 1 -o w.toml";
+    let told = contains("no scene on which the method is right within 0.001 m in 1 try; try a larger --within");
+    call(&folder, repair).assert().failure().stderr(told);
+    assert!(!folder.path().join("w.toml").exists());
+}

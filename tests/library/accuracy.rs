@@ -1,6 +1,5 @@
-//! Accuracy, step by step: the judge (double-double) is checked against known phasors in its own file and against the plain formula here; the exact
-//! path is held to the judge; the transforms are held to a sum written out; and the plain f64 formula is shown to leave the rounding floor on which
-//! the thesis' tables stand.
+//! Accuracy, step by step: the exact path is held to the judge (double-double, held to known phasors in its own file), the transforms to a sum
+//! written out, and the plain f64 formula leaves the rounding floor on which the thesis' tables stand.
 
 use crate::prelude::*;
 use apertura::evaluate::Estimate;

@@ -1,7 +1,6 @@
 //! The thesis' baseline column, reproduced on fewer scenes than `apertura evaluate --method baseline --count 100`.
 //!
-//! Bounds are relative to the printed values, not to our own standard errors: these grow where a result is wrong. Each bound is broken by a wrong
-//! reading of the thesis, which the controls try.
+//! Bounds are relative to the printed values, not to our own standard errors, which grow where a result is wrong.
 
 use crate::prelude::*;
 use apertura::evaluate::tables::PRINTED_BASELINE;

@@ -2,11 +2,10 @@
 
 use crate::prelude::*;
 
-/// A physical radar of 77 GHz whose two ends are all of its elements, or of 86 the outer ones.
+/// A physical radar of 77 GHz whose two ends are all of its elements, or of 86 the outer ones; of three the middle one is in both.
 fn radar(elements: usize) -> Radar {
-    let end_elements = if elements > 16 { 12 } else { elements / 2 };
-    let radar = Radar { elements, end_elements, samples: 64, bandwidth_hz: 1e9, ..Radar::default() };
-    radar.in_convention(Convention::Physical)
+    let radar = Radar { elements, samples: 64, bandwidth_hz: 1e9, ..Radar::default() };
+    Radar { end_elements: radar.most_end_elements().min(12), ..radar }.in_convention(Convention::Physical)
 }
 
 #[test]
@@ -45,9 +44,8 @@ fn heard(radar: &Radar, cosine: f64) -> TwoEnds {
 #[test]
 fn two_to_five_elements_are_answered_or_refused() {
     for elements in 2..=5 {
-        let radar = few(elements);
-        let scene = Scene::of_points([(0.1, 1.0)]);
-        let ends = simulate(&radar, &scene, Floor::Snr(Decibels(30.0)), 3).unwrap().two_ends(&radar);
+        let radar = radar(elements);
+        let ends = heard(&radar, 0.1);
         let mut answers = 0;
         for method in methods::all() {
             match method.reconstruct(&radar, &ends, &Request::default()) {
@@ -67,17 +65,10 @@ fn two_to_five_elements_are_answered_or_refused() {
     }
 }
 
-/// A physical radar of so few elements; of three the middle one is in both ends.
-fn few(elements: usize) -> Radar {
-    let radar =
-        Radar { elements, samples: 64, bandwidth_hz: 1e9, ..Radar::default() }.in_convention(Convention::Physical);
-    Radar { end_elements: radar.most_end_elements(), ..radar }
-}
-
 #[test]
 fn one_echo_before_two_or_three_elements_has_its_place() {
     for elements in [2, 3, 4] {
-        let radar = few(elements);
+        let radar = radar(elements);
         for cosine in [0.3, -0.6, 0.05] {
             let ends = heard(&radar, cosine);
             let found = found_by("iaa", &radar, &ends);
@@ -91,6 +82,6 @@ fn one_echo_before_two_or_three_elements_has_its_place() {
 
 #[test]
 fn three_elements_have_ends_that_share_the_middle_one() {
-    assert_eq!(few(3).end_elements, 2);
-    assert!(few(3).validate().is_ok() && Radar { end_elements: 3, ..few(5) }.validate().is_err());
+    assert_eq!(radar(3).end_elements, 2);
+    assert!(radar(3).validate().is_ok() && Radar { end_elements: 3, ..radar(5) }.validate().is_err());
 }

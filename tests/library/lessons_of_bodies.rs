@@ -35,8 +35,7 @@ fn a_wall_that_looks_away_is_as_weak_as_its_lesson_says() {
     taught(id, &format!("{weaker:.0} dB weaker than the glint"));
 }
 
-/// Amplitude of the glint of a flat vertical strip that is `height` metres high and `range` metres ahead, by Kirchhoff's integral over its
-/// height; along the strip the integral gives `1 / R^1.5`.
+/// Amplitude of the glint of a flat vertical strip (metres), by Kirchhoff's integral over its height; along the strip that gives `1 / R^1.5`.
 fn kirchhoff(height: f64, range: f64) -> f64 {
     let (strips, wave_number) = (2500, 2.0 * std::f64::consts::TAU / physical().wavelength_metres());
     let step = height / f64::from(strips);
@@ -45,8 +44,7 @@ fn kirchhoff(height: f64, range: f64) -> f64 {
     (0..strips).map(turned).sum::<Complex64>().norm() * step / range.powf(1.5)
 }
 
-/// Decibels by which the glint of such a strip falls from a distance to twice that: the mean of distances from 8 to 12 m, over which the ripple
-/// of the strip's upper and lower edges evens out.
+/// Decibels by which such a glint falls from a distance to twice that: the mean from 8 to 12 m, over which the ripple of the strip's edges evens out.
 fn fall_of_a_glint(height: f64) -> f64 {
     let fall = |i: i32| {
         let range = 8.0 + f64::from(i) / 50.0;

@@ -6,11 +6,7 @@ use apertura::maps::Mask;
 use apertura::maps::cfar::Cfar;
 
 /// Cells that a detector finds in the target of a step, counted from 1, and the target's Lambda.
-fn detected(step: usize, cfar: Option<&str>) -> (Mask, RangeAngleMap) {
-    detected_in_noise(step, cfar, 0)
-}
-
-fn detected_in_noise(step: usize, cfar: Option<&str>, seed: u64) -> (Mask, RangeAngleMap) {
+fn detected(step: usize, cfar: Option<&str>, seed: u64) -> (Mask, RangeAngleMap) {
     let step = &lesson("a-threshold-that-follows-the-noise").steps[step - 1];
     let cfar = cfar.map_or_else(|| step.view.cfar.unwrap(), |text| text.parse().unwrap());
     let signal = simulate(&step.radar, &step.scene(), step.view.floor, seed).unwrap();
@@ -33,11 +29,11 @@ fn finds(mask: &Mask, (bin, column): (usize, usize)) -> bool {
 
 #[test]
 fn the_detector_keeps_its_rate_as_its_lesson_says() {
-    let [quiet, loud] = [1, 2].map(|step| detected(step, None).0.count());
+    let [quiet, loud] = [1, 2].map(|step| detected(step, None, 0).0.count());
     assert!((350..700).contains(&quiet) && (350..700).contains(&loud), "{quiet} {loud}");
     let cells = 512.0 * 1024.0;
     taught("a-threshold-that-follows-the-noise", &format!("{:.0} false alarms", cells / 1000.0));
-    let rate = (0..16).map(|seed| detected_in_noise(1, None, seed).0.count() as f64 / cells / 16.0).sum::<f64>();
+    let rate = (0..16).map(|seed| detected(1, None, seed).0.count() as f64 / cells / 16.0).sum::<f64>();
     // Of 16 maps the mean is known to 1.6 %.
     assert!((1000.0 * rate - 1.11).abs() < 0.05, "{rate}");
     taught("a-threshold-that-follows-the-noise", "which adds about 11 %");
@@ -46,7 +42,7 @@ fn the_detector_keeps_its_rate_as_its_lesson_says() {
 
 #[test]
 fn the_detector_finds_a_far_point_as_its_lesson_says() {
-    let (mask, lambda) = detected(3, None);
+    let (mask, lambda) = detected(3, None, 0);
     let [near, far] = [0, 1].map(|point| cell_of(3, point));
     let above = lambda.above(0.9);
     assert!(finds(&above, near) && !finds(&above, far), "the threshold finds the near point alone");
@@ -56,7 +52,7 @@ fn the_detector_finds_a_far_point_as_its_lesson_says() {
 #[test]
 fn ordered_statistics_find_a_weak_point_as_their_lesson_says() {
     let weak = cell_of(4, 1);
-    let [mean, rank] = ["ca", "os"].map(|cfar| finds(&detected(4, Some(cfar)).0, weak));
+    let [mean, rank] = ["ca", "os"].map(|cfar| finds(&detected(4, Some(cfar), 0).0, weak));
     assert!(!mean && rank, "{mean} {rank}");
 }
 
@@ -64,6 +60,6 @@ fn ordered_statistics_find_a_weak_point_as_their_lesson_says() {
 fn a_window_along_range_finds_a_streak_as_its_lesson_says() {
     let middle = cell_of(5, 0);
     let [along_the_streak, across] = ["ca:guard=0x3:training=0x12", "ca:guard=8x0:training=20x0"]
-        .map(|cfar| detected(5, Some(cfar)).0.cells[middle]);
+        .map(|cfar| detected(5, Some(cfar), 0).0.cells[middle]);
     assert!(!along_the_streak && across, "{along_the_streak} {across}");
 }

@@ -10,14 +10,10 @@ fn target(radar: &Radar, step: &Step) -> LogMap {
     LogMaps::of_signal(radar, &simulate(radar, &step.scene(), Floor::Exact, 0).unwrap()).full
 }
 
-fn brightest_row(map: &LogMap) -> Array1<f64> {
-    let peak = map.decades().iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
-    let row = map.decades().outer_iter().find(|row| row.iter().any(|v| *v == peak)).unwrap();
-    row.mapv(|v| 20.0 * (v - peak))
-}
-
+/// Columns of the brightest row that are within 10 dB of its peak.
 fn width_columns(map: &LogMap) -> usize {
-    brightest_row(map).iter().filter(|v| **v > -10.0).count()
+    let row = map.decades().outer_iter().find(|row| row.iter().any(|v| *v == map.max())).unwrap();
+    row.iter().filter(|v| 20.0 * (**v - map.max()) > -10.0).count()
 }
 
 fn right_option(step: &Step) -> &str {

@@ -47,7 +47,6 @@ fn child() {
         name => {
             let method = methods.iter().find(|m| m.name() == name).unwrap();
             let signal = simulate(&radar, &scene, Floor::Thesis, 0).unwrap();
-            // A method may refuse a radar; then it asks for nothing.
             let _maybe_refused = method.reconstruct(&radar, &signal.two_ends(&radar), &Request::default());
         }
     }

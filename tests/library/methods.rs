@@ -1,5 +1,4 @@
-//! Properties of every reconstruction method, of any kind: shape, range, determinism, independence of gain, an answer to degenerate samples, and an
-//! end when asked to stop. New methods are held to them by being in the list.
+//! Properties of every reconstruction method, of any kind; new methods are held to them by being in the list.
 
 use crate::prelude::*;
 use apertura::evaluate::detection_rates;
@@ -38,10 +37,8 @@ fn run(method: &dyn Reconstructor, ends: &TwoEnds, what: &str) -> Reconstruction
         assert!((0.0..=1.0).contains(v), "{name} on {what}: {v} at row {row}, column {column}");
     }
     for r in &answer.reflectors {
-        assert!(
-            r.x_metres.is_finite() && r.y_metres.is_finite() && r.reflectivity.is_finite(),
-            "{name} on {what}: {r:?}"
-        );
+        let is_finite = [r.x_metres, r.y_metres, r.reflectivity].iter().all(|v| v.is_finite());
+        assert!(is_finite, "{name} on {what}: {r:?}");
     }
     answer
 }
@@ -118,7 +115,6 @@ fn a_crowded_scene_is_told_from_its_surroundings_in_time() {
     let signal = simulate(&radar(), &crowded, Floor::Thesis, 1).unwrap();
     let target = LogMaps::of_signal(&radar(), &signal).full.normalise(Normalisation::MinMax);
     let ends = signal.two_ends(&radar());
-    // The U-Net is there to show the collapse of the thesis' first attempt.
     for method in methods::all().into_iter().filter(|method| method.name() != "unet") {
         let answer = run(&*method, &ends, "a crowded scene");
         let (detection, false_alarm) = detection_rates(&target, &answer.lambda, method.eta_of(&answer));

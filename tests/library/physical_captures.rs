@@ -79,7 +79,7 @@ fn monostatic(made: Made, folder: &Path) -> Recording {
 }
 
 /// Four transmitters far apart and sixteen receivers close together; the sums of their positions are half a wavelength apart.
-fn write_pairs(made: Made, folder: &Path) {
+fn pairs(made: Made, folder: &Path, carrier: &str, spacing: f64) -> Recording {
     let virtual_spacing = wavelength() / 2.0;
     let receivers = ELEMENTS / TRANSMITTERS;
     let centred = |n: usize, count: usize| n as f64 - (count as f64 - 1.0) / 2.0;
@@ -88,6 +88,7 @@ fn write_pairs(made: Made, folder: &Path) {
     let shape = (TRANSMITTERS, receivers, SAMPLES);
     let samples = Array3::from_shape_fn(shape, |(t, r, s)| made.sample(transmitter(t), receiver(r), s, &PLACES));
     write_npz(&folder.join("c.npz"), |out| out.add("cube", &samples)).unwrap();
+    read(made, folder, carrier, spacing, "\"transmitter\", \"receiver\"")
 }
 
 fn read(made: Made, folder: &Path, carrier: &str, spacing: f64, elements: &str) -> Recording {
@@ -145,24 +146,12 @@ fn a_monostatic_capture_gives_its_true_directions() {
 }
 
 #[test]
-fn pairs_in_the_one_way_reading_give_their_true_directions() {
+fn pairs_give_their_true_directions_in_either_reading() {
     let folder = tempfile::tempdir().unwrap();
-    for made in UPWARDS.into_iter().chain([DOWNWARDS]) {
-        write_pairs(made, folder.path());
-        let pairs = "\"transmitter\", \"receiver\"";
-        let recording = read(made, folder.path(), "one-way", wavelength() / 2.0, pairs);
-        assert_true("one-way", made, &recording, DEGREES_OF_PAIRS);
-    }
-}
-
-#[test]
-fn halfway_pairs_give_true_two_way_directions() {
-    let folder = tempfile::tempdir().unwrap();
-    for made in UPWARDS {
-        write_pairs(made, folder.path());
-        let pairs = "\"transmitter\", \"receiver\"";
-        let recording = read(made, folder.path(), "two-way", wavelength() / 4.0, pairs);
-        assert_true("two-way pairs", made, &recording, DEGREES_OF_PAIRS);
+    let one_way = UPWARDS.into_iter().chain([DOWNWARDS]).map(|made| ("one-way", 2.0, made));
+    for (carrier, parts, made) in one_way.chain(UPWARDS.map(|made| ("two-way", 4.0, made))) {
+        let recording = pairs(made, folder.path(), carrier, wavelength() / parts);
+        assert_true(carrier, made, &recording, DEGREES_OF_PAIRS);
     }
 }
 

@@ -55,8 +55,7 @@ fn a_reflector_is_where_the_whole_array_sees_it_or_is_refused() {
                 }
                 Err(error) => panic!("{name} on {what}: {error}"),
             };
-            // The U-Net is there to show its collapse, and networks need not serve radars that they are not trained for. The baseline is one end's
-            // own map, which sees a near reflector elsewhere than the array's middle does.
+            // Networks need not serve radars that they aren't trained for. The baseline is one end's map, which sees a near reflector elsewhere.
             if NETWORKS.contains(&name) || name == "baseline" {
                 continue;
             }

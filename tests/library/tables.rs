@@ -25,8 +25,7 @@ fn tree(root: &Path) {
     for file in ["scripts/tables", "src/signal/floor.rs", "assets/weights/live.safetensors"] {
         std::fs::copy(here.join(file), root.join(file)).unwrap();
     }
-    let sha256 =
-        apertura::methods::by_name("live").unwrap().weights(&apertura::radar::Radar::default()).unwrap().sha256;
+    let sha256 = methods::by_name("live").unwrap().weights(&Radar::default()).unwrap().sha256;
     let floor = std::fs::read_to_string(root.join("src/signal/floor.rs")).unwrap();
     let floor = floor.lines().find_map(|line| line.strip_prefix("const THESIS_ROUNDING_FACTOR: f64 = ")).unwrap();
     let floor = floor.trim_end_matches(';').replace(' ', "");

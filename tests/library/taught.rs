@@ -12,10 +12,8 @@ pub fn lesson(id: &str) -> Lesson {
 
 /// Asserts that the text has this number; its minus sign may be a hyphen here.
 pub fn taught(id: &str, number: &str) {
-    assert!(
-        text(id).contains(&number.replace('-', "−")) || text(id).contains(number),
-        "{id} does not say \"{number}\""
-    );
+    let is_said = text(id).contains(&number.replace('-', "−")) || text(id).contains(number);
+    assert!(is_said, "{id} does not say \"{number}\"");
 }
 
 pub fn physical() -> Radar {

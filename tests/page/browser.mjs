@@ -1,4 +1,6 @@
 // Tools of the page's tests: a browser, open pages, and a person's actions in them.
+import assert from "node:assert/strict";
+import { after, test } from "node:test";
 import { deflateSync } from "node:zlib";
 import { chromium } from "playwright-core";
 
@@ -22,9 +24,14 @@ export const launch = () => chromium.launch({ executablePath, args: [...quiet, .
 export const launchWithoutGraphics = () =>
   chromium.launch({ executablePath, args: [...quiet, "--disable-gpu", "--disable-software-rasterizer"] });
 
+// The browser of a file of tests, from its first page to its end.
+let browser;
+after(async () => (await browser)?.close());
+
 // A page that is open, with what it asked of the network and told on the console.
-export async function open(browser, where = "", { context = null, options = {}, at = address } = {}) {
-  context ??= await browser.newContext({ viewport: DESK, acceptDownloads: true, ...options });
+export async function open(where = "", { context = null, options = {}, at = address } = {}) {
+  browser ??= launch();
+  context ??= await (await browser).newContext({ viewport: DESK, acceptDownloads: true, ...options });
   const page = await context.newPage();
   const told = [];
   const asked = [];
@@ -35,6 +42,16 @@ export async function open(browser, where = "", { context = null, options = {}, 
   await page.waitForFunction(() => document.getElementById("cover").hidden, null, { timeout: MAX_WAIT_MILLISECONDS });
   await page.waitForTimeout(2000);
   return { context, page, told, asked };
+}
+
+// A test of one page, opened as by `open`, that may tell no error on the console.
+export function testPage(name, { where, ...how }, act) {
+  test(name, async () => {
+    const opened = await open(where, how);
+    await act(opened);
+    assert.deepEqual(opened.told, []);
+    await opened.context.close();
+  });
 }
 
 export async function drag(page, from, to, steps = 5) {
@@ -70,7 +87,6 @@ export async function run(page, name) {
   await frames(page);
 }
 
-// The file that a command exports.
 export async function exported(page, name) {
   const download = page.waitForEvent("download", { timeout: MAX_WAIT_MILLISECONDS });
   await run(page, name);

@@ -1,17 +1,12 @@
 // Links to the page: what they open, and what becomes of damaged ones.
 import assert from "node:assert/strict";
 import { deflateSync } from "node:zlib";
-import { after, before, test } from "node:test";
-import { address, BESIDE, drag, launch, open, POST, run, shared } from "./browser.mjs";
-
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
+import { test } from "node:test";
+import { address, BESIDE, drag, open, POST, run, shared } from "./browser.mjs";
 
 const SCENE = "[[object]]\nkind = \"point\"\nx_metres = 3.0\ny_metres = 12.0\n";
 const settled = (page) => page.waitForTimeout(4000);
+const options = { permissions: ["clipboard-read", "clipboard-write"] };
 
 // The link that the page would copy.
 async function copied(page) {
@@ -21,13 +16,12 @@ async function copied(page) {
 }
 
 test("a link that was copied opens the same in a second page", async () => {
-  const options = { permissions: ["clipboard-read", "clipboard-write"] };
-  const { context, page, told } = await open(browser, "", { options });
+  const { context, page, told } = await open("", { options });
   await drag(page, POST, BESIDE);
   await settled(page);
   const link = await copied(page);
   assert.ok(link.startsWith(`${address}#apertura:1:`), link.slice(0, 80));
-  const second = await open(browser, link.slice(address.length), { options });
+  const second = await open(link.slice(address.length), { options });
   await settled(second.page);
   assert.equal(await copied(second.page), link);
   assert.deepEqual([...told, ...second.told], []);
@@ -38,7 +32,7 @@ test("a link that was copied opens the same in a second page", async () => {
 test("addresses open a scene, a lesson and a recording", async () => {
   const pictures = [];
   for (const where of ["", "?scene=street", "?lesson=two-ends", "?recording=chip-8"]) {
-    const { context, page, told } = await open(browser, where);
+    const { context, page, told } = await open(where);
     await settled(page);
     pictures.push((await page.screenshot()).toString("base64"));
     assert.deepEqual(told, [], where);
@@ -51,21 +45,16 @@ test("a link that is cut, forged or too long leaves the default scene", async ()
   const whole = shared(SCENE);
   const bomb = `apertura:1:${deflateSync(Buffer.alloc(64 << 20, "#")).toString("base64url")}`;
   const strange = `apertura:1:${deflateSync(Buffer.from("smell = 1\n")).toString("base64url")}`;
-  const options = { permissions: ["clipboard-read", "clipboard-write"] };
-  const plain = await open(browser, "", { options });
+  const plain = await open("", { options });
   const usual = await copied(plain.page);
   await plain.context.close();
-  for (const [name, text] of Object.entries({ cut: whole.slice(0, -9), bomb, strange, long: `apertura:1:${"A".repeat(1 << 20)}` })) {
-    const { context, page, told } = await open(browser, `#${text}`, { options });
+  const links = { cut: whole.slice(0, -9), bomb, strange, long: `apertura:1:${"A".repeat(1 << 20)}` };
+  const places = Object.entries(links).map(([name, text]) => [name, `#${text}`]);
+  for (const [name, where] of [...places, ["no scene", "?scene=nowhere"], ["no question", "?weather=rain"]]) {
+    const { context, page, told } = await open(where, { options });
     await settled(page);
     assert.equal(await copied(page), usual, name);
     assert.deepEqual(told, [], name);
-    await context.close();
-  }
-  for (const where of ["?scene=nowhere", "?weather=rain"]) {
-    const { context, page, told } = await open(browser, where, { options });
-    assert.equal(await copied(page), usual, where);
-    assert.deepEqual(told, [], where);
     await context.close();
   }
 });

@@ -4,19 +4,13 @@ import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { exported, launch, open, shared } from "./browser.mjs";
+import { test } from "node:test";
+import { exported, open, shared } from "./browser.mjs";
 import { readNpz } from "./npz.mjs";
 
 const PROGRAM = process.env.APERTURA;
 const SCENES = process.env.SCENES;
 const folder = mkdtempSync(join(tmpdir(), "apertura-page-"));
-
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
 
 function native(scene, floor, method) {
   const to = join(folder, "native.npz");
@@ -27,7 +21,7 @@ function native(scene, floor, method) {
 
 async function ofThePage(scene, floor, method) {
   const text = shared(readFileSync(join(SCENES, `${scene}.toml`), "utf8"), { floor, method });
-  const { context, page, told } = await open(browser, `#${text}`);
+  const { context, page, told } = await open(`#${text}`);
   const arrays = readNpz(readFileSync(await exported(page, "Export maps")));
   assert.deepEqual(told, []);
   await context.close();

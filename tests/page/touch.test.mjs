@@ -1,65 +1,36 @@
 // The page by fingers: a point is dragged, a map is pinched, and a telephone has one column.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { autosave, BESIDE, launch, open, POST } from "./browser.mjs";
+import { autosave, BESIDE, POST, testPage } from "./browser.mjs";
 
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
-
-// Fingers on the page, by the browser's own protocol.
-async function fingers(context, page) {
+// Moves fingers, by the browser's own protocol; `at` has their places at each part of the way.
+async function move(page, context, at) {
   const session = await context.newCDPSession(page);
-  return (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
-}
-
-test("a finger drags a point", async () => {
-  const { context, page, told } = await open(browser, "", { options: { hasTouch: true } });
-  const touch = await fingers(context, page);
-  await touch("touchStart", [POST.x, POST.y]);
-  for (let step = 1; step <= 5; step += 1) {
-    await touch("touchMove", [POST.x + ((BESIDE.x - POST.x) * step) / 5, POST.y + ((BESIDE.y - POST.y) * step) / 5]);
+  const touch = (type, points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  await touch("touchStart", at(0));
+  for (let step = 1; step <= 6; step += 1) {
+    await touch("touchMove", at(step / 6));
     await page.waitForTimeout(100);
   }
-  await touch("touchEnd");
-  assert.match(await autosave(page), /kind = "point"/);
-  assert.deepEqual(told, []);
-  await context.close();
-});
+  await touch("touchEnd", []);
+}
 
-test("two fingers zoom a map", async () => {
-  const { context, page, told } = await open(browser, "", { options: { hasTouch: true } });
+const telephone = { viewport: { width: 390, height: 844 }, isMobile: true };
+for (const [name, from, to, screen] of [
+  ["a finger drags a point", POST, BESIDE, {}],
+  // The post, as the scene lies in the first third of the column.
+  ["on a telephone a point is dragged in the column", { x: 198, y: 201 }, { x: 238, y: 221 }, telephone],
+]) {
+  testPage(name, { options: { hasTouch: true, ...screen } }, async ({ page, context }) => {
+    await move(page, context, (part) => [[from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part]]);
+    assert.match(await autosave(page), /kind = "point"/);
+  });
+}
+
+testPage("two fingers zoom a map", { options: { hasTouch: true } }, async ({ page, context }) => {
   await page.waitForTimeout(4000);
   const map = { x: 760, y: 100, width: 280, height: 160 };
   const before = await page.screenshot({ clip: map });
-  const touch = await fingers(context, page);
-  const at = (apart) => [[900 - apart, 180], [900 + apart, 180]];
-  await touch("touchStart", ...at(20));
-  for (let step = 1; step <= 6; step += 1) {
-    await touch("touchMove", ...at(20 + step * 12));
-    await page.waitForTimeout(100);
-  }
-  await touch("touchEnd");
+  await move(page, context, (part) => [[880 - 72 * part, 180], [920 + 72 * part, 180]]);
   await page.waitForTimeout(1000);
   assert.notDeepEqual(await page.screenshot({ clip: map }), before);
-  assert.deepEqual(told, []);
-  await context.close();
-});
-
-test("on a telephone a point is dragged in the column", async () => {
-  const options = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-  const { context, page, told } = await open(browser, "", { options });
-  const touch = await fingers(context, page);
-  // The post, as the scene lies in the first third of the column.
-  await touch("touchStart", [198, 201]);
-  for (let step = 1; step <= 5; step += 1) {
-    await touch("touchMove", [198 + step * 8, 201 + step * 4]);
-    await page.waitForTimeout(100);
-  }
-  await touch("touchEnd");
-  assert.match(await autosave(page), /kind = "point"/);
-  assert.deepEqual(told, []);
-  await context.close();
 });

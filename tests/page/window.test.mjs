@@ -1,32 +1,23 @@
 // The page in a real browser: `scripts/test-page` builds it, serves it and runs this.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
-import { after, before, test } from "node:test";
-import { address, autosave, BESIDE, drag, exported, launch, launchWithoutGraphics, open, MAX_WAIT_MILLISECONDS, plainAddress, POST, run } from "./browser.mjs";
+import { test } from "node:test";
+import { address, autosave, BESIDE, drag, exported, launchWithoutGraphics, open, MAX_WAIT_MILLISECONDS, plainAddress, POST, run, testPage } from "./browser.mjs";
 
-let browser;
-before(async () => {
-  browser = await launch();
-});
-after(() => browser.close());
-
-test("the page opens without an error and without a foreign request", async () => {
-  const { context, page, told, asked } = await open(browser);
-  assert.deepEqual(told, []);
+testPage("the page opens without an error and without a foreign request", {}, async ({ page, asked }) => {
   const origin = new URL(address).origin;
   assert.deepEqual(asked.filter((url) => !url.startsWith(origin) && !url.startsWith("blob:")), []);
   assert.ok(page.workers().length > 0, "maps are computed beside the window");
-  await context.close();
 });
 
 test("a reload keeps what was dragged", async () => {
-  const { context, page, told } = await open(browser);
+  const { context, page, told } = await open();
   await drag(page, POST, BESIDE);
   const text = await autosave(page);
   assert.match(text, /kind = "point"/);
   assert.deepEqual(told, []);
   await page.close();
-  const again = await open(browser, "", { context });
+  const again = await open("", { context });
   await again.page.waitForTimeout(2000);
   assert.equal(await autosave(again.page), text);
   assert.deepEqual(again.told, []);
@@ -34,10 +25,10 @@ test("a reload keeps what was dragged", async () => {
 });
 
 test("two tabs keep copies of their own", async () => {
-  const { context, page } = await open(browser);
+  const { context, page } = await open();
   await drag(page, POST, BESIDE);
   const first = await autosave(page);
-  const second = await open(browser, "", { context });
+  const second = await open("", { context });
   await run(second.page, "Add point");
   await second.page.waitForFunction(() => localStorage.getItem("/storage/autosave-2.toml"), null, { timeout: MAX_WAIT_MILLISECONDS });
   assert.equal(await autosave(page), first);
@@ -45,33 +36,29 @@ test("two tabs keep copies of their own", async () => {
 });
 
 test("storage that is full is told", async () => {
-  const { context, page } = await open(browser);
+  const { context, page } = await open();
   await page.evaluate(() => {
     Storage.prototype.setItem = () => {
       throw new DOMException("full", "QuotaExceededError");
     };
   });
-  const before = await page.screenshot({ clip: { x: 900, y: 500, width: 540, height: 400 } });
+  const clip = { x: 900, y: 500, width: 540, height: 400 };
+  const before = await page.screenshot({ clip });
   await run(page, "Add point");
   await page.waitForTimeout(3000);
-  const after = await page.screenshot({ clip: { x: 900, y: 500, width: 540, height: 400 } });
-  assert.notDeepEqual(before, after, "a message stands over the status bar");
+  assert.notDeepEqual(await page.screenshot({ clip }), before, "a message stands over the status bar");
   await context.close();
 });
 
-test("pictures and maps are whole files", async () => {
-  const { context, page, told } = await open(browser);
+testPage("pictures and maps are whole files", {}, async ({ page }) => {
   const png = await readFile(await exported(page, "Export picture"));
   assert.deepEqual([...png.subarray(0, 8)], [137, 80, 78, 71, 13, 10, 26, 10]);
   assert.equal(png.subarray(-8, -4).toString("latin1"), "IEND");
   const npz = await readFile(await exported(page, "Export maps"));
   assert.equal(npz.toString("latin1", 0, 2), "PK");
-  assert.deepEqual(told, []);
-  await context.close();
 });
 
-test("a recording that is dropped is shown", async () => {
-  const { context, page, told } = await open(browser);
+testPage("a recording that is dropped is shown", {}, async ({ page }) => {
   const npz = await readFile(await exported(page, "Export maps"));
   const before = await page.screenshot();
   await page.evaluate((data) => {
@@ -81,12 +68,9 @@ test("a recording that is dropped is shown", async () => {
   }, npz.toString("base64"));
   await page.waitForTimeout(3000);
   assert.notDeepEqual(await page.screenshot(), before);
-  assert.deepEqual(told, []);
-  await context.close();
 });
 
-test("the window draws while a slow method runs", async () => {
-  const { context, page, told } = await open(browser, "?scene=test-set-3");
+testPage("the window draws while a slow method runs", { where: "?scene=test-set-3" }, async ({ page }) => {
   await run(page, "Method: nomp");
   await page.evaluate(() => {
     globalThis.tasks = [];
@@ -99,25 +83,18 @@ test("the window draws while a slow method runs", async () => {
   console.log(`tasks over 50 ms on the first thread, milliseconds: ${tasks.map(Math.round).join(", ") || "none"}`);
   // On the first thread the maps alone would take longer; a machine that runs tests may be slow, and the program is built in a hurry.
   assert.ok(Math.max(0, ...tasks) < 250, `${Math.max(...tasks)} ms`);
-  assert.deepEqual(told, []);
-  await context.close();
 });
 
-test("a host without headers gets threads from a service worker", async () => {
-  const { context, page, told } = await open(browser, "", { at: plainAddress });
+testPage("a host without headers gets threads from a service worker", { at: plainAddress }, async ({ page }) => {
   assert.equal(await page.evaluate(() => crossOriginIsolated), true);
-  assert.deepEqual(told, []);
-  await context.close();
 });
 
-test("without isolation everything is done on one thread", async () => {
-  const { context, page, told } = await open(browser, "", { at: plainAddress, options: { serviceWorkers: "block" } });
+const unaided = { at: plainAddress, options: { serviceWorkers: "block" } };
+testPage("without isolation everything is done on one thread", unaided, async ({ page }) => {
   assert.equal(await page.evaluate(() => crossOriginIsolated), false);
   assert.equal(page.workers().length, 0);
   await drag(page, POST, BESIDE);
   assert.match(await autosave(page), /kind = "point"/);
-  assert.deepEqual(told, []);
-  await context.close();
 });
 
 test("without WebGL there is a sentence", async () => {

@@ -61,11 +61,8 @@ mod tests {
     fn the_part_holds_what_failed_and_little_else() {
         let radar = Radar::default();
         let scene = Scene::of_points([(-8.0, 12.0), (4.0, 16.0), (0.0, 30.0)]);
-        let judged = JudgedOutput::made_up(
-            scene.clone(),
-            &[ObjectVerdict::Missed, ObjectVerdict::Found, ObjectVerdict::Found],
-            &[],
-        );
+        let objects = [ObjectVerdict::Missed, ObjectVerdict::Found, ObjectVerdict::Found];
+        let judged = JudgedOutput::made_up(scene.clone(), &objects, &[]);
         let view = around(&radar, &judged).unwrap();
         let across = radar.across_of_column(radar.column_of_cos(-8.0 / 8f64.hypot(12.0))) as f32;
         assert!(view.low.x < across && across < view.high.x && view.high.x - view.low.x < 0.3, "{view:?}");

@@ -50,8 +50,7 @@ fn plan(state: &State, jobs: &Jobs, choice: &FailureChoice) -> Result<FailuresPl
     Ok(FailuresPlan { campaign, sets, methods })
 }
 
-/// Opens a row's scene as another document, with the row's floor and method in the settings. One undo takes back all of it. It also takes back a series of
-/// opened rows, as long as none was changed in between.
+/// Opens a row's scene as another document, with the row's floor and method in the settings. One undo takes back all rows opened without a change between.
 fn open_row(state: &mut State, jobs: &mut Jobs, index: usize) -> Result<(), String> {
     let table = &jobs.failures.table;
     let Some(row) = table.rows().get(index).cloned() else { return Ok(()) };

@@ -205,17 +205,11 @@ impl Browser {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::{self, User};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
 
     fn panel(purpose: Purpose, folder: &Path) -> Harness<'static, (Browser, Vec<Answer>)> {
-        let draw = |ui: &mut Ui, state: &mut (Browser, Vec<Answer>)| {
-            let answer = state.0.show(ui.ctx());
-            state.1.extend(answer);
-        };
         let browser = Browser::new(&Question { purpose, folder: Some(folder.to_path_buf()), name: String::new() });
-        let mut panel = Harness::builder().with_size([700.0, 500.0]).build_ui_state(draw, (browser, Vec::new()));
+        let mut panel = seen::asking_with([700.0, 500.0], browser, |ui, browser| browser.show(ui.ctx()));
         panel.run_steps(3);
         panel
     }

@@ -17,7 +17,6 @@ pub struct FileDialogMemory {
 }
 
 impl FileDialogMemory {
-    /// Whether the dialog or its question is on screen.
     pub fn is_open(&self) -> bool {
         self.dialog.is_some() || self.replace.is_some()
     }
@@ -36,7 +35,6 @@ impl FileDialogMemory {
     }
 }
 
-/// Draws the dialog, if it is open.
 pub fn show(ctx: &Context, memory: &mut FileDialogMemory) -> Vec<Command> {
     let mut asked = Vec::new();
     if let Some(browser) = &mut memory.dialog
@@ -77,18 +75,12 @@ fn replace(ui: &mut Ui, path: &Path) -> Option<bool> {
 mod tests {
     use super::*;
     use crate::app::state::{DocumentCommand, ExportCommand};
-    use crate::app::widgets::seen::User;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
 
     fn panel(question: Question) -> Harness<'static, (FileDialogMemory, Vec<Command>)> {
-        let draw = |ui: &mut Ui, state: &mut (FileDialogMemory, Vec<Command>)| {
-            let commands = show(ui.ctx(), &mut state.0);
-            state.1.extend(commands);
-        };
         let mut memory = FileDialogMemory::default();
         memory.ask(question);
-        let mut dialog = Harness::builder().with_size([700.0, 500.0]).build_ui_state(draw, (memory, Vec::new()));
+        let mut dialog = seen::asking_with([700.0, 500.0], memory, |ui, memory| show(ui.ctx(), memory));
         dialog.run_steps(3);
         dialog
     }
@@ -98,7 +90,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, "").unwrap();
-        let question = Question::beside(Purpose::SaveScene, Some(&folder.path().join("scene.toml")));
+        let question = Question::beside(Purpose::SaveScene, Some(&path));
         for (answer, asked) in
             [("Keep it", vec![]), ("Replace", vec![Command::Document(DocumentCommand::SaveTo(path.clone()))])]
         {
@@ -133,14 +125,5 @@ mod tests {
         dialog.clicks(&["Save"]);
         let maps = || Command::Export(ExportCommand::MapsTo(folder.path().join("maps.npz")));
         assert_eq!(dialog.state().1, [maps(), maps()]);
-    }
-
-    #[test]
-    fn a_new_file_is_written_at_once_under_its_whole_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let question = Question::beside(Purpose::ExportMaps, Some(&folder.path().join("scene.toml")));
-        let mut dialog = panel(question);
-        dialog.clicks(&["Save"]);
-        assert_eq!(dialog.state().1, [Command::Export(ExportCommand::MapsTo(folder.path().join("maps.npz")))]);
     }
 }

@@ -53,7 +53,6 @@ const FIGURES: &[[&str; 2]] = &[
     ],
 ];
 
-/// Draws the window, if a page is open.
 pub fn show(ctx: &Context, page: Option<HelpPage>) -> Vec<Command> {
     let Some(page) = page else { return Vec::new() };
     let mut open = true;
@@ -118,15 +117,10 @@ fn about(ui: &mut Ui) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::{self, User};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
 
     fn window(page: HelpPage, size: [f32; 2]) -> Harness<'static, Vec<Command>> {
-        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui.ctx(), Some(page)));
-        };
-        let mut window = Harness::builder().with_size(size).build_ui_state(draw, Vec::new());
+        let mut window = seen::asking(size, move |ui| show(ui.ctx(), Some(page)));
         window.run_steps(4);
         window
     }

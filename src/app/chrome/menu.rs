@@ -33,7 +33,6 @@ static PRESETS: LazyLock<Vec<Listed>> = LazyLock::new(|| {
     presets::ALL.iter().map(listed).collect()
 });
 
-/// Draws the bar.
 pub fn show(ui: &mut Ui, state: &State) -> Vec<Command> {
     let mut asked = Vec::new();
     egui::Panel::top("menu").show(ui, |ui| {

@@ -1,5 +1,4 @@
-//! Messages over the right of the status bar, where they cover no panel: the latest one, and after it the earlier ones. They can be read aloud and closed,
-//! and vanish after a time.
+//! Messages over the right of the status bar, where they cover no panel: the latest, then the earlier ones. They can be closed, and vanish after a time.
 
 use crate::app::state::{Notice, Notices};
 use crate::app::widgets::{Icon, icon};
@@ -66,11 +65,8 @@ fn draw(ui: &mut egui::Ui, message: &Notice, count: usize, room: f32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::{self, User};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
 
-    /// Height of the status bar, points.
     const BAR_POINTS: f32 = 26.0;
 
     const LONG: &str = "The unsaved scene of the last session is back. Save it (Ctrl+S) to keep it.";

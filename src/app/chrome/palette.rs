@@ -23,7 +23,6 @@ pub struct PaletteMemory {
 const RECENT_COMMANDS: usize = 8;
 
 impl PaletteMemory {
-    /// Whether the palette is on screen.
     pub fn is_open(&self) -> bool {
         self.open
     }
@@ -203,8 +202,8 @@ fn list(ui: &mut Ui, found: &[Entry], chosen: usize, moved: bool) -> Option<usiz
 mod tests {
     use super::*;
     use crate::app::state::{EditCommand, NewObject};
+    use crate::app::widgets::seen;
     use crate::reconstruct::Baseline;
-    use egui_kittest::Harness;
 
     #[test]
     fn words_match_in_any_order() {
@@ -276,11 +275,8 @@ mod tests {
     #[test]
     fn enter_runs_what_the_text_says_even_in_the_same_frame() {
         let methods: Vec<Arc<dyn Reconstructor>> = vec![Arc::new(Baseline)];
-        let draw = |ui: &mut Ui, state: &mut (PaletteMemory, Vec<Command>)| {
-            let commands = show(ui.ctx(), &methods, &mut state.0);
-            state.1.extend(commands);
-        };
-        let mut palette = Harness::new_ui_state(draw, (PaletteMemory::default(), Vec::new()));
+        let draw = |ui: &mut Ui, memory: &mut PaletteMemory| show(ui.ctx(), &methods, memory);
+        let mut palette = seen::asking_with([800.0, 600.0], PaletteMemory::default(), draw);
         palette.step();
         for (text, frames_before_enter) in [("add line", 0), ("method: baseline", 2)] {
             palette.state_mut().0.toggle();
@@ -294,9 +290,7 @@ mod tests {
             palette.step();
             assert!(!palette.state().0.is_open());
         }
-        assert_eq!(
-            palette.state().1,
-            [Command::Edit(EditCommand::Add(NewObject::Line, None)), Command::View(ViewCommand::Method("baseline"))]
-        );
+        let add = Command::from(EditCommand::Add(NewObject::Line, None));
+        assert_eq!(palette.state().1, [add, ViewCommand::Method("baseline").into()]);
     }
 }

@@ -3,7 +3,6 @@
 use crate::app::state::{Command, DocumentCommand, Doubt, SaveAnswer, SaveQuestion};
 use eframe::egui::{Context, Id, Modal, Ui};
 
-/// Draws the question, if there is one.
 pub fn show(ctx: &Context, question: Option<&SaveQuestion>) -> Vec<Command> {
     let Some(question) = question else { return Vec::new() };
     let modal = Modal::new(Id::unique("save question")).show(ctx, |ui| draw(ui, question));
@@ -47,17 +46,13 @@ fn draw(ui: &mut Ui, question: &SaveQuestion) -> Option<SaveAnswer> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::widgets::seen::{self, Harness, Queryable};
     use eframe::egui::Key;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     fn asked() -> Harness<'static, Vec<Command>> {
         let losses = ["its radar", "one line or cluster, which becomes 40 points"].map(str::to_owned).to_vec();
         let question = SaveQuestion { path: "/there/walls.npz".into(), doubt: Doubt::Losses(losses) };
-        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui.ctx(), Some(&question)));
-        };
-        let mut question = Harness::new_ui_state(draw, Vec::new());
+        let mut question = seen::asking([800.0, 600.0], move |ui| show(ui.ctx(), Some(&question)));
         question.run();
         question
     }

@@ -12,8 +12,7 @@ use std::time::Duration;
 /// Gap between two texts, points.
 const TEXT_GAP_POINTS: f32 = 18.0;
 
-/// Draws as many texts as there is room for, the most important first.
-/// `took` is the time of the last update of maps and pictures.
+/// Draws as many texts as there is room for, the most important first. `took` is the time of the last update of maps and pictures.
 pub fn show(ui: &mut Ui, state: &State, took: Option<Duration>) {
     let cursor = state.shown_cursor();
     let echo = cursor.and_then(|cursor| echo_at(state, &cursor));
@@ -126,10 +125,9 @@ fn echo_at(state: &State, cursor: &Cursor) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, Harness};
     use crate::radar::Radar;
     use crate::scene::{GaussianCluster, Object, Wall};
-    use egui_kittest::Harness;
 
     /// A scene of so many walls, and of clusters of so many reflectors.
     fn scene(walls: usize, clusters: &[usize]) -> Scene {
@@ -163,7 +161,6 @@ mod tests {
         assert!(empty.starts_with("Double-click to add a reflector · scroll"), "{empty}");
     }
 
-    /// A bar `width` points wide, with the pointer over a map or not.
     fn bar(width: f32, has_cursor: bool) -> Harness<'static> {
         let mut state = State::of(Radar::default(), scene(2, &[12_343, 1, 1]));
         state.pointer.now = has_cursor.then(|| Cursor::at_cell(&Radar::default(), 258.7, 448.7));
@@ -173,18 +170,13 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_overprinted_at_any_width() {
-        for width in [300.0, 533.0, 853.0, 1440.0, 2560.0] {
-            for has_cursor in [true, false] {
-                seen::assert_readable(bar(width, has_cursor).output());
-            }
-        }
-    }
-
-    #[test]
-    fn a_wider_bar_tells_more() {
-        for (width, wanted) in [(300.0, "range"), (533.0, "x "), (853.0, "column"), (1440.0, "maps 12345.6 ms")] {
-            let texts = seen::texts(bar(width, true).output());
+    fn a_wider_bar_tells_more_and_overprints_nothing() {
+        let all = "maps 12345.6 ms";
+        for (width, wanted) in [(300.0, "range"), (533.0, "x "), (853.0, "column"), (1440.0, all), (2560.0, all)] {
+            seen::assert_readable(bar(width, false).output());
+            let bar = bar(width, true);
+            seen::assert_readable(bar.output());
+            let texts = seen::texts(bar.output());
             assert!(texts.iter().any(|t| t.text.contains(wanted)), "{width}: {texts:?}");
         }
     }

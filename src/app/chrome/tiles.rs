@@ -231,9 +231,7 @@ impl egui_tiles::Behavior<Panel> for Behavior<'_> {
 mod tests {
     use super::*;
     use crate::app::state::Task;
-    use crate::app::widgets::seen::{self, User};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
 
     const VERDICT: &str = "5 of 5 found, 0 false";
 

@@ -40,13 +40,10 @@ fn one(ui: &mut Ui, document: &Document, asked: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
     use crate::scene::Scene;
     use crate::scene::file::SceneFile;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
-    /// Scenes of one and of two points.
     fn left() -> [Document; 2] {
         [1u8, 2].map(|points| {
             let scene = Scene::of_points((0..points).map(|i| (f64::from(i), 9.0)));
@@ -75,9 +72,7 @@ mod tests {
                 menu.run();
             }
         }
-        assert_eq!(
-            menu.state(),
-            &[Command::Document(DocumentCommand::Recover(ids[1])), Command::Document(DocumentCommand::Discard(ids[0]))]
-        );
+        let asked = [DocumentCommand::Recover(ids[1]), DocumentCommand::Discard(ids[0])].map(Command::Document);
+        assert_eq!(menu.state(), &asked);
     }
 }

@@ -47,7 +47,6 @@ impl<T: Send + 'static> Background<T> {
         self.done.1.try_iter().collect()
     }
 
-    /// Whether a piece of work is under way.
     pub fn is_busy(&self) -> bool {
         Arc::strong_count(&self.under_way) > 1
     }

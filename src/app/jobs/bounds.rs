@@ -101,34 +101,21 @@ mod tests {
     use super::*;
     use crate::app::state::Elements;
 
-    /// Bounds of a reflector so far to the side that the picture reaches beyond end fire.
-    fn found() -> BoundsResult {
+    #[test]
+    fn likeness_is_one_at_the_reflector_and_none_beyond_end_fire() {
+        let shown = BoundsSettings { columns: 16.0, bins: 3.0, ..BoundsSettings::default() };
         let request = BoundsRequest {
             radar: Radar { elements: 64, samples: 32, ..Radar::default() },
+            // So far to the side that the picture reaches beyond end fire.
             reflector: Reflector { x_metres: 1.5, y_metres: 0.2, reflectivity: 1.0 },
-            settings: BoundsSettings {
-                elements: Elements::OneEnd,
-                columns: 16.0,
-                bins: 3.0,
-                ..BoundsSettings::default()
-            },
+            settings: BoundsSettings { elements: Elements::OneEnd, ..shown },
             name: String::new(),
         };
-        request.compute(&mut (), &Task::default()).unwrap()
-    }
-
-    #[test]
-    fn likeness_is_one_at_the_reflector() {
-        let found = found();
+        let found = request.compute(&mut (), &Task::default()).unwrap();
         let (rows, columns) = found.ambiguity.likeness.dim();
         assert!((found.ambiguity.likeness[[rows / 2, columns / 2]] - 1.0).abs() < 1e-9);
         assert_eq!(found.image.size, [columns, rows]);
         assert!(found.bound.unwrap().x_metres > 0.0);
-    }
-
-    #[test]
-    fn beyond_end_fire_there_is_no_likeness() {
-        let likeness = found().ambiguity.likeness;
-        assert!(likeness[[0, likeness.ncols() - 1]].is_nan());
+        assert!(found.ambiguity.likeness[[0, columns - 1]].is_nan());
     }
 }

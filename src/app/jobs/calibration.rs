@@ -8,7 +8,6 @@ use crate::scene::{Object, Reflector};
 use crate::signal::{Calibration as Found, calibrate};
 use crate::task::Task;
 
-/// A calibration of the elements by a reflector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibrated {
     pub name: String,
@@ -18,7 +17,6 @@ pub struct Calibrated {
     pub left: BuiltArray,
 }
 
-/// A query of the calibration by a point of the scene on screen.
 #[derive(Clone, PartialEq)]
 pub struct CalibrationQuery {
     source: Source,

@@ -8,7 +8,6 @@ use crate::task::Task;
 use ndarray::s;
 use num_complex::Complex64;
 
-/// A query of the beat of one element.
 #[derive(Clone, PartialEq)]
 pub struct ChirpQuery {
     source: Source,
@@ -22,7 +21,6 @@ impl ChirpQuery {
     }
 }
 
-/// The beat of one element in a chirp.
 pub struct ChirpResult {
     pub element: usize,
     pub samples: Vec<Complex64>,

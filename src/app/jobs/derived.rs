@@ -118,7 +118,6 @@ impl<Q: Query> Derived<Q> {
         self.value().is_some() && !self.is_stale() && self.made.as_ref().map(|(of, _)| of) != now
     }
 
-    /// Requests so far.
     pub fn requests(&self) -> u64 {
         self.requests
     }
@@ -152,7 +151,6 @@ impl<Q: Query> Derived<Q> {
         message
     }
 
-    /// Whether the value is being computed.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
@@ -182,7 +180,6 @@ mod tests {
         }
     }
 
-    /// Waits until the worker is idle.
     fn rest(squares: &mut Derived<Square>) -> Option<String> {
         let deadline = Instant::now() + Duration::from_secs(20);
         while squares.is_busy() {

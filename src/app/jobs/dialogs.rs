@@ -1,5 +1,4 @@
-//! File dialogs of the system, off the UI thread. The chosen file comes back as a command. Where the system has no dialogs, the window shows its own and tells
-//! so.
+//! File dialogs of the system, off the UI thread. The chosen file comes back as a command. Where the system has no dialogs, the window shows its own.
 
 use crate::app::state::{Command, DocumentCommand, Purpose, PurposeFacts, RowsCommand};
 use crate::platform::{self, FileQuestion, Instant};

@@ -15,7 +15,6 @@ use eframe::egui::ColorImage;
 use ndarray::s;
 use std::sync::Arc;
 
-/// A query of the range-Doppler map and its picture.
 #[derive(Clone, PartialEq)]
 pub struct DopplerQuery {
     source: Source,
@@ -38,7 +37,6 @@ impl DopplerQuery {
     }
 }
 
-/// A range-Doppler map and its picture.
 pub struct DopplerResult {
     pub radar: Radar,
     /// Whether the interval of the chirps is known.

@@ -6,7 +6,6 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// A CSV file with one line a frame.
 pub struct FrameLog {
     out: BufWriter<File>,
     began: Instant,

@@ -10,7 +10,6 @@ use crate::maps::{LogMap, Normalisation};
 use crate::signal::{self, BeatSignal, LayoutSamples, SimulationError};
 use crate::task::Task;
 
-/// Samples and map of the elements of a layout.
 pub struct Heard {
     pub samples: Shared<LayoutSamples>,
     log: LogMap,

@@ -61,7 +61,6 @@ pub struct JudgedOutput {
 /// The output of either method, judged.
 type Made = [Option<JudgedOutput>; 2];
 
-/// State kept between queries.
 #[derive(Default)]
 pub struct JudgeMemory {
     footprints: Memo<Shared<RangeAngleMap>, Footprints>,
@@ -162,24 +161,15 @@ mod tests {
             let object = |index: usize| VerdictMark { object: Some(index), cells: 40, brightest: None };
             let ghost = |at: &CellIndex| VerdictMark { object: None, cells: 12, brightest: Some(*at) };
             let nothing = || Shared::new(RangeAngleMap { lambda: ndarray::Array2::zeros((1, 1)) });
+            let covered = |verdict: &ObjectVerdict| if *verdict == ObjectVerdict::Found { 1.0 } else { 0.0 };
             let verdicts = OutputVerdicts {
                 objects: objects.to_vec(),
-                covered: objects
-                    .iter()
-                    .map(|verdict| if *verdict == ObjectVerdict::Found { 1.0 } else { 0.0 })
-                    .collect(),
+                covered: objects.iter().map(covered).collect(),
                 ghosts: ghosts.iter().map(|at| Ghost { cells: vec![*at; 12] }).collect(),
             };
             let marks = (0..objects.len()).map(object).chain(ghosts.iter().map(ghost)).collect();
-            JudgedOutput {
-                scene: Shared::new(scene),
-                verdicts,
-                marks,
-                eta: 0.8,
-                bound_metres: None,
-                output: nothing(),
-                target: nothing(),
-            }
+            let (scene, output, target) = (Shared::new(scene), nothing(), nothing());
+            JudgedOutput { scene, verdicts, marks, eta: 0.8, bound_metres: None, output, target }
         }
     }
 

@@ -20,7 +20,6 @@ use std::time::Duration;
 const BIND_TRIES: u32 = 20;
 const BIND_INTERVAL: Duration = Duration::from_millis(50);
 
-/// The listener to a capture card.
 pub struct Listening {
     wake: Context,
     running: Option<Running>,

@@ -9,7 +9,6 @@ use crate::signal::SimulationError;
 use crate::task::{Reply, Task, Worker};
 use std::time::Duration;
 
-/// The worker of the maps, its last request and its last result.
 pub struct MapsJob {
     worker: Worker<MapsRequest, Result<MapsResult, SimulationError>>,
     /// The task of all requests at rest, until the scene changes.
@@ -26,7 +25,6 @@ pub struct MapsJob {
     /// Time of the last maps that followed a change.
     pub took: Option<Duration>,
     scene_error: Option<String>,
-    /// Requests sent to the worker.
     pub requests: u64,
 }
 

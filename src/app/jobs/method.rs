@@ -85,7 +85,6 @@ impl MethodRequest {
     }
 }
 
-/// The output of a method.
 #[derive(Clone)]
 pub struct MethodResult {
     /// Identifier of the document that the output belongs to.
@@ -99,18 +98,15 @@ pub struct MethodResult {
     pub reflectors: Vec<Reflector>,
     /// The search's attempts, in order.
     pub attempts: Vec<Attempt>,
-    /// Time of the computation.
     pub took: Duration,
     basis: Basis,
 }
 
 impl MethodResult {
-    /// Name of the method.
     pub fn method(&self) -> &'static str {
         self.pair.origin.method
     }
 
-    /// The radar that the samples are of.
     pub fn radar(&self) -> &Radar {
         &self.basis.radar
     }
@@ -128,7 +124,6 @@ type Answer = (Reconstruction, Option<Vec<Detection>>);
 
 type MethodReply = (MethodRequest, Result<Answer, ReconstructError>);
 
-/// State of the worker between requests.
 struct MethodWorker {
     /// The worker's own threads: on shared ones the maps would wait for a slow reconstruction.
     threads: Option<rayon::ThreadPool>,
@@ -148,7 +143,6 @@ impl MethodWorker {
     }
 }
 
-/// The worker of one method slot, its last request and its last output.
 pub struct MethodJob {
     worker: Worker<MethodRequest, MethodReply>,
     last_request: Option<MethodRequest>,
@@ -297,7 +291,6 @@ impl MethodJob {
         }
     }
 
-    /// The latest output.
     pub fn output(&self) -> Option<&MethodResult> {
         self.output.as_ref()
     }
@@ -312,7 +305,6 @@ impl MethodJob {
         self.worker.progress()
     }
 
-    /// Whether the worker is busy.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
@@ -324,7 +316,6 @@ impl MethodJob {
         (is_only_method && self.is_busy()).then_some(output.method())
     }
 
-    /// Time since which the output or its picture belongs to another origin than the wanted one, if it does.
     pub fn outdated(&self) -> Option<Instant> {
         self.outdated
     }

@@ -11,7 +11,6 @@ use std::sync::Arc;
 /// A map, its own scale and the common one.
 type Rescaling = (Shared<RangeAngleMap>, LambdaScale, LambdaScale);
 
-/// The last maps on a common scale.
 #[derive(Default)]
 pub struct OneScale(BTreeMap<MapKind, Memo<Rescaling, ReadyMap>>);
 

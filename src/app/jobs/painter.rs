@@ -98,8 +98,7 @@ impl Painter {
     }
 }
 
-/// End of a picture's scale. For a difference it is the smallest of 1, 2, 5, 10 ... that is not exceeded. Its labels are then round, and it stays while a
-/// reflector is dragged.
+/// End of a picture's scale. For a difference it is the smallest of 1, 2, 5, 10 ... that is not exceeded: its labels are round, and a drag seldom changes it.
 fn end_of(subject: &Subject) -> f32 {
     let round = |most: f32| SCALE_ENDS.into_iter().find(|end| *end >= most).unwrap_or(1.0);
     if let Paint::Doubt(_) = subject.paint {
@@ -222,21 +221,13 @@ mod tests {
     fn hits_rims_and_misses_are_told_apart_by_the_target() {
         let (mut painter, radar) = (Painter::default(), Radar::default());
         for dark in [true, false] {
-            let subject = Subject {
-                map: lambda(array![[0.0f32, 0.0], [0.8, 0.8]]),
-                minus: Some(lambda(array![[0.0f32, 0.95], [0.89, 0.95]])),
-                paint: Paint::Above { eta: 0.5, dark },
-                projection: Projection::RangeAngle,
-                is_fine: false,
-            };
+            let (map, minus) = (lambda(array![[0.0, 0.0], [0.8, 0.8]]), lambda(array![[0.0, 0.95], [0.89, 0.95]]));
+            let subject = Subject { map, minus: Some(minus), ..subject(Paint::Above { eta: 0.5, dark }) };
             let painted = painter.paint(&radar, MapKind::OutputAbove, &subject).image.pixels.clone();
             let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
             // The cell of neither map is beside a hit, so it has the hit's outline.
-            let expected = [CellVerdict::Hit.outline(dark)]
-                .into_iter()
-                .chain([CellVerdict::Miss, CellVerdict::Rim, CellVerdict::Hit].map(|kind| kind.fill(dark)));
-            let expected: Vec<Color32> = expected.map(colour).collect();
-            assert_eq!(painted, expected);
+            let [miss, rim, hit] = [CellVerdict::Miss, CellVerdict::Rim, CellVerdict::Hit].map(|kind| kind.fill(dark));
+            assert_eq!(painted, [CellVerdict::Hit.outline(dark), miss, rim, hit].map(colour));
         }
     }
 
@@ -257,7 +248,7 @@ mod tests {
         let view = DifferenceView { absolute, whole };
         let paint = Paint::Difference { view, colours: ColourMap::Grey, beside };
         let (map, minus) = (lambda(array![[0.5, 0.5, 0.5, 0.5]]), lambda(array![[0.5, 0.53, 0.47, 0.48]]));
-        let subject = Subject { map, minus: Some(minus), paint, projection: Projection::RangeAngle, is_fine: false };
+        let subject = Subject { map, minus: Some(minus), ..subject(paint) };
         Painter::default().paint(&Radar::default(), MapKind::Difference, &subject)
     }
 

@@ -25,7 +25,6 @@ use crate::scene::Reflector;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The workers of maps and methods.
 pub struct Pipeline {
     pub maps: MapsJob,
     /// The first method and the second.

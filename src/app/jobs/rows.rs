@@ -109,7 +109,6 @@ impl<P: Plan> RowJob<P> {
         self.worker.is_busy().then(|| self.worker.progress().unwrap_or(0.0))
     }
 
-    /// The rows so far.
     pub fn rows(&self) -> &[P::Row] {
         &self.rows
     }

@@ -5,7 +5,6 @@ use super::rows::{Plan, Teller};
 use crate::benchmark::front::{FrontRequest, FrontRow, measure};
 use crate::radar::Radar;
 
-/// A measurement of run times and errors.
 pub struct RunTimePlan {
     pub radar: Radar,
     /// Whether many reflectors and repetitions are measured.

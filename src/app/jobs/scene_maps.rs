@@ -45,12 +45,10 @@ pub struct Pair {
     pub doubt: Option<Shared<RangeAngleMap>>,
 }
 
-/// A request for maps, pictures and figures.
 #[derive(Clone, PartialEq)]
 pub struct MapsRequest {
     pub document: u64,
     pub source: Source,
-    /// The wanted maps, floor and normalisation.
     pub wanted: MapRequest,
     /// Numbers of the elements that methods use in place of the two ends. Their map then replaces that of the first end, and there is none of the last.
     pub layout: Option<Vec<usize>>,
@@ -85,7 +83,6 @@ pub struct Scores {
     pub output_blobs: usize,
 }
 
-/// Maps, pictures and figures of one request.
 #[derive(Clone)]
 pub struct MapsResult {
     pub request: MapsRequest,
@@ -98,7 +95,6 @@ pub struct MapsResult {
     pub detected: Detected,
     pub on_one_scale: BTreeMap<MapKind, ReadyMap>,
     pub pictures: BTreeMap<MapKind, Picture>,
-    /// Figures of the requested pairs.
     pub scores: [Option<Scores>; 2],
     /// P_D against P_FA of the first method's pair.
     pub roc: Option<Arc<Vec<RocPoint>>>,
@@ -125,7 +121,6 @@ impl MapsResult {
 /// Inputs of the scores: the pair, thresholds of target and output, the detector.
 type Scored = (Pair, [f32; 2], Option<Cfar>);
 
-/// State of the maps' worker between requests.
 #[derive(Default)]
 pub struct MapsState {
     engine: Memo<Radar, Engine>,

@@ -17,7 +17,6 @@ use eframe::egui::ColorImage;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// A request for one map with several variants.
 #[derive(Clone, PartialEq)]
 struct Request {
     scene: Shared<Scene>,
@@ -36,7 +35,6 @@ type Made = Result<Arc<ColorImage>, String>;
 /// A finished map, with the number of its request and its value in words.
 type Arrival = (u64, String, Made);
 
-/// One small map on screen.
 #[derive(Clone)]
 pub struct Small {
     pub variant: Variant,
@@ -105,7 +103,6 @@ impl SeveralMaps {
             .collect();
     }
 
-    /// Whether the worker is busy.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }

@@ -5,14 +5,12 @@ use crate::app::state::{DifferenceView, Projection};
 use crate::maps::RangeAngleMap;
 use crate::picture::ColourMap;
 
-/// The way a map is painted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
     Lambda(ColourMap),
     /// Cells above a threshold; beside a target by their verdict against it: flat fills with an outline around each patch.
     Above {
         eta: f32,
-        /// Whether the window is dark.
         dark: bool,
     },
     /// Expected errors, from 0 to the next round number.
@@ -28,7 +26,6 @@ pub enum Paint {
     },
 }
 
-/// The maps, colours and coordinates of one picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
     pub map: Shared<RangeAngleMap>,

@@ -13,7 +13,6 @@ use crate::theory::{Ellipse, Overlay};
 #[derive(Debug, Clone, PartialEq)]
 pub struct TheoryRequest(BoundsRequest);
 
-/// Predictions and position bound of a reflector.
 pub struct TheoryResult {
     /// The reflector, and the elements and noise of the bound.
     pub request: BoundsRequest,
@@ -56,7 +55,6 @@ mod tests {
     use crate::radar::Radar;
     use crate::scene::Reflector;
 
-    /// The theory of a point `y_metres` ahead of the array.
     fn found(y_metres: f64) -> TheoryResult {
         let request = BoundsRequest {
             radar: Radar { elements: 64, samples: 32, ..Radar::default() },

@@ -20,7 +20,6 @@ pub const PANEL: Content<Texture, BoundsRequest> = Content {
     ..Content::computed(|state, _| BoundsRequest::of(state), |ui, cx| show(ui, cx.state, cx.value, cx.memory))
 };
 
-/// Draws the panel with the bounds.
 pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, BoundsResult>, texture: &mut Texture) -> Vec<Command> {
     if BoundsRequest::of(state).is_none() {
         ui.centered_and_justified(|ui| ui.weak("Place a reflector ahead of the array to see its bounds."));
@@ -113,7 +112,6 @@ fn likeness_at(result: &BoundsResult, half: [f64; 2], columns: f64, metres: f64)
     format!("{}\nrange {range:.3} m{value}", direction(cos, 2))
 }
 
-/// Draws numbers and ellipse of the Cramer-Rao bound.
 fn bound(ui: &mut Ui, result: &BoundsResult) {
     let name = &result.request.name;
     let bound = match &result.bound {
@@ -211,19 +209,15 @@ fn outline(bound: &PositionBound) -> Option<Vec<[f64; 2]>> {
 mod tests {
     use super::*;
     use crate::app::jobs::Query;
-    use crate::app::widgets::seen::{self, User};
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
     use crate::scene::Scene;
     use crate::task::Task;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     fn panel(size: [f32; 2]) -> Harness<'static, (Texture, Vec<Command>)> {
         let state = State::of(Radar { elements: 64, samples: 32, ..Radar::default() }, Scene::of_points([(1.5, 9.0)]));
         let result = BoundsRequest::of(&state).and_then(|request| request.compute(&mut (), &Task::default()).ok());
-        let draw = move |ui: &mut Ui, (memory, asked): &mut (Texture, Vec<Command>)| {
-            asked.extend(show(ui, &state, result.as_ref().map(Ok), memory));
-        };
-        Harness::builder().with_size(size).build_ui_state(draw, Default::default())
+        let draw = move |ui: &mut Ui, memory: &mut Texture| show(ui, &state, result.as_ref().map(Ok), memory);
+        seen::asking_with(size, Texture::default(), draw)
     }
 
     #[test]
@@ -240,11 +234,8 @@ mod tests {
             let bounds = panel(size);
             seen::assert_readable(bounds.output());
             let texts = seen::texts(bounds.output());
-            let has = |text: &str| texts.iter().any(|t| t.text == text);
-            assert!(["error of x, mm", "error of y, mm"].into_iter().all(has), "{texts:?}");
+            seen::assert_reads(bounds.output(), &["error of x, mm", "error of y, mm"]);
             let ellipse = bounds.get_by_label("Ellipse of one standard deviation").rect();
-            let below = texts.iter().filter(|t| t.rect.top() > ellipse.bottom() && t.text.parse::<f64>().is_ok());
-            assert!(below.count() >= 2, "numbers along the ellipse: {texts:?}");
             let numbers = texts.iter().filter(|t| ellipse.expand(60.0).contains_rect(t.rect));
             let number = |t: &seen::Seen| t.text.replace('−', "-").parse::<f64>().ok();
             let upwards = numbers.clone().filter(|t| t.rect.right() < ellipse.left());
@@ -267,7 +258,7 @@ mod tests {
         ] {
             let bounds = panel(size);
             seen::assert_readable(bounds.output());
-            assert!(wanted.iter().all(|text| bounds.reads(text)), "{:?}", seen::texts(bounds.output()));
+            seen::assert_reads(bounds.output(), wanted);
         }
     }
 

@@ -49,8 +49,7 @@ fn text(kind: MapKind, radar: &Radar, layout: Option<&LayoutKind>, method: &str)
     }
 }
 
-/// The hint over the scene. At a first start the task is to drag the post of the street towards the wall, in another scene to drag any
-/// reflector. After the first drag the hint is its result in the maps.
+/// The hint over the scene: at a first start what to drag, the post of the street or any reflector; after the first drag its result in the maps.
 pub fn of_scene(state: &State, pipeline: &Pipeline) -> Option<Hint> {
     let scene = state.editor.scene();
     if state.shows_captions() {
@@ -105,8 +104,7 @@ fn hint(scene: &Scene, radar: &Radar, is_recorded: bool) -> Hint {
     }
 }
 
-/// Places of the street's post and of the wall's reflector nearest in range, (x, y) in metres. `None` in another scene; `Some(None)` where
-/// post and wall differ in range.
+/// Places of the street's post and of the wall's reflector nearest in range, (x, y) in metres. `None` in another scene; `Some(None)` at unlike ranges.
 fn post_and_wall(scene: &Scene) -> Option<Option<[[f64; 2]; 2]>> {
     let is_post = |index: usize| index == STREET_POST;
     let same = |(index, (now, then)): (usize, (&Object, &Object))| is_post(index) || now == then;

@@ -28,7 +28,6 @@ const LOW_PANEL_HEIGHT_POINTS: f32 = 370.0;
 /// Where the beats of the first objects are drawn, as parts of the time in which they are heard while the chirp is sent.
 const BEAT_PLACES: [f64; 2] = [0.2, 0.65];
 
-/// Radius of a handle, points.
 const HANDLE_RADIUS_POINTS: f32 = 5.0;
 
 /// Least and largest bandwidth and carrier that dragging reaches, hertz.
@@ -41,7 +40,6 @@ const MIN_TITLE_HEIGHT_POINTS: f32 = 170.0;
 /// Least height in which the charts can be read, points.
 const MIN_CHARTS_HEIGHT_POINTS: f32 = 230.0;
 
-/// Decibels that the spectrum spans.
 const SPECTRUM_DB: f64 = 100.0;
 
 /// Shortest and longest chirp duration that dragging reaches, seconds.
@@ -61,7 +59,6 @@ pub fn show(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>) -> Ve
     })
 }
 
-/// Draws the contents of a panel `height` points high.
 fn contents(ui: &mut Ui, state: &State, result: Computed<'_, ChirpResult>, height: f32, asked: &mut Vec<Command>) {
     let (radar, top) = (state.radar(), ui.cursor().top());
     let element = state.settings.chirp.element.min(radar.elements - 1);
@@ -307,10 +304,8 @@ impl Shown<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::{self, User};
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
     use crate::scene::Scene;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
     use num_complex::Complex64;
 
     fn panel(size: [f32; 2], result: Result<(), &'static str>) -> Harness<'static, Vec<Command>> {
@@ -320,10 +315,7 @@ mod tests {
         let samples = (0..64).map(|k| Complex64::from_polar(1.0, 0.3 * f64::from(k))).collect();
         let beat =
             ChirpResult { element: 3, samples, spectrum: (0..64).map(|bin| 1.0 / (1.0 + f64::from(bin))).collect() };
-        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui, &state, Some(result.map(|()| &beat))));
-        };
-        Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
+        seen::asking(size, move |ui| show(ui, &state, Some(result.map(|()| &beat))))
     }
 
     #[test]
@@ -334,10 +326,9 @@ mod tests {
                 let rect = panel.get_by_label(name).rect();
                 assert!(rect.height() > 40.0 && rect.right() <= size[0], "{name}: {rect:?}");
             }
+            let rising = "Drawn rising; the thesis' formula falls from 38.5 GHz: the same beats.";
             // 12 m before the middle element's neighbour: 20.0 turns in 25.6 us.
-            let texts = seen::texts(panel.output());
-            assert!(texts.iter().any(|t| t.text == "Beats in MHz: point 1 0.78 · point 2 1.32"), "{texts:?}");
-            assert!(texts.iter().any(|t| t.text.contains("the thesis' formula falls from 38.5 GHz")), "{texts:?}");
+            seen::assert_reads(panel.output(), &["Beats in MHz: point 1 0.78 · point 2 1.32", rising]);
             seen::assert_readable(panel.output());
         }
         let _said = panel([900.0, 420.0], Err("every element is needed")).get_by_label("every element is needed");

@@ -15,7 +15,6 @@ use crate::reconstruct::Reconstructor;
 use eframe::egui::{self, ComboBox, Grid, Slider, SliderClamping, Ui};
 use std::time::Duration;
 
-/// Gap between two figures, points.
 const FIGURE_GAP_POINTS: f32 = 20.0;
 
 /// Settings, and the state of the reconstruction.
@@ -29,7 +28,6 @@ pub struct Input<'a> {
     pub uses: Uses,
 }
 
-/// State of the reconstruction.
 #[derive(Default)]
 pub struct Run<'a> {
     /// Completed part of the reconstruction, 0 to 1, while it runs.

@@ -93,9 +93,7 @@ fn mirror(ui: &mut Ui, now: Option<Mirror>, asked: &mut Vec<Command>) {
 mod tests {
     use super::*;
     use crate::app::panels::recording::tests::some_recording;
-    use crate::app::widgets::seen::User;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
 
     fn panel(state: State) -> Harness<'static, State> {
         let draw = move |ui: &mut Ui, state: &mut State| {

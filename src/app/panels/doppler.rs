@@ -17,7 +17,6 @@ use egui_plot::{LineStyle, VLine};
 /// Number of chirps that the button of an empty map sets.
 const INITIAL_CHIRPS: usize = 128;
 
-/// Most objects that are marked.
 const MAX_MARKED_OBJECTS: usize = 200;
 
 /// Longest interval of chirps that the field takes, microseconds, unless a chirp lasts longer.

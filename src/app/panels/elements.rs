@@ -1,5 +1,4 @@
-//! The elements panel: the elements that methods use, and the elements' errors: a strip to click, numbers to type, random errors from a seed,
-//! and calibration on the selected reflector.
+//! The elements panel: the elements that methods use, and their errors: a strip to click, numbers to type, a seed, and a calibration.
 
 mod heard;
 mod strip;
@@ -15,7 +14,6 @@ use crate::radar::{BuiltArray, Decibels, ElementError, Radar, Tolerances};
 use eframe::egui::{CollapsingHeader, Grid, TextEdit, Ui};
 use std::sync::Arc;
 
-/// State of the fields, kept between frames.
 pub struct ElementsMemory {
     chosen: usize,
     tolerances: Tolerances,

@@ -19,7 +19,6 @@ const PRINTED_COLUMNS: [(&str, [Printed; 3]); 3] = [
     ("thesis: exp. 2", PRINTED_EXPERIMENT_2),
 ];
 
-/// Contents of the test sets.
 const SET_CONTENTS: [&str; 3] = ["one point", "3 to 6 points", "points and lines"];
 
 /// The summarised rows, and the state of the current run.
@@ -204,19 +203,15 @@ fn with_error(Estimate { mean, standard_error, median }: Estimate, scale: f64, d
 mod tests {
     use super::*;
     use crate::app::jobs::some_row;
-    use crate::app::widgets::seen::{self, User};
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
     use crate::radar::{Carrier, WindowFunction};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn the_method_in_use_is_tried_on_the_test_sets() {
         let radar = Radar { carrier: Carrier::TwoWay, ..Radar::default() };
-        let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let input = Input { method: Some("capon"), radar: &radar, progress: None, lines: &[], note: None };
-            asked.extend(show(ui, input));
-        };
-        let mut evaluation = Harness::builder().with_size([700.0, 300.0]).build_ui_state(draw, Vec::new());
+        let mut evaluation = seen::asking([700.0, 300.0], |ui| {
+            show(ui, Input { method: Some("capon"), radar: &radar, progress: None, lines: &[], note: None })
+        });
         evaluation.clicks(&["Evaluate"]);
         let [Command::Rows(RowsCommand::Try(choice))] = evaluation.state().as_slice() else { panic!("one choice") };
         assert_eq!((choice.methods.as_slice(), choice.kinds.as_slice()), (&["capon"][..], &Kind::TEST_SETS[..]));
@@ -242,8 +237,7 @@ mod tests {
             _ = show(ui, Input { method: None, radar: &radar, progress: None, lines, note: None });
         });
         seen::assert_readable(evaluation.output());
-        let texts = seen::texts(evaluation.output());
-        assert!(texts.iter().any(|t| t.text == "1234.5"), "the last column: {texts:?}");
+        assert!(evaluation.reads("1234.5"), "the last column");
     }
 
     #[test]

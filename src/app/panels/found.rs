@@ -10,7 +10,6 @@ use crate::reconstruct::{Attempt, Detection};
 use crate::scene::Object;
 use eframe::egui::{CollapsingHeader, Grid, ScrollArea, Ui};
 
-/// Most lines that are shown.
 const MAX_LISTED_LINES: usize = 200;
 
 /// Opacity of a list that belongs to an earlier scene.
@@ -28,7 +27,6 @@ pub struct Input<'a> {
     pub found: Option<&'a [Detection]>,
     /// Attempts of the method's search, in their order.
     pub attempts: &'a [Attempt],
-    /// The objects of the scene on screen.
     pub objects: &'a [Object],
     pub refusal: Option<&'a str>,
     /// Whether the list has belonged to an earlier scene for so long that the panel says so.
@@ -174,14 +172,12 @@ fn nearest(objects: &[Object], [x, y]: [f64; 2]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
     use crate::radar::{Decibels, Radar};
     use crate::reconstruct::search::Nomp;
     use crate::reconstruct::{AttemptVerdict, Proposal, Reconstructor, Refusal, Request};
     use crate::scene::Scene;
     use crate::signal::{Floor, simulate};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     fn panel(found: Option<Vec<Detection>>, change: fn(Input<'_>) -> Input<'_>) -> Harness<'static> {
         let mut panel = Harness::builder().with_size([360.0, 300.0]).build_ui(move |ui| {
@@ -202,13 +198,8 @@ mod tests {
     }
 
     fn detection(degrees: f64, range_metres: f64, db: f64) -> Detection {
-        let relative_power = Decibels(db);
-        Detection {
-            cos_theta: degrees.to_radians().sin(),
-            range_metres,
-            relative_power,
-            confidence: Some(0.4 + 0.1 * db),
-        }
+        let (cos_theta, confidence) = (degrees.to_radians().sin(), Some(0.4 + 0.1 * db));
+        Detection { cos_theta, range_metres, relative_power: Decibels(db), confidence }
     }
 
     fn two() -> Vec<Detection> {
@@ -218,18 +209,10 @@ mod tests {
     #[test]
     fn angles_ranges_and_decibels_are_listed() {
         let shown = panel(Some(two()), |input| input);
-        let _told = [
-            "iaa found 2 echoes, the strongest first",
-            "+6.96°",
-            "+0.1212",
-            "15.00 m",
-            "40 %",
-            "−3.50°",
-            "7.25 m",
-            "−2.0",
-            "20 %",
-        ]
-        .map(|text| shown.get_by_label(text));
+        let _heading = shown.get_by_label("iaa found 2 echoes, the strongest first");
+        for line in [["+6.96°", "+0.1212", "15.00 m", "40 %"], ["−3.50°", "7.25 m", "−2.0", "20 %"]] {
+            let _told = line.map(|text| shown.get_by_label(text));
+        }
     }
 
     #[test]

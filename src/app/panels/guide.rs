@@ -140,7 +140,6 @@ fn heading(chapter: &str) -> &str {
 /// Remembers the number of the open chapter.
 pub const PANEL: Content<usize> = Content::drawn(|ui, cx| show(ui, cx.memory));
 
-/// Draws the panel: one chapter, and the buttons to the others.
 pub fn show(ui: &mut Ui, open: &mut usize) -> Vec<Command> {
     padded(ui, |ui, asked| {
         turn(ui, open);
@@ -191,17 +190,11 @@ fn turn(ui: &mut Ui, open: &mut usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable};
 
     #[test]
     fn a_button_asks_for_its_preset_and_its_conventions() {
-        let draw = |ui: &mut Ui, state: &mut (usize, Vec<Command>)| {
-            let commands = show(ui, &mut state.0);
-            state.1.extend(commands);
-        };
-        let mut guide = Harness::builder().with_size([640.0, 2000.0]).build_ui_state(draw, Default::default());
-        guide.state_mut().0 = 3;
+        let mut guide = seen::asking_with([640.0, 2000.0], 3, show);
         guide.run();
         guide.get_by_role_and_label(egui::accesskit::Role::Button, "Hamming").click();
         guide.step();

@@ -114,12 +114,10 @@ fn seen(ui: &mut Ui, radar: &Radar, [x, y]: [f64; 2], coordinates: Coordinates) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
     use crate::interact::Editor;
     use crate::scene::Line;
     use eframe::egui::{Event, Key};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     type Held = (State, Vec<Command>);
 
@@ -177,7 +175,6 @@ mod tests {
 
     const THREE: [[f64; 2]; 3] = [[1.0, 10.0], [2.0, 12.0], [3.0, 12.0]];
 
-    /// The panel with all three points selected.
     fn panel_of_three() -> Harness<'static, Held> {
         let inspector = panel(of(&THREE), Coordinates::Cartesian);
         assert!(inspector.query_by_label("3 objects").is_some());
@@ -220,10 +217,8 @@ mod tests {
         let [x, y] = places(&inspector)[0];
         assert!(x == 0.0 && (y - 10.0).abs() < 1e-9, "{x}, {y}");
         inspector.clicks(&["x, y"]);
-        assert_eq!(
-            inspector.state().1.last(),
-            Some(&Command::Edit(EditCommand::SetCoordinates(Coordinates::Cartesian)))
-        );
+        let asked = Command::Edit(EditCommand::SetCoordinates(Coordinates::Cartesian));
+        assert_eq!(inspector.state().1.last(), Some(&asked));
     }
 
     #[test]

@@ -8,7 +8,6 @@ use crate::scene::Object;
 use eframe::egui::style::ScrollAnimation;
 use eframe::egui::{self, Align2, FontId, Modifiers, Rect, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 
-/// State of the list, kept between frames.
 #[derive(Default)]
 pub struct ObjectsMemory {
     /// The object that was selected last, at the last drawing.
@@ -19,7 +18,6 @@ pub struct ObjectsMemory {
 
 const ROW_HEIGHT: f32 = 20.0;
 
-/// Rows that Page Up and Page Down pass.
 const ROWS_PER_PAGE: usize = 10;
 
 pub const PANEL: Content<ObjectsMemory> = Content::drawn(|ui, cx| show(ui, cx.state, cx.memory));
@@ -144,13 +142,11 @@ fn mode_of(modifiers: Modifiers) -> SelectionMode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
     use crate::interact::Selection;
     use crate::radar::Radar;
     use crate::scene::Scene;
     use eframe::egui::Key;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     type Held = (State, ObjectsMemory);
 

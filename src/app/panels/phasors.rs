@@ -17,7 +17,6 @@ use num_complex::Complex64;
 /// Duration of playing the whole array, seconds.
 const PLAY_SECONDS: f32 = 4.0;
 
-/// Length of the arrow's head, points.
 const ARROW_HEAD_POINTS: f32 = 12.0;
 
 /// Progress of playing the chain.
@@ -36,7 +35,6 @@ pub const PANEL: Content<PhasorsMemory, PhasorsQuery> = Content {
     )
 };
 
-/// Draws the panel with the chains.
 pub fn show(
     ui: &mut Ui,
     state: &State,
@@ -204,28 +202,20 @@ fn arrow(drawn: &Drawn, end: [f64; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
     use crate::scene::Scene;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     fn result() -> PhasorsResult {
         let contributions = vec![Complex64::new(1.0, 0.0), Complex64::new(0.0, 1.0), Complex64::new(-1.0, 0.0)];
-        PhasorsResult {
-            cell: [10, 40],
-            measured: Phasors { first_element: 0, contributions },
-            focused: None,
-            echoes: None,
-            residual: None,
-        }
+        let measured = Phasors { first_element: 0, contributions };
+        PhasorsResult { cell: [10, 40], measured, focused: None, echoes: None, residual: None }
     }
 
     fn panel(result: Option<Result<PhasorsResult, &'static str>>) -> Harness<'static, (PhasorsMemory, Vec<Command>)> {
         let state = State::of(Radar { elements: 64, samples: 32, ..Radar::default() }, Scene::default());
-        let draw = move |ui: &mut Ui, (memory, asked): &mut (PhasorsMemory, Vec<Command>)| {
-            asked.extend(show(ui, &state, result.as_ref().map(|r| r.as_ref().map_err(|e| *e)), memory));
-        };
-        Harness::builder().with_size([420.0, 360.0]).build_ui_state(draw, (PhasorsMemory::default(), Vec::new()))
+        seen::asking_with([420.0, 360.0], PhasorsMemory::default(), move |ui, memory| {
+            show(ui, &state, result.as_ref().map(|r| r.as_ref().map_err(|e| *e)), memory)
+        })
     }
 
     #[test]

@@ -127,7 +127,6 @@ fn preset(ui: &mut Ui, radar: &Radar, asked: &mut Vec<Command>) {
     });
 }
 
-/// Lines of the text about a radar.
 const DESCRIPTION_LINES: usize = 2;
 
 const OWN_RADAR_TEXT: &str = "Its constants are those of no radar in the list.";

@@ -170,10 +170,8 @@ fn board(ui: &mut Ui, origin: &Origin, asked: &mut Vec<Way>) {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use crate::app::widgets::seen::{self, User};
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
     use crate::recording::packets::PacketCounts;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     /// A recording of 20 frames, whose layout is in doubt.
     pub fn some_recording() -> Recording {
@@ -209,10 +207,7 @@ pub mod tests {
         let packets = PacketCounts { packets: 90, lost_bytes: 1456, ..PacketCounts::default() };
         let summary = CardSummary { frames: 7, dropped: 2, packets };
         let mut port = None;
-        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-            asked.extend(show(ui, recording.as_ref(), Some((plan.as_ref(), summary)), &mut port));
-        };
-        Harness::builder().with_size([520.0, 420.0]).build_ui_state(draw, Vec::new())
+        seen::asking([520.0, 420.0], move |ui| show(ui, recording.as_ref(), Some((plan.as_ref(), summary)), &mut port))
     }
 
     #[test]
@@ -220,12 +215,8 @@ pub mod tests {
         let empty = panel(None);
         assert!(seen::texts(empty.output()).iter().any(|t| t.text.contains("Drop a capture")));
         let mut panel = panel(Some(some_recording()));
-        let texts = seen::texts(panel.output());
-        for text in
-            ["I Q in pairs", "Frame of 20", "xWR1642", "Antennas are taken for granted.", "One echo stands out."]
-        {
-            assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
-        }
+        seen::assert_reads(panel.output(), &["I Q in pairs", "Frame of 20", "xWR1642"]);
+        seen::assert_reads(panel.output(), &["Antennas are taken for granted.", "One echo stands out."]);
         seen::assert_readable(panel.output());
         assert_eq!(panel.query_all_by_label("Range profile").count(), 2, "one a layout");
         panel.clicks(&["Q I in pairs"]);

@@ -21,9 +21,7 @@ const FALSE_ALARM_MARKS: [(f64, &str); 6] =
 pub struct Input<'a> {
     /// Rates of every threshold, if there are any.
     pub points: Option<&'a [RocPoint]>,
-    /// Name of the method whose output it is.
     pub method: &'a str,
-    /// The threshold in use.
     pub eta: f32,
     /// The detector in place of the threshold, if one is in use.
     pub cfar: Option<Cfar>,
@@ -89,17 +87,12 @@ pub fn show(ui: &mut Ui, input: Input<'_>) -> Vec<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable};
 
     #[test]
     fn a_scene_without_a_characteristic_is_told() {
-        let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let input = Input { points: None, method: "baseline", eta: 0.5, cfar: None, metrics: None, refusal: None };
-            asked.extend(show(ui, input));
-        };
-        let roc = Harness::new_ui_state(draw, Vec::new());
+        let input = || Input { points: None, method: "baseline", eta: 0.5, cfar: None, metrics: None, refusal: None };
+        let roc = seen::asking([800.0, 600.0], |ui| show(ui, input()));
         let _told = roc.get_by_label_contains("No ROC");
         assert!(roc.state().is_empty());
     }

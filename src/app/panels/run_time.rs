@@ -20,7 +20,6 @@ pub struct Input<'a> {
     pub radar: &'a Radar,
     /// Completed part of the measurement, 0 to 1, while it runs.
     pub progress: Option<f32>,
-    /// Rows measured so far.
     pub rows: &'a [FrontRow],
     /// Time of one bare transform, milliseconds.
     pub bare_fft_ms: Option<f64>,
@@ -177,19 +176,14 @@ fn power_of_ten(exponent: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Queryable, User};
 
     /// Commands that clicks on these labels send, while the measurement has this progress.
     fn asked(progress: Option<f32>, labels: &[&str]) -> Vec<Command> {
         let radar = Radar { elements: 128, ..Radar::default() };
-        let draw = |ui: &mut Ui, state: &mut (RunTimeMemory, Vec<Command>)| {
-            let input = Input { radar: &radar, progress, rows: &[], bare_fft_ms: None, note: None };
-            let commands = show(ui, input, &mut state.0);
-            state.1.extend(commands);
-        };
-        let mut run_time = Harness::builder().with_size([500.0, 300.0]).build_ui_state(draw, Default::default());
+        let mut run_time = seen::asking_with([500.0, 300.0], RunTimeMemory::default(), |ui, memory| {
+            show(ui, Input { radar: &radar, progress, rows: &[], bare_fft_ms: None, note: None }, memory)
+        });
         let _told = run_time.get_by_label_contains("128 elements");
         run_time.clicks(labels);
         run_time.state().1.clone()

@@ -154,28 +154,23 @@ fn take(variant: &Variant, parameter: Parameter) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{self, Harness, User};
     use crate::radar::Radar;
     use crate::signal::Floor;
-    use egui_kittest::Harness;
     use std::sync::Arc;
 
     fn harness(parameter: Parameter) -> Harness<'static, Vec<Command>> {
         let (mut state, mut textures) = (State::new(Vec::new()), Vec::new());
         state.settings.several = Several::default().with(parameter, &Radar::default());
-        let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+        seen::asking([900.0, 500.0], move |ui| {
             let variants = state.settings.several.variants(&Radar::default(), Floor::Thesis, None, &[]);
-            let maps: Vec<Small> = variants
-                .into_iter()
-                .map(|variant| Small {
-                    variant,
-                    made: Some(Ok(Arc::new(egui::ColorImage::filled([4, 2], Color32::GRAY)))),
-                    is_current: true,
-                })
-                .collect();
-            asked.extend(show(ui, &state, &maps, &mut textures));
-        };
-        Harness::builder().with_size([900.0, 500.0]).build_ui_state(draw, Vec::new())
+            let small = |variant| {
+                let image = Arc::new(egui::ColorImage::filled([4, 2], Color32::GRAY));
+                Small { variant, made: Some(Ok(image)), is_current: true }
+            };
+            let maps: Vec<Small> = variants.into_iter().map(small).collect();
+            show(ui, &state, &maps, &mut textures)
+        })
     }
 
     #[test]

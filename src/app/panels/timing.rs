@@ -74,24 +74,19 @@ fn table(ui: &mut Ui, update: &Update<'_>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, Queryable};
     use crate::engine::{Engine, MapRequest};
     use crate::radar::Radar;
     use crate::scene::Scene;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn an_output_that_is_out_of_date_is_told() {
         let mut engine = Engine::new(Radar { elements: 64, samples: 32, ..Radar::default() });
         let frame = engine.update(&Scene::of_points([(0.0, 10.0)]), &MapRequest::default()).unwrap();
-        let draw = |ui: &mut Ui, asked: &mut Vec<Command>| {
-            let took = Duration::from_millis(12);
-            let update =
-                Update { report: &frame.report, took, painted: 7, output: Some(("capon", took)), outdated: true };
-            asked.extend(show(ui, Some(update)));
-        };
-        let mut timing = Harness::builder().with_size([280.0, 700.0]).build_ui_state(draw, Vec::new());
+        let mut timing = seen::asking([280.0, 700.0], |ui| {
+            let (report, took) = (&frame.report, Duration::from_millis(12));
+            show(ui, Some(Update { report, took, painted: 7, output: Some(("capon", took)), outdated: true }))
+        });
         timing.run_steps(3);
         seen::assert_readable(timing.output());
         let _told = timing.get_by_label("out of date");

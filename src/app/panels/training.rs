@@ -82,8 +82,7 @@ fn curves(ui: &mut Ui, log: &Log) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{Harness, Queryable};
 
     fn panel(note: Option<&'static str>) -> Harness<'static> {
         let draw = move |ui: &mut Ui| _ = show(ui, Some(Path::new("log.csv")), note.map(Err));

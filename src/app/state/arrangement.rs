@@ -239,8 +239,7 @@ impl Arrangement {
         }
     }
 
-    /// Adds a tab for a panel without a tile: beside those whose tabs it shares in the task's own arrangement, else beside the settings, the inspector or the
-    /// scene.
+    /// Adds a tab for a panel without a tile: where the task's own arrangement has it, else beside the settings, the inspector or the scene.
     fn insert(&mut self, panel: Panel) {
         let beside = task_layouts::beside(&self.task.tree(), panel);
         let tiles = &mut self.tree.tiles;
@@ -338,8 +337,7 @@ impl Arrangement {
         std::iter::successors(controls, |id| of(*id)).find(across).or(self.tree.root())
     }
 
-    /// Moves a panel from the settings' tabs to a place beside them, so that it can be read while settings change. Arrangements of older versions have it
-    /// among the tabs.
+    /// Moves a panel from the settings' tabs, where older versions have it, to a place beside them, so that it can be read while settings change.
     fn take_from_over_settings(&mut self, panel: Panel) {
         let tiles = &self.tree.tiles;
         let [of_panel, of_settings] =

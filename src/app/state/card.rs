@@ -18,7 +18,6 @@ pub struct CardPlan {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveFrame {
     pub recording: Shared<Recording>,
-    /// The `.cfg` that set the radar up.
     pub config: PathBuf,
     pub is_first: bool,
 }

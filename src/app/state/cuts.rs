@@ -18,7 +18,6 @@ pub struct CutMap {
     pub scale: Option<LambdaScale>,
 }
 
-/// A pinned cut with its radar, cursor and maps.
 #[derive(Debug, Clone)]
 pub struct PinnedCut {
     pub radar: Radar,

@@ -37,7 +37,6 @@ pub struct Guided {
 }
 
 impl Guided {
-    /// Adds a change.
     pub fn push(&mut self, before: Setup, after: Setup) {
         self.undone.clear();
         self.done.push(GuidedStep { before, after });

@@ -106,7 +106,6 @@ impl LessonRun {
         }
     }
 
-    /// Whether the step's challenge is met.
     pub fn is_met(&self) -> bool {
         self.measured.as_ref().is_some_and(|m| m.as_ref().is_ok_and(|m| m.iter().all(|m| m.holds)))
     }

@@ -26,7 +26,6 @@ impl Methods {
         self.all.push(method);
     }
 
-    /// The method called `name`, if there is one.
     pub fn called(&self, name: &str) -> Option<&Arc<dyn Reconstructor>> {
         self.all.iter().find(|method| method.name() == name)
     }

@@ -217,7 +217,6 @@ impl State {
         self.before_presenting.as_mut().unwrap_or(&mut self.arrangement)
     }
 
-    /// The radar before the scene.
     pub fn radar(&self) -> &Radar {
         self.editor.radar()
     }
@@ -238,7 +237,6 @@ impl State {
         (origin.frames > 1).then_some([origin.frame, origin.frames])
     }
 
-    /// The scene, radar and view now.
     pub fn setup(&self) -> Setup {
         Setup {
             view: self.settings.view.clone(),
@@ -248,14 +246,12 @@ impl State {
         }
     }
 
-    /// Whether a change can be undone.
     pub fn can_undo(&self) -> bool {
         // Undo does not leave a lesson's step.
         let is_left = self.lesson.as_ref().is_none_or(|run| self.editor.history().depth() > run.depth);
         is_left && (self.editor.history().depth() > 0 || self.guided.can_undo(&self.setup()))
     }
 
-    /// Whether an undone change can be done again.
     pub fn can_redo(&self) -> bool {
         self.editor.history().can_redo()
     }
@@ -273,7 +269,6 @@ impl State {
         self.settings.take_back(&step.before.view, &step.after.view);
     }
 
-    /// Redoes the last undone change.
     pub fn redo(&mut self) {
         let Some(step) = self.guided.redo(&self.setup()) else {
             self.editor.redo();

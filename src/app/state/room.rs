@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 const MIN_NEIGHBOUR_POINTS: f32 = 120.0;
 const MIN_LESSON_POINTS: f32 = 230.0;
 
-/// Height of the tabs above a panel, points.
 const TABS_HEIGHT_POINTS: f32 = 24.0;
 
 /// Shares of a container before a panel took room in it.

@@ -74,7 +74,6 @@ impl Parameter {
     }
 }
 
-/// Settings of several maps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Several {

@@ -7,7 +7,6 @@ use crate::scene::presets;
 use std::sync::Arc;
 
 impl State {
-    /// The state of a first start with these methods.
     pub fn new(methods: Vec<Arc<dyn Reconstructor>>) -> State {
         let editor = Editor::of(Document::shipped(presets::default_scene()));
         State { editor, methods: Methods::new(methods), captions: true, ..State::default() }

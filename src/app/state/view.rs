@@ -65,7 +65,6 @@ impl MapView {
     }
 }
 
-/// The visible part of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneView {
     pub centre: Place,
@@ -124,7 +123,6 @@ impl SceneView {
         self.centre = Place::new((low.x_metres + high.x_metres) / 2.0, (low.y_metres + high.y_metres) / 2.0);
     }
 
-    /// Zooms by `factor` around the place under `pos`.
     pub fn zoom(&mut self, factor: f64, rect: Rect, pos: Pos2) {
         let fixed = self.to_scene(rect, pos);
         self.metres_per_point = (self.metres_per_point / factor).clamp(1e-4, 1.0);

@@ -164,7 +164,6 @@ fn place(painter: &Painter, at: Pos2, align: Align2, text: &str) -> Rect {
     rect.translate(vec2(back(rect.left(), rect.right(), room.left(), room.right()), 0.0))
 }
 
-/// Draws small text.
 pub fn text(painter: &Painter, at: Pos2, align: Align2, text: &str, colour: Color32) -> Rect {
     painter.text(at, align, text, tick_font(), colour)
 }

@@ -20,7 +20,6 @@ const RIGHT_MARGIN_POINTS: f32 = 4.0;
 /// Width of the shortest title of a map's axis, points.
 const AXIS_TITLE: f32 = 60.0;
 
-/// A scale of colours.
 pub struct Bar {
     pub table: [Color32; 256],
     pub low: f64,

@@ -124,10 +124,8 @@ pub fn tooltip(ui: &Ui, command: &Command) -> String {
 mod tests {
     use super::*;
     use crate::app::state::ViewCommand;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, NodeT, Queryable, User};
     use eframe::egui::Shape;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::{NodeT, Queryable};
 
     #[test]
     fn an_entry_that_is_on_has_a_tick_and_its_key() {

@@ -24,10 +24,8 @@ pub fn draw(ctx: &Context) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
     use eframe::egui::{self, Key, Shape};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     fn rings<S>(harness: &Harness<'_, S>) -> Vec<Rect> {
         let shapes = harness.output().shapes.iter().filter_map(|s| match &s.shape {

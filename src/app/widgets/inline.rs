@@ -48,9 +48,8 @@ fn emphasis(text: &str) -> Option<(&str, &str, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, Harness};
     use eframe::egui::FontFamily;
-    use egui_kittest::Harness;
 
     #[test]
     fn no_backtick_is_shown() {

@@ -205,11 +205,9 @@ pub fn kind_names(chosen: &[Kind], beside: Option<&str>) -> String {
 mod tests {
     use super::*;
     use crate::app::state::{Methods, ViewCommand};
-    use crate::app::widgets::seen::{self, User};
+    use crate::app::widgets::seen::{self, Harness, NodeT, Queryable, User};
     use crate::radar::{LayoutKind, Radar};
     use crate::scene::Scene;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::{NodeT, Queryable};
     use std::time::Duration;
 
     /// A popup of all methods of 300 points, with a layout in use or not.

@@ -1,5 +1,4 @@
-//! Widgets of panels: axes, charts, directions and levels as text, colours, buttons of commands, drawn buttons, boxes of scene kinds, number fields, progress
-//! bars, the focus ring, textures. Panels import them from here.
+//! Widgets of panels, which import them from here.
 
 pub mod axes;
 mod chart;

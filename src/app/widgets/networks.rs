@@ -62,8 +62,7 @@ fn training(ui: &mut Ui, radar: &Radar) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::{self, User};
-    use egui_kittest::Harness;
+    use crate::app::widgets::seen::{self, Harness, User};
 
     fn menu(radar: Radar) -> Harness<'static, Vec<Command>> {
         let all = crate::methods::all();

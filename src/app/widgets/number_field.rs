@@ -167,7 +167,6 @@ impl<'a> NumberField<'a> {
         self
     }
 
-    /// Sets the least number of decimals shown.
     pub fn min_decimals(mut self, decimals: usize) -> Self {
         self.drag = self.drag.min_decimals(decimals);
         self

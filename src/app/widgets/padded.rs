@@ -41,7 +41,6 @@ pub fn headings<'a>(ui: &mut Ui, headings: impl IntoIterator<Item = (&'a str, &'
     ui.end_row();
 }
 
-/// A cell of a table, aligned to the right.
 pub fn right_aligned(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> Response) -> Response {
     ui.with_layout(Layout::right_to_left(Align::Center), content).inner
 }
@@ -71,10 +70,8 @@ fn within(ui: &mut Ui, margin: Margin, content: impl FnOnce(&mut Ui, &mut Vec<Co
     asked
 }
 
-/// Width of the names, points.
 const NAME_WIDTH_POINTS: f32 = 78.0;
 
-/// Gap between a name and its widgets, points.
 const NAME_GAP_POINTS: f32 = 8.0;
 
 /// A row: its name, then its widget. The name labels the widget for screen readers.
@@ -121,9 +118,7 @@ fn fold(ui: &mut Ui, text: RichText, salt: &str, open: bool, content: impl FnOnc
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::{self, User};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
 
     #[test]
     fn a_row_grows_with_its_choices() {

@@ -17,8 +17,7 @@ const APERTURES: [Aperture; 3] = [Aperture::End(End::First), Aperture::End(End::
 /// Seed of the floor's noise in every measurement.
 pub(in crate::benchmark) const SEED: u64 = 0;
 
-/// Most reflectors for which the exact path, phasor by phasor, gives the reference maps; beyond, it takes too long, and the phasor split in f64
-/// replaces it, which tests compare with the exact path to the last bits.
+/// Most reflectors for reference maps by the exact path: beyond, it takes too long, and f64's phasor split, the same to the last bits, gives them.
 const MAX_EXACT_REFLECTORS: usize = 300;
 
 pub(in crate::benchmark) struct Reference {

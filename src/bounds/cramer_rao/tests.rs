@@ -6,9 +6,10 @@ fn at(range: f64, cos: f64) -> Reflector {
     Reflector { x_metres: range * cos, y_metres: range * (1.0 - cos * cos).sqrt(), reflectivity: 1.0 }
 }
 
-fn alone(layout: &Layout, r: Reflector) -> PositionBound {
+/// The bound of one reflector at 0 dB a sample.
+fn alone(layout: &Layout, r: Reflector, gains: Gains) -> PositionBound {
     let radar = Radar::default();
-    cramer_rao(&radar, layout, &[r], noise_variance(&radar, layout, &r, Decibels(0.0))).unwrap()[0]
+    cramer_rao_of(&radar, layout, &[r], noise_variance(&radar, layout, &r, Decibels(0.0)), gains).unwrap()[0]
 }
 
 /// Bounds on range, metres, and on cos(theta) at 0 dB a sample, by differences of the samples as the formula of a point has them, each
@@ -50,25 +51,18 @@ fn the_bound_is_that_of_the_samples_differences() {
     let radar = Radar::default();
     for layout in [Layout::two_ends(&radar), Layout::one_end(&radar, End::First), Layout::uniform(&radar)] {
         let [range_metres, cos_theta] = by_differences(&radar, &layout, 20.0, 0.3);
-        let bound = alone(&layout, at(20.0, 0.3));
+        let bound = alone(&layout, at(20.0, 0.3), Gains::One);
         assert!((bound.range_metres / range_metres - 1.0).abs() < 1e-3, "{bound:?}, {range_metres}");
         assert!((bound.cos_theta / cos_theta - 1.0).abs() < 1e-3, "{bound:?}, {cos_theta}");
     }
-    // Figures of an independent program, to the digits that it gave.
-    let two_ends = alone(&Layout::two_ends(&radar), at(20.0, 0.3));
-    assert_eq!(format!("{:.2} mm", 1e3 * two_ends.range_metres), "0.26 mm");
-    assert_eq!(format!("{:.4} columns", 512.0 * two_ends.cos_theta), "0.0021 columns");
 }
 
 #[test]
 fn a_gain_an_end_costs_the_phase_between_the_ends() {
     let radar = Radar::default();
-    let layout = Layout::two_ends(&radar);
-    let r = Reflector { x_metres: 5.0, y_metres: 18.0, reflectivity: 1.0 };
-    let variance = noise_variance(&radar, &layout, &r, Decibels(0.0));
     // Against figures of an independent program, given to this many digits.
     for (gains, columns, millimetres, digits) in [(Gains::One, 0.0021, 0.28, 0.04), (Gains::PerEnd, 0.126, 4.8, 0.02)] {
-        let bound = cramer_rao_of(&radar, &layout, &[r], variance, gains).unwrap()[0];
+        let bound = alone(&Layout::two_ends(&radar), Reflector::at([5.0, 18.0], 1.0), gains);
         let found = bound.cos_theta / (2.0 / radar.elements as f64);
         assert!((found / columns - 1.0).abs() < digits, "{gains:?}: {found} columns");
         let found = bound.position_metres() * 1e3;
@@ -92,9 +86,7 @@ fn far_ahead_the_amplitude_is_as_sure_as_all_samples_together() {
         (Layout::two_ends(&radar), Gains::PerEnd),
         (Layout::one_end(&radar, End::First), Gains::One),
     ] {
-        let r = at(1e4, 0.0);
-        let variance = noise_variance(&radar, &layout, &r, Decibels(0.0));
-        let bound = cramer_rao_of(&radar, &layout, &[r], variance, gains).unwrap()[0];
+        let bound = alone(&layout, at(1e4, 0.0), gains);
         // Kay, example 3.14: the variance of a sinusoid's amplitude is that of its samples over twice their number.
         let expected = (2.0 * (layout.len() * radar.samples) as f64).sqrt().recip();
         assert!((bound.amplitude / expected - 1.0).abs() < 1e-3, "{} {expected}", bound.amplitude);
@@ -105,10 +97,7 @@ fn far_ahead_the_amplitude_is_as_sure_as_all_samples_together() {
 fn an_unknown_place_costs_a_near_reflectors_amplitude() {
     let radar = Radar::default();
     let layout = Layout::one_end(&radar, End::First);
-    let r = at(0.05, 0.0);
-    let r = Reflector { x_metres: r.x_metres + radar.end_centre_metres(End::First), ..r };
-    let variance = noise_variance(&radar, &layout, &r, Decibels(0.0));
-    let bound = cramer_rao(&radar, &layout, &[r], variance).unwrap()[0];
+    let bound = alone(&layout, Reflector::at([radar.end_centre_metres(End::First), 0.05], 1.0), Gains::One);
     let alone = (2.0 * (layout.len() * radar.samples) as f64).sqrt().recip();
     assert!(bound.amplitude > 1.2 * alone, "{} {alone}", bound.amplitude);
 }
@@ -120,7 +109,7 @@ fn the_bound_scales_with_noise() {
     let r = at(12.0, -0.4);
     let at_20_db = noise_variance(&radar, &layout, &r, Decibels(20.0));
     let bound = cramer_rao(&radar, &layout, &[r], at_20_db).unwrap()[0];
-    assert!((alone(&layout, r).range_metres / bound.range_metres - 10.0).abs() < 1e-6);
+    assert!((alone(&layout, r, Gains::One).range_metres / bound.range_metres - 10.0).abs() < 1e-6);
     let faint = Reflector { reflectivity: 1e-20, ..r };
     let same = cramer_rao(&radar, &layout, &[faint], at_20_db * 1e-40).unwrap()[0];
     assert!((same.position_metres() / bound.position_metres() - 1.0).abs() < 1e-6);
@@ -133,7 +122,7 @@ fn a_neighbour_costs_accuracy_only_when_near() {
     let r = at(20.0, 0.1);
     let variance = noise_variance(&radar, &layout, &r, Decibels(0.0));
     let beside = |neighbour| cramer_rao(&radar, &layout, &[r, neighbour], variance).unwrap()[0].cos_theta;
-    let alone = alone(&layout, r).cos_theta;
+    let alone = alone(&layout, r, Gains::One).cos_theta;
     let far = beside(at(30.0, -0.5)) / alone;
     assert!((far - 1.0).abs() < 0.01, "{far}");
     let near = beside(at(20.0, 0.1002)) / alone;

@@ -4,6 +4,7 @@ use crate::benchmark::bodies::{self, BodyCase, BodyRow, BodyTimes};
 use crate::benchmark::front::MapConvention;
 use crate::commands::figure::{save, save_numbers};
 use crate::commands::line_chart::{ChartAxis, ChartLine, LineChart, span, widened};
+use crate::commands::progress::ProgressArg;
 use crate::commands::{CommandError, print, print_json};
 use crate::radar::{Radar, counted};
 use plotters::prelude::{RGBColor, SeriesLabelPosition};
@@ -12,15 +13,18 @@ use std::path::Path;
 const BODY_COUNTS: [usize; 6] = [3, 10, 30, 100, 300, 1000];
 
 /// Measures, prints, and draws `bodies.svg`, the same as PNG, and `bodies.json` into `output`.
-pub fn run(repeats: usize, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
+pub fn run(repeats: usize, told: ProgressArg, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
     let cases: Vec<BodyCase> = BodyCase::street()
         .into_iter()
         .chain(BODY_COUNTS.map(BodyCase::crowd))
         .chain(BODY_COUNTS.map(BodyCase::points))
         .collect();
-    let bar = indicatif::ProgressBar::new(cases.len() as u64 * MapConvention::BOTH.len() as u64);
-    let times = bodies::measure(&Radar::default(), &cases, repeats, |_| bar.inc(1))?;
-    bar.finish_and_clear();
+    let mut progress = told.of(cases.len() as u64 * MapConvention::BOTH.len() as u64, "times");
+    let on_row = |row: &BodyRow| {
+        progress.step(format_args!("the last {} of {}", row.scene, counted(row.objects, "object", "objects")));
+    };
+    let times = bodies::measure(&Radar::default(), &cases, repeats, on_row)?;
+    progress.finish();
     if let Some(folder) = output {
         save(&chart(&times), folder, "bodies")?;
         save_numbers(&times, folder, "bodies")?;

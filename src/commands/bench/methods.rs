@@ -3,9 +3,11 @@
 use crate::commands::CommandError;
 use crate::commands::figure::{save, save_numbers};
 use crate::commands::line_chart::{ChartAxis, ChartLine, LineChart, span, widened};
+use crate::commands::progress::ProgressArg;
 use crate::commands::{print, print_json};
 use crate::evaluate::Estimate;
 use crate::evaluate::campaign::Campaign;
+use crate::evaluate::rows::Row;
 use crate::evaluate::sets::SceneSet;
 use crate::evaluate::tables::Tally;
 use crate::methods;
@@ -39,15 +41,16 @@ impl MethodRow {
 }
 
 /// Measures on `count` test scenes of each set, prints, and draws `methods.svg` and `methods.png` into `output`.
-pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
+pub fn run(count: u32, told: ProgressArg, json: bool, output: Option<&Path>) -> Result<(), CommandError> {
     let all = methods::all();
-    let bar = indicatif::ProgressBar::new(3 * u64::from(count) * all.len() as u64);
+    let mut progress = told.of(3 * u64::from(count) * all.len() as u64, "maps");
+    let on_row = |row: &Row| progress.step(format_args!("now set {}, {}", row.set, row.method));
     let report = Report {
         threads: rayon::current_num_threads(),
         scenes: count,
-        methods: method_rows(count, &all.iter().map(AsRef::as_ref).collect::<Vec<_>>(), || bar.inc(1))?,
+        methods: method_rows(count, &all.iter().map(AsRef::as_ref).collect::<Vec<_>>(), on_row)?,
     };
-    bar.finish_and_clear();
+    progress.finish();
     if let Some(folder) = output {
         save(&chart(&report), folder, "methods")?;
         save_numbers(&report, folder, "methods")?;
@@ -67,10 +70,14 @@ pub fn run(count: u32, json: bool, output: Option<&Path>) -> Result<(), CommandE
     Ok(())
 }
 
-fn method_rows(count: u32, methods: &[&dyn Reconstructor], on_map: impl Fn()) -> Result<Vec<MethodRow>, CommandError> {
+fn method_rows(
+    count: u32,
+    methods: &[&dyn Reconstructor],
+    on_row: impl FnMut(&Row),
+) -> Result<Vec<MethodRow>, CommandError> {
     let campaign = Campaign { count, ..Campaign::default() };
     let sets = Kind::TEST_SETS.map(SceneSet::Generated);
-    let rows = campaign.run(&sets, methods, &Task::default(), |_| on_map())?;
+    let rows = campaign.run(&sets, methods, &Task::default(), on_row)?;
     let row = |method: &&dyn Reconstructor| {
         let tally = |set: &SceneSet| {
             let set = set.to_string();

@@ -9,6 +9,7 @@ mod others;
 
 use super::arguments::whole;
 use super::own_method::OwnMethodArgs;
+use super::progress::ProgressArg;
 use super::{CommandError, print, print_json};
 use crate::benchmark::front::{self, Entrant, Front, FrontRequest, FrontRow};
 use crate::benchmark::one_thread::measure;
@@ -25,6 +26,9 @@ use std::path::PathBuf;
 /// (mean and standard_error) and median_milliseconds, both by set.
 #[derive(Debug, clap::Args)]
 pub struct Args {
+    #[command(flatten)]
+    progress: ProgressArg,
+
     /// Print one JSON object instead of a table
     #[arg(long)]
     json: bool,
@@ -91,7 +95,7 @@ impl Args {
         let repeats = self.repeats as usize;
         if self.methods {
             self.own.start()?;
-            return methods::run(self.count, self.json, self.output.as_deref());
+            return methods::run(self.count, self.progress, self.json, self.output.as_deref());
         }
         #[cfg(feature = "network")]
         if self.live {
@@ -101,13 +105,16 @@ impl Args {
             return one_thread(self.json);
         }
         if self.bodies {
-            return bodies::run(repeats, self.json, self.output.as_deref());
+            return bodies::run(repeats, self.progress, self.json, self.output.as_deref());
         }
         let mut request = FrontRequest::full(self.reflectors.iter().map(|n| *n as usize).collect(), repeats);
         if !self.algorithms.is_empty() {
             request.entrants = self.algorithms.clone();
         }
-        let front = measured(&request)?;
+        if let Some(script) = &self.others {
+            others::check_script(script)?;
+        }
+        let front = measured(&request, self.progress)?;
         let others = self.others.as_ref().map(|script| others::measure(script, &request.reflectors, repeats));
         let report = Report { front: &front, others: others.transpose()? };
         if let Some(folder) = &self.output {
@@ -126,11 +133,14 @@ impl Args {
     }
 }
 
-fn measured(request: &FrontRequest) -> Result<Front, CommandError> {
-    let bar = indicatif::ProgressBar::new(1000);
-    let on_row = |part: f32, _: &FrontRow| bar.set_position((1e3 * part) as u64);
+fn measured(request: &FrontRequest, told: ProgressArg) -> Result<Front, CommandError> {
+    let mut progress = told.of(100, "percent");
+    let on_row = |part: f32, row: &FrontRow| {
+        let reflectors = counted(row.reflectors, "reflector", "reflectors");
+        progress.reach((1e2 * part) as u64, format_args!("the last {} of {reflectors}", row.algorithm));
+    };
     let front = front::measure(&Radar::default(), request, on_row, || false)?;
-    bar.finish_and_clear();
+    progress.finish();
     Ok(front)
 }
 

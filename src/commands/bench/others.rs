@@ -11,6 +11,7 @@ use crate::signal::judge;
 use ndarray::{Array1, Array2};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::fs::File;
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
@@ -48,6 +49,11 @@ struct Row {
 struct Printed {
     rows: Vec<Row>,
     missing: Vec<String>,
+}
+
+/// Refuses a script that can't be read.
+pub fn check_script(script: &Path) -> Result<(), CommandError> {
+    File::open(script).map(drop).map_err(CommandError::on(script))
 }
 
 /// Times this program on one thread and runs `script` beside it, for both tasks and every number of reflectors.

@@ -5,6 +5,7 @@ mod report;
 
 use super::arguments::{decibels, usable, whole};
 use super::figure::{save, save_bitmap, save_numbers};
+use super::progress::ProgressArg;
 use super::{CommandError, print_json};
 use crate::bounds::{Ambiguity, Gains, PositionBound, ambiguity, cramer_rao_of, cut, lobes, noise_variance};
 use crate::evaluate::{Placement, placement};
@@ -55,6 +56,9 @@ pub struct Args {
     /// Also run the Newton search on this many draws of noise at every ratio
     #[arg(long, value_name = "N", value_parser = whole(1..=100_000u64))]
     monte_carlo: Option<u64>,
+
+    #[command(flatten)]
+    progress: ProgressArg,
 
     /// Print one JSON object instead of tables
     #[arg(long)]
@@ -154,14 +158,14 @@ impl Args {
 
     fn monte_carlo(&self, radar: &Radar, reflector: Reflector) -> Result<Vec<Placement>, CommandError> {
         let Some(trials) = self.monte_carlo else { return Ok(Vec::new()) };
-        let bar = indicatif::ProgressBar::new(self.snr.len() as u64);
+        let mut progress = self.progress.of(self.snr.len() as u64, "ratios");
         let place = |snr: &Decibels| {
             let placed = placement(radar, reflector, *snr, trials, &Task::default());
-            bar.inc(1);
+            progress.step(format_args!("the last {snr}"));
             placed
         };
         let placed: Result<_, ReconstructError> = self.snr.iter().map(place).collect();
-        bar.finish_and_clear();
+        progress.finish();
         Ok(placed?)
     }
 }

@@ -2,12 +2,12 @@
 
 mod by_echo;
 mod percent;
-mod progress;
 mod report;
 
 use super::arguments::{self, FloorArgs, seed, whole};
 use super::layout_arg::LayoutArg;
 use super::network_args::NetworkArgs;
+use super::progress::ProgressArg;
 use super::radar_arg::RadarArg;
 use super::{CommandError, print, print_json};
 use crate::evaluate::campaign::{Campaign, Shard};
@@ -22,13 +22,11 @@ use crate::radar::{Carrier, Radar};
 use crate::reconstruct::Reconstructor;
 use crate::scene::generate::{Kind, Reading};
 use crate::task::Task;
-use progress::MapProgress;
 use report::EvaluationReport;
 use std::collections::HashSet;
 use std::fs::File;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Fill tables 4.1 to 4.3: squared error, detection and false-alarm rates of reconstruction methods on random test scenes
 ///
@@ -67,7 +65,7 @@ use std::time::Duration;
 /// within_doubt (null where no row says it: mean, standard_error and median of the part of the cells), cfar (null without --cfar: detector, and detection and false_alarm by it),
 /// median_milliseconds and near_best (null with one method). Each set also has against: the first method beside each other one on the scenes
 /// of both (first, second, scenes, squared_error_difference and its interval_95 by the paired bootstrap, first_alone and second_alone: scenes
-/// in which that one alone finds every object, mcnemar_p). Rates are fractions, not percent.
+/// in which that one alone finds every object, none merged or on a wrong tooth; mcnemar_p). Rates are fractions, not percent.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Methods, separated by commas [default: those of --method-command, or else baseline]
@@ -112,9 +110,8 @@ pub struct Args {
     #[arg(long, requires = "merge")]
     partial: bool,
 
-    /// Seconds between lines of progress if standard error is no terminal
-    #[arg(long, value_name = "SECONDS", default_value_t = 30)]
-    progress: u32,
+    #[command(flatten)]
+    progress: ProgressArg,
 
     #[command(flatten)]
     network: NetworkArgs,
@@ -205,13 +202,13 @@ impl Args {
         let mut file = self.rows.as_ref().map(open).transpose().map_err(told)?;
         let maps = scenes * methods.len() as u64;
         let done = self.done(file.as_ref(), maps);
-        let mut progress = MapProgress::new(maps - done.len() as u64, Duration::from_secs(self.progress.into()));
+        let mut progress = self.progress.of(maps - done.len() as u64, "maps");
         let is_done = |set: &str, index: u32, method: &str| {
             !done.is_empty() && done.contains(&(set.into(), index, method.into()))
         };
         let task = Task::default();
         let found = campaign.run_rest(&sets, &methods, &empty, &is_done, &task, |row, _, _| {
-            progress.row(row);
+            progress.step(format_args!("now set {}", row.set));
             if file.as_mut().is_some_and(|file| !file.append(row)) {
                 task.cancel();
             }

@@ -326,7 +326,7 @@ impl MethodReport {
             false => format!("eta {:.4} on average", self.eta),
         };
         let optimiser = Some(self.optimiser.clone()).filter(|optimiser| !optimiser.is_empty());
-        let scenes = (self.scenes != count).then(|| format!("{} scenes", self.scenes));
+        let scenes = (self.scenes != count).then(|| counted(self.scenes, "scene", "scenes"));
         let behind: Vec<String> = optimiser.into_iter().chain([eta]).chain(scenes).collect();
         format!("{} ({})", self.name, behind.join("; "))
     }

@@ -11,7 +11,6 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 
 pub(super) struct SceneJob<'a> {
-    /// The campaign's detector, if it has one.
     pub cfar: Option<Cfar>,
     pub set: &'a SceneSet,
     pub index: u32,
@@ -22,7 +21,6 @@ pub(super) struct SceneJob<'a> {
 }
 
 impl SceneJob<'_> {
-    /// The method's answer for the scene, timed and judged.
     pub fn answer(&self, method: &dyn Reconstructor) -> Result<TimedAnswer, CampaignError> {
         self.trial.ask(method, self.request).map_err(|source| CampaignError::Method {
             method: method.name(),

@@ -3,29 +3,20 @@ use crate::reconstruct::{Baseline, MethodInfo, ReconstructError, Reconstruction}
 use crate::scene::generate::Kind;
 use crate::signal::TwoEnds;
 
-fn figures(rows: &[Row]) -> Vec<Row> {
-    rows.iter().map(|r| Row { milliseconds: 0.0, ..r.clone() }).collect()
-}
-
 #[test]
 fn rows_tell_what_the_detector_makes_of_every_output() {
     let sets = [SceneSet::Generated(Kind::Set1)];
     let run = |cfar: Option<Cfar>| {
         Campaign { count: 1, cfar, ..Campaign::default() }.run(&sets, &[&Baseline], &Task::default(), |_| ())
     };
-    let [without, with] = [None, Some(Cfar::default())].map(|cfar| figures(&run(cfar).unwrap()));
-    let (detection, false_alarm) = (with[0].cfar_detection, with[0].cfar_false_alarm);
-    assert!(detection > Some(0.0) && with[0].cfar == Cfar::default().to_string().as_str());
-    let added = |row: &Row| Row {
-        cfar: with[0].cfar.clone(),
-        cfar_detection: detection,
-        cfar_false_alarm: false_alarm,
-        ..row.clone()
-    };
-    assert!(without[0].cfar.is_empty() && without[0].cfar_false_alarm.is_none());
-    assert_eq!(added(&without[0]), with[0]);
+    let row = |cfar| Row { milliseconds: 0.0, ..run(cfar).unwrap()[0].clone() };
+    let [without, with] = [None, Some(Cfar::default())].map(row);
+    let Row { cfar, cfar_detection, cfar_false_alarm, .. } = with.clone();
+    assert!(cfar_detection > Some(0.0) && cfar == Cfar::default().to_string().as_str());
+    assert!(without.cfar.is_empty() && without.cfar_false_alarm.is_none());
+    assert_eq!(Row { cfar, cfar_detection, cfar_false_alarm, ..without }, with);
     let few = run(Some(Cfar { false_alarm: 1e-12, ..Cfar::default() })).unwrap();
-    assert!(few[0].cfar_false_alarm < false_alarm, "{few:?}");
+    assert!(few[0].cfar_false_alarm < cfar_false_alarm, "{few:?}");
     let wide = run(Some(Cfar { guard: [3, 600], ..Cfar::default() })).unwrap_err().to_string();
     assert!(wide.starts_with("the detector on scene 0 of set 1: guard and training cells span"), "{wide}");
 }

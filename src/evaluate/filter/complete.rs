@@ -13,7 +13,6 @@ pub struct Completion {
 }
 
 /// Candidates for the word that ends at `cursor` (characters from 0) in an expression about rows of `methods`.
-///
 /// Inside quotes the candidates are methods; after a method and a dot, columns; elsewhere both.
 pub fn complete(text: &str, cursor: usize, methods: &[impl AsRef<str>]) -> Completion {
     let before: Vec<char> = text.chars().take(cursor).collect();

@@ -88,8 +88,7 @@ columns! {
         /// Echoes among them that the method shows.
         #[serde(with = "by_text")]
         echoes_found: Option<EchoCounts> = EchoesFound,
-        /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` for methods without doubt, and in tables
-        /// from before doubt was kept.
+        /// SE if every cell were off by its doubt ([`squared_doubt`](super::squared_doubt)); `None` without doubt, as in older tables.
         doubt: Option<f64> = Doubt,
         /// Part of the cells whose error is at most their doubt ([`part_within`](super::part_within)); `None` as for `doubt`.
         within_doubt: Option<f64> = WithinDoubt,
@@ -137,8 +136,7 @@ columns! {
         cfar: Text = Cfar,
         /// The elements that measured the scenes in place of the scenes' own; empty where those did.
         elements: Text = Elements,
-        /// The map that outputs were held against: measured, calibrated or ideal ([`Target`](super::Target)); empty in tables from before targets
-        /// had names, where it is the measured one.
+        /// The map that outputs were held against ([`Target`](super::Target)); empty in older tables, where it is the measured one.
         target: Text = Target,
         /// Numbers of the elements whose samples methods got; empty where methods got the two ends.
         layout: Text = Layout,

@@ -12,7 +12,6 @@ pub fn sorted_by(rows: &[Row], column: Column, descending: bool) -> Vec<usize> {
             (Value::Text(a), Value::Text(b)) => a.cmp(&b),
             (Value::Number(_), Value::Text(_)) => std::cmp::Ordering::Less,
             (Value::Text(_), Value::Number(_)) => std::cmp::Ordering::Greater,
-            // Missing figures are last in both directions.
             (a, b) => return (a == Value::Missing).cmp(&(b == Value::Missing)),
         };
         if descending { order.reverse() } else { order }

@@ -120,7 +120,6 @@ impl RowFile {
     }
 
     /// All rows, in the order of a run that was never stopped, in which they are also written to the file.
-    ///
     /// # Errors
     /// [`RowFileError`] for a file that can't be written.
     pub fn finish(self) -> Result<Vec<Row>, RowFileError> {

@@ -1,19 +1,20 @@
-//! Tests of the verdicts.
-
 use super::*;
-use crate::maps::{LogMaps, Normalisation};
+use crate::maps::{LogMaps, Normalisation, range_transform};
 use crate::radar::Decibels;
 use crate::scene::presets::Preset;
-use crate::scene::{Object, Point, Wall};
+use crate::scene::{Object, Point, Post, Wall};
 use crate::signal::{Floor, simulate};
-use ndarray::Array2;
+use ndarray::s;
+
+fn seen_by(radar: &Radar, scene: &Scene, normalisation: Normalisation) -> (RangeAngleMap, Footprints) {
+    let full = LogMaps::of_signal(radar, &simulate(radar, scene, Floor::Thesis, 1).unwrap()).full;
+    let target = full.normalise(normalisation);
+    let footprints = Footprints::new(radar, scene, &target, full.scale(normalisation));
+    (target, footprints)
+}
 
 fn seen(objects: Vec<Object>) -> (RangeAngleMap, Footprints) {
-    let (radar, scene) = (Radar::default(), Scene { objects, ..Scene::default() });
-    let full = LogMaps::of_signal(&radar, &simulate(&radar, &scene, Floor::Thesis, 1).unwrap()).full;
-    let target = full.normalise(Normalisation::MinMax);
-    let footprints = Footprints::new(&radar, &scene, &target, full.scale(Normalisation::MinMax));
-    (target, footprints)
+    seen_by(&Radar::default(), &Scene { objects, ..Scene::default() }, Normalisation::MinMax)
 }
 
 fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
@@ -22,9 +23,8 @@ fn scene(points: &[(f64, f64)]) -> (RangeAngleMap, Footprints) {
 
 fn shifted(map: &RangeAngleMap, by: i32) -> RangeAngleMap {
     let columns = map.lambda.ncols();
-    let lambda =
-        ndarray::Array2::from_shape_fn(map.lambda.dim(), |(r, c)| map.lambda[[r, shifted_column(c, -by, columns)]]);
-    RangeAngleMap { lambda }
+    let source = |(r, c)| map.lambda[[r, shifted_column(c, -by, columns)]];
+    RangeAngleMap { lambda: Array2::from_shape_fn(map.lambda.dim(), source) }
 }
 
 fn without(map: &RangeAngleMap, cells: &[CellIndex]) -> RangeAngleMap {
@@ -63,7 +63,7 @@ fn a_shift_by_a_few_columns_is_the_wrong_tooth() {
 fn a_blob_elsewhere_is_a_ghost() {
     let (target, footprints) = scene(&[(5.0, 20.0)]);
     let mut output = target.clone();
-    output.lambda.slice_mut(ndarray::s![100..104, 200..206]).fill(1.0);
+    output.lambda.slice_mut(s![100..104, 200..206]).fill(1.0);
     output.lambda[[50, 50]] = 1.0;
     let found = footprints.judge(&target, &output, TARGET_ETA);
     assert_eq!((found.objects[0], found.ghosts.len()), (ObjectVerdict::Found, 1), "one cell is no ghost");
@@ -76,7 +76,7 @@ fn one_blob_over_two_objects_is_a_merger() {
     assert_eq!(footprints.judge(&target, &target, TARGET_ETA).objects, [ObjectVerdict::Found; 2]);
     let row = footprints.cells()[0][0][0];
     let mut output = target.clone();
-    output.lambda.slice_mut(ndarray::s![row..row + 2, 400..620]).fill(1.0);
+    output.lambda.slice_mut(s![row..row + 2, 400..620]).fill(1.0);
     let found = footprints.judge(&target, &output, TARGET_ETA);
     assert_eq!(found.objects, [ObjectVerdict::Merged { with: 1 }, ObjectVerdict::Merged { with: 0 }]);
 }
@@ -88,7 +88,7 @@ fn the_ends_of_a_wall_are_the_wall_and_no_ghosts() {
     assert_eq!(footprints.echoes.iter().map(Vec::len).collect::<Vec<_>>(), [3, 0], "a glint and two ends");
     let mut output = RangeAngleMap { lambda: Array2::zeros(target.lambda.raw_dim()) };
     let draw = |output: &mut RangeAngleMap, [row, column]: CellIndex| {
-        output.lambda.slice_mut(ndarray::s![row - 1..row + 2, column - 2..column + 3]).fill(1.0);
+        output.lambda.slice_mut(s![row - 1..row + 2, column - 2..column + 3]).fill(1.0);
     };
     let middle = |cells: &[CellIndex]| cells[cells.len() / 2];
     for end in &footprints.echoes[0][1..] {
@@ -104,13 +104,11 @@ fn the_ends_of_a_wall_are_the_wall_and_no_ghosts() {
     assert_eq!(judged.headline(), "0 of 2 found, 1 false");
 }
 
-/// The target of a shipped scene, and the verdicts on an output equal to it above the threshold 0.7.
-fn same_output(id: &str, elements: usize, normalisation: Normalisation) -> (Footprints, OutputVerdicts) {
+/// The footprints of a shipped scene over 100 dB, and the verdicts on an output equal to the target above the threshold 0.7.
+fn same_output(id: &str, elements: usize) -> (Footprints, OutputVerdicts) {
     let document = Preset::by_id(id).unwrap().load().unwrap();
     let radar = Radar { elements, end_elements: document.radar.end_elements.min(elements / 2), ..document.radar };
-    let full = LogMaps::of_signal(&radar, &simulate(&radar, &document.scene, Floor::Thesis, 1).unwrap()).full;
-    let target = full.normalise(normalisation);
-    let footprints = Footprints::new(&radar, &document.scene, &target, full.scale(normalisation));
+    let (target, footprints) = seen_by(&radar, &document.scene, Normalisation::DynamicRange(Decibels(100.0)));
     let judged = footprints.judge(&target, &target, 0.7);
     (footprints, judged)
 }
@@ -118,17 +116,14 @@ fn same_output(id: &str, elements: usize, normalisation: Normalisation) -> (Foot
 #[test]
 fn objects_below_the_targets_threshold_are_no_ghosts() {
     for (id, elements, hidden) in [("street", 1024, &[3, 4][..]), ("traffic", 8, &[0])] {
-        let (footprints, judged) = same_output(id, elements, Normalisation::DynamicRange(Decibels(100.0)));
+        let (footprints, judged) = same_output(id, elements);
         for &object in hidden {
             let is_hidden = footprints.objects[object].is_empty();
             assert_eq!((is_hidden, judged.objects[object]), (true, ObjectVerdict::Found), "{id}, object {object}");
         }
         assert!(judged.ghosts.is_empty(), "{id}: {}", judged.headline());
     }
-    assert_eq!(
-        same_output("street", 1024, Normalisation::DynamicRange(Decibels(100.0))).1.headline(),
-        "5 of 5 found, 0 false"
-    );
+    assert_eq!(same_output("street", 1024).1.headline(), "5 of 5 found, 0 false");
 }
 
 #[test]
@@ -140,7 +135,46 @@ fn an_object_in_neither_map_is_hidden_and_not_counted() {
     assert_eq!(found.headline(), "1 of 1 found, 0 false");
     let mut output = target.clone();
     let [row, column] = footprints.places[1][0];
-    output.lambda.slice_mut(ndarray::s![row - 2..row + 2, column - 2..column + 2]).fill(1.0);
+    output.lambda.slice_mut(s![row - 2..row + 2, column - 2..column + 2]).fill(1.0);
     let found = footprints.judge(&target, &output, TARGET_ETA);
     assert_eq!(found.headline(), "2 of 2 found, 0 false", "the output shows it");
+}
+
+#[test]
+fn a_footprint_has_the_loud_cells_of_the_whole_map() {
+    let radar = Radar { elements: 128, end_elements: 12, samples: 96, ..Radar::default() };
+    let objects = [
+        Object::Point(Point::new(1.0, 5.0)),
+        Object::Wall(Wall::new(-1.0, 4.0, 2.0, 10.0)),
+        Object::Post(Post::new(0.5, 2.0, 0.2)),
+    ];
+    for object in objects {
+        let seen = ObjectWithOccluders::from(object.clone());
+        let echoing = EchoSources::of_objects(&radar, std::slice::from_ref(&seen));
+        let plan = SynthesisPlan::cheapest(echoing.len(), amplitude_bound(&radar, &echoing), SIMULATION_TOLERANCE);
+        let profiles = range_transform(&radar, &beat_signal(&radar, &echoing, &plan));
+        let magnitudes = angle_transform(&radar, &profiles, Aperture::Full).cells.mapv(|cell| cell.norm());
+        let peak = magnitudes.iter().fold(0.0, |a: f64, b| a.max(*b));
+        for part in [0.0, 1e-6, 1e-3, 0.1, 0.7, 1.0] {
+            let level = part * peak;
+            let loud = magnitudes.indexed_iter().filter(|(_, magnitude)| **magnitude > level);
+            let expected: Vec<CellIndex> = loud.map(|((bin, column), _)| [bin, column]).collect();
+            assert!(footprint(&radar, &seen, level) == expected, "{object:?} above {part} of its peak");
+            assert_eq!(expected.is_empty(), part >= 1.0, "{object:?} above {part} of its peak");
+        }
+    }
+}
+
+#[test]
+fn many_objects_keep_their_order_and_their_footprints() {
+    let radar = Radar { elements: 128, end_elements: 12, samples: 96, ..Radar::default() };
+    let all = Scene::of_points((0..7).map(|i| (0.6 * f64::from(i) - 1.8, 3.0 + 0.4 * f64::from(i))));
+    let full = LogMaps::of_signal(&radar, &simulate(&radar, &all, Floor::Thesis, 1).unwrap()).full;
+    let (target, scale) = (full.normalise(Normalisation::MinMax), full.scale(Normalisation::MinMax));
+    let cells_of = |objects: &[Object]| {
+        let scene = Scene { objects: objects.to_vec(), ..Scene::default() };
+        Footprints::new(&radar, &scene, &target, scale).objects
+    };
+    let alone: Vec<_> = all.objects.chunks(1).flat_map(cells_of).collect();
+    assert!(cells_of(&all.objects) == alone && alone.iter().all(|cells| !cells.is_empty()));
 }

@@ -23,8 +23,7 @@ use rayon::prelude::*;
 const REPAIR_PART: f64 = 0.2;
 
 impl WorseningSearch {
-    /// Searches near `scene` for `method`. `on_try` is called after every batch with the number of tries and the path so far; the search ends
-    /// when it returns false.
+    /// Searches near `scene` for `method`. After every batch `on_try` gets the number of tries and the path so far; false ends the search.
     /// # Errors
     /// The reason when the start itself can't be tried. Candidates that can't be simulated are skipped.
     pub fn run(

@@ -1,5 +1,5 @@
 use super::*;
-use crate::maps::{Normalisation, RangeAngleMap};
+use crate::maps::Normalisation;
 use crate::radar::Radar;
 use crate::reconstruct::{MethodInfo, ReconstructError, Reconstruction};
 use crate::signal::TwoEnds;
@@ -13,22 +13,16 @@ struct ShortSighted;
 
 impl Reconstructor for ShortSighted {
     fn info(&self) -> MethodInfo {
-        MethodInfo {
-            name: "short-sighted",
-            description: "sees near objects only",
-            prior_knowledge: "nothing",
-            eta: 0.8,
-        }
+        MethodInfo { name: "short-sighted", description: "sees near objects", prior_knowledge: "nothing", eta: 0.8 }
     }
 
     fn estimate(&self, radar: &Radar, ends: &TwoEnds, _: &Request) -> Result<Reconstruction, ReconstructError> {
         let map = crate::maps::channels_map(radar, ends.first.view()).log_magnitude();
         let (peak, _) = map.decades().indexed_iter().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
-        let mut lambda = map.normalise(Normalisation::MinMax);
         if peak.0 > 32 {
-            lambda = RangeAngleMap { lambda: lambda.lambda.mapv(|_| 0.0) };
+            return Ok(Reconstruction::silence(radar));
         }
-        Ok(Reconstruction::of_map(lambda))
+        Ok(Reconstruction::of_map(map.normalise(Normalisation::MinMax)))
     }
 }
 

@@ -36,7 +36,6 @@ pub struct Hdf5<R> {
 
 impl<R: Read + Seek> Hdf5<R> {
     /// Finds the superblock of `file`.
-    ///
     /// # Errors
     /// [`Hdf5Error`] where there is none.
     pub fn open(file: R) -> Result<Self, Hdf5Error> {
@@ -51,15 +50,11 @@ impl<R: Read + Seek> Hdf5<R> {
     }
 
     /// Names and shapes of all arrays of numbers; those in groups as `group.name`.
-    ///
-    /// # Errors
-    /// [`Hdf5Error`].
     pub fn shapes(&mut self) -> Result<Vec<(String, Vec<usize>)>, Hdf5Error> {
         Ok(self.arrays()?.into_iter().map(|(name, object)| (name, object.shape)).collect())
     }
 
     /// The numbers of the array called `key`, of at most `most` numbers.
-    ///
     /// # Errors
     /// [`Hdf5Error`] names the array, and what was expected of it.
     pub fn values(&mut self, key: &str, most: usize) -> Result<Numbers, Hdf5Error> {

@@ -93,7 +93,6 @@ impl AutosaveStore {
         fs::exists(&self.on_screen_path()) || !self.behind_numbers().is_empty()
     }
 
-    /// Reads every copy. One that can't be read is set aside.
     pub(super) fn restore(&self) -> Restored {
         let mut restored = Restored::default();
         let mut behind = Vec::new();

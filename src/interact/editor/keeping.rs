@@ -17,8 +17,7 @@ pub enum Saved {
 }
 
 impl Editor {
-    /// The editor of a new window. Its document is the one `asked` for by name, else the one that was on screen and unsaved when the last window
-    /// died, else `otherwise`.
+    /// The editor of a new window, on the document `asked` for by name, else the unsaved one of the last window that died, else `otherwise`.
     ///
     /// Where both of the first are there, the unsaved one lies one undo step behind. Nothing that was restored is lost: it stays in [`Editor::left`].
     pub fn start(restored: Restored, asked: Option<Document>, otherwise: Document) -> Self {

@@ -83,8 +83,7 @@ impl Editor {
         Snapshot { document: self.document.clone(), selection: self.selection.clone() }
     }
 
-    /// Changes the scene as one undo step, or as part of the last one where both carry the same `key`. Nothing is recorded
-    /// where nothing changed. Returns whether something did.
+    /// Changes the scene as one undo step, or as part of the last of the same `key`; none where nothing changed. Returns whether anything did.
     pub fn edit(&mut self, key: Option<&str>, change: impl FnOnce(&mut Scene, &mut Selection)) -> bool {
         let before = self.snapshot();
         change(self.document.scene_mut(), &mut self.selection);

@@ -14,7 +14,6 @@ pub struct Window {
 }
 
 impl Window {
-    /// Guard and training cells a side, `[range bins, columns]`.
     pub fn new(guard: [usize; 2], training: [usize; 2]) -> Window {
         let reach = [0, 1].map(|axis| guard[axis] + training[axis]);
         Window { guard, reach }
@@ -83,8 +82,7 @@ impl Window {
         })
     }
 
-    /// Whether each cell exceeds the training cell of a rank, from 1, times a factor, both by range bin: whether at least `rank` training cells are below
-    /// the cell over the factor.
+    /// Whether each cell exceeds a factor times its training cell of a rank, from 1; rank and factor by range bin.
     pub fn above_rank(&self, power: ArrayView2<'_, f64>, of: impl Fn(usize) -> (usize, f64) + Sync) -> Array2<bool> {
         let (bins, columns) = power.dim();
         let wrapped = self.wrapped(power);

@@ -12,8 +12,7 @@ pub const fn padded(channels: usize) -> usize {
     channels.div_ceil(VECTOR_LANES) * VECTOR_LANES
 }
 
-/// Weights of a convolution in the order in which the kernel reads them: by blocks of one or two vectors of output channels, then by kernel row, kernel
-/// column and input channel.
+/// Weights in the order of the kernel's loop: by blocks of one or two vectors of output channels, kernel row, kernel column and input channel.
 #[derive(Debug, Clone)]
 pub struct Packed {
     kernel: [usize; 2],
@@ -93,8 +92,7 @@ impl Packed {
 /// Columns of a [`product`].
 pub const PRODUCT_COLUMNS: usize = 2 * VECTOR_LANES;
 
-/// The matrix product `out` `[rows, 32]` of `left` `[rows, inner]` and `right` `[inner, 32]`, on this thread, summed over the inner indices in `runs`
-/// alone.
+/// The matrix product `out` `[rows, 32]` of `left` `[rows, inner]` and `right` `[inner, 32]`, on this thread, over the inner indices in `runs`.
 pub fn product(simd: Simd, left: &[f32], right: &[f32], runs: impl Iterator<Item = Range<usize>>, out: &mut [f32]) {
     let (inner, width) = (right.len() / PRODUCT_COLUMNS, out.len() / PRODUCT_COLUMNS);
     assert!(left.len() == width * inner, "matrices disagree");
@@ -125,7 +123,6 @@ fn blocks(lanes: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..lanes).step_by(2 * VECTOR_LANES).map(move |start| (start, (lanes - start).min(2 * VECTOR_LANES)))
 }
 
-/// One line of a convolution.
 #[derive(Clone, Copy)]
 struct LineJob<'a> {
     input: &'a [f32],

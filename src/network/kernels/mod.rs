@@ -1,5 +1,4 @@
-//! Convolutions without a framework, for processors with AVX-512, with AVX2 and without either: the kernels of the live network's engine and of
-//! the thesis network's.
+//! Convolutions without a framework, with AVX-512, with AVX2 or without either: the kernels of the live network's and the thesis' engine.
 
 pub mod convolution;
 pub(super) mod vector;

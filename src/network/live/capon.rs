@@ -1,5 +1,4 @@
-//! The Capon spectrum of every range row of one end, with forward-backward spatial smoothing (Pillai and Kwon 1989). At low noise it separates
-//! reflectors within the end's beam width.
+//! The Capon spectrum of every range row of one end, with forward-backward spatial smoothing (Pillai and Kwon 1989).
 
 use super::grid::{FINE_COLUMNS, cosine};
 use crate::signal::simd::powers::logarithm;
@@ -9,8 +8,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Numbers of elements of a subarray, largest first. The largest with at most two thirds of an end's elements is used: of 12 elements a subarray has 8,
-/// and there are five subarrays.
+/// Numbers of elements of a subarray, largest first. The largest within two thirds of an end's is used: 8 of 12, in five subarrays.
 const SUBARRAY_ELEMENTS: [usize; 5] = [16, 8, 4, 2, 1];
 /// Diagonal loading of the covariance, relative to its mean diagonal.
 const RELATIVE_LOADING: f64 = 1e-5;

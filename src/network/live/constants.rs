@@ -18,8 +18,7 @@ pub(super) const SPACING_INDEX: usize = 1;
 pub(super) const WINDOWS_INDEX: usize = 2;
 pub(super) const WINDOW_COUNT: usize = WindowFunction::ALL.len();
 
-/// The constants: migration and spacing relative to table 3.1's, a 1 for the window unless it is Hann's, and the element's pattern. All are 0 for
-/// the radar of table 3.1.
+/// The constants: migration and spacing relative to table 3.1's, a 1 for another window than Hann's, and the element's pattern.
 pub(super) fn constants(radar: &Radar) -> [f32; CONSTANTS] {
     let mut constants = [0.0; CONSTANTS];
     constants[0] = (0.25 * (migration_bins(radar) / migration_bins(&Radar::default())).log2()) as f32;
@@ -53,8 +52,7 @@ pub(super) fn in_thesis_convention(radar: &Radar, mut samples: Array2<Complex64>
     samples
 }
 
-/// Reverses the columns of a map `[rows, elements]` where cos(theta) falls with the column of `radar`'s maps: from the network's order to the radar's,
-/// or back.
+/// Reverses the columns of a map `[rows, elements]` where cos(theta) falls with the column of `radar`'s maps: to the radar's order, or back.
 pub fn reverse_columns(radar: &Radar, map: &mut [f32]) {
     if radar.cos_of_column(0.0) > 0.0 {
         // Columns wrap around: the first column keeps its place.

@@ -1,5 +1,4 @@
-//! The live network's estimate of its map's error. A small head, trained on the network's errors, gives the decimal exponent of each cell's expected
-//! error in Lambda.
+//! The live network's estimate of its error: a small head, trained on it, gives the decimal exponent of each cell's expected error in Lambda.
 
 use super::columns::ColumnTaps;
 use super::grid::{COARSE_COLUMNS, COLUMNS, FINE_COLUMNS};
@@ -52,8 +51,7 @@ impl DoubtHead {
         }))
     }
 
-    /// The expected error of each cell of a map of `columns` columns, from the decoder's finest level `picture`. `taps` interpolate where the map's
-    /// columns are not the network's.
+    /// The expected error of each cell of a map of `columns` columns, by `taps` where not the network's, from the decoder's finest level `picture`.
     pub(super) fn read(&self, picture: &Plane, taps: Option<&ColumnTaps>, columns: usize) -> RangeAngleMap {
         let (rows, lanes) = (picture.h, self.conv2.output());
         let mut exponents = vec![0.0; rows * COARSE_COLUMNS * lanes];

@@ -1,5 +1,4 @@
-//! The live network's forward pass without a framework, with channels-last tensors. `python/apertura/live.py` is the same network in PyTorch, for
-//! training; tests compare the results of both.
+//! The live network's forward pass without a framework, channels-last; tests compare it with `python/apertura/live.py`, which is trained.
 
 use super::columns::ColumnTaps;
 use super::config::{DECODER_CHANNELS, FOLD, INPUT_CHANNELS, WIDE_COLUMNS};
@@ -210,8 +209,7 @@ impl LiveEngine {
     }
 }
 
-/// The map in decades, `[samples, 1024]`, of main lobes and sources of side lobes in range `heads`, and of sources in angle `sources`; and the part of
-/// tiles computed.
+/// The map, decades `[samples, 1024]`, of main lobes and sources in range `heads`, and sources in angle `sources`; and the part of tiles computed.
 fn decode(
     kernels: &WindowLobes,
     heads: &Plane,

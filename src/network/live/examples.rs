@@ -189,7 +189,6 @@ impl Examples {
     }
 
     /// Example `index` of the given scene, with noise by seed, purpose and `index`.
-    ///
     /// # Errors
     /// As [`Examples::example`].
     pub fn example_of(&self, scene: Scene, index: u32, task: &Task) -> Result<Example, ExampleError> {

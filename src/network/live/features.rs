@@ -30,8 +30,7 @@ pub const MIN_CHIRP_SAMPLES: usize = 8;
 /// The tensors of one scene, row-major.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveInput {
-    /// `[4, samples, 256]`, decades: minimum and maximum of both ends' Capon spectra on the centre's grid, and their minimum on the grid of the
-    /// first end and on that of the last.
+    /// `[4, samples, 256]`, decades: minimum and maximum of both ends' Capon spectra on the centre's grid, and their minimum on each end's grid.
     pub fine: Vec<f32>,
     /// `[10, samples, 64]`: log-magnitude of each end's beams, the same registered, for each end cosine and sine of the phase step
     /// from the row before, and cosine and sine of twice the phase between the registered ends.

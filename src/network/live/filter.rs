@@ -1,5 +1,4 @@
-//! The transforms of Winograd's minimal filtering F(4, 3) (Lavin and Gray 2016): four neighbouring outputs of a filter with three taps from six
-//! products.
+//! The transforms of Winograd's minimal filtering F(4, 3) (Lavin and Gray 2016): four neighbouring outputs of three taps from six products.
 
 use crate::network::kernels::vector::{Loop, VECTOR_LANES, Vector};
 

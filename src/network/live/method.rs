@@ -33,8 +33,7 @@ pub struct LiveMethod {
     name: &'static str,
     engine: LiveEngine,
     extractor: Mutex<Option<Arc<FeatureExtractor>>>,
-    /// Idle buffers. A pass removes one and has no lock while it runs. Other threads then use others, and so does the same thread where rayon gives it
-    /// work of another caller.
+    /// Idle buffers. A pass removes one and holds no lock: other threads use others, as does this one where rayon gives it another caller's work.
     idle: Mutex<Vec<LiveScratch>>,
     eta: f32,
     weights: Weights,
@@ -45,7 +44,6 @@ pub struct LiveMethod {
 
 impl LiveMethod {
     /// The network of the weights of `file`.
-    ///
     /// # Errors
     /// [`WeightsError`] when the file belongs to another network.
     pub fn new(file: WeightFile) -> Result<Self, WeightsError> {
@@ -53,7 +51,6 @@ impl LiveMethod {
     }
 
     /// The network under another name than that of the shipped weights. The memory of the name is never freed.
-    ///
     /// # Errors
     /// As [`LiveMethod::new`].
     pub fn named(file: WeightFile, name: &str) -> Result<Self, WeightsError> {

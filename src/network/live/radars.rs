@@ -36,8 +36,7 @@ const THESIS_SHARE: f64 = 0.25;
 const FILLED_SHARE: f64 = 0.5;
 const HANN_SHARE: f64 = 0.5;
 const PATTERN_SHARE: f64 = 0.2;
-/// Part of the other random radars with a uniform distribution of migration. The bandwidth of the rest is uniform on a logarithmic scale, by which 4 %
-/// migrate over more than 40 range bins.
+/// Part of the other random radars with uniform migration. Of the rest, with bandwidths uniform in the logarithm, 4 % migrate over more than 40 bins.
 const UNIFORM_MIGRATION_SHARE: f64 = 0.5;
 
 impl Default for Radars {
@@ -154,9 +153,8 @@ mod tests {
             assert!((0.02..0.5).contains(&part), "{name}: {part}");
         }
         let min = radars.iter().map(Radar::max_range_metres).fold(f64::INFINITY, f64::min);
-        assert!(
-            min >= Radars::Random.smallest_max_range_metres() && min < 2.0 * Radars::Random.smallest_max_range_metres()
-        );
+        let least = Radars::Random.smallest_max_range_metres();
+        assert!((least..2.0 * least).contains(&min), "{min}");
     }
 
     #[test]
@@ -196,8 +194,7 @@ mod tests {
         assert!(low.contains("this radar has 10.0000 GHz of carrier, 15.0000 % of the carrier"), "{low}");
         let wide = told(Radar { element_spacing_metres: 4e-3, bandwidth_hz: 4e9, ..Radar::default() });
         assert!(wide.contains("at most 64 range bins from end to end, 0.8 to 1.2 of the filled spacing"), "{wide}");
-        assert!(
-            told(Radar { samples: 256, ..Radar::default() }).contains("for 512 samples; this radar has 256 samples")
-        );
+        let short = told(Radar { samples: 256, ..Radar::default() });
+        assert!(short.contains("for 512 samples; this radar has 256 samples"), "{short}");
     }
 }

@@ -71,7 +71,6 @@ impl RangeLobes {
 
     /// Computes the side lobes `out` `[1024 / BLOCK, rows, BLOCK]` of the sources that `read` writes for a block of columns. Tiles below the part
     /// `skipped_part` of a cell's lower bound are skipped; `floor` is in that bound, but is not added. Returns the fraction of tiles computed.
-    ///
     /// `read` must not use rayon, since the thread's buffers are borrowed.
     pub(super) fn convolve_into(
         &self,

@@ -110,8 +110,7 @@ impl LiveLayers<'_> {
     }
 }
 
-/// Reorders the weights of a layer that spreads one cell over several cells of `channels` channels: from channel by channel, as PyTorch's pixel
-/// shuffle has them, to cell by cell.
+/// Reorders the weights of a layer that spreads one cell over several of `channels` channels, from PyTorch's channel by channel to cell by cell.
 fn cell_by_cell(of_channels: &[f32], channels: usize) -> Vec<f32> {
     let each = of_channels.len() / (CELLS * channels);
     let part = |cell: usize, channel: usize| &of_channels[(channel * CELLS + cell) * each..][..each];

@@ -1,5 +1,4 @@
-//! Registration: interpolation of one end's picture on the polar grid around another place. The ranges of one reflector differ by up to 27 bins between
-//! the two ends.
+//! Registration: interpolation of one end's picture on the polar grid around another place; ranges of a reflector differ by up to 27 bins.
 
 use super::constants::cosine_scale;
 use super::grid::cosine;
@@ -23,8 +22,7 @@ struct Tap {
 const PARTS_PER_CELL: f32 = u16::MAX as f32;
 
 impl<const COLUMNS: usize> Registration<COLUMNS> {
-    /// The interpolation from the polar grid around x = `to` on that around x = `from`, metres. Columns beyond end-fire, which have no reflectors,
-    /// are shifted as end-fire.
+    /// The interpolation from the polar grid around x = `to` on that around x = `from`, metres. Empty columns beyond end-fire shift as end-fire.
     pub(super) fn new(radar: &Radar, from: f64, to: f64) -> Self {
         const { assert!(COLUMNS.is_power_of_two()) };
         let bin = radar.range_resolution_metres();

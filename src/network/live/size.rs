@@ -54,7 +54,6 @@ impl Default for LiveSize {
 
 impl LiveSize {
     /// The size of the network of `file`.
-    ///
     /// # Errors
     /// [`WeightsError`] names the entry where it can't be read, and the number that is out of bounds.
     pub fn of(file: &WeightFile) -> Result<Self, WeightsError> {

@@ -43,8 +43,7 @@ thread_local! {
 }
 
 impl Conv3x3 {
-    /// A convolution with weights `[output, input, 3, 3]` (PyTorch's order) and `bias` `[output]`. The input's cells have `stride` channels, of which the
-    /// first `input` are used.
+    /// A convolution with weights `[output, input, 3, 3]` (PyTorch's order) and `bias` `[output]`, of the first `input` of `stride` channels a cell.
     pub(super) fn new(weights: &[f32], bias: &[f32], input: usize, stride: usize) -> Self {
         let none = vec![0.0; bias.len()];
         let kernel = |along: usize, across: usize| {
@@ -68,7 +67,6 @@ impl Conv3x3 {
 
     /// Convolves a picture of `height` lines of `width` cells, a multiple of four. `read` writes line y of the input, and `take` writes
     /// [`ConvResults`] to the same line of `out`.
-    ///
     /// Neither may use rayon, since the thread's buffers are borrowed.
     pub(super) fn run(
         &self,

@@ -12,8 +12,7 @@ pub(super) struct ThesisLayers<'a> {
 }
 
 impl ThesisLayers<'_> {
-    /// Weights and bias of stage `name`, a convolution of `shape` `[output, input, size, size]`, or with `outputs` 1 a transposed one of
-    /// `[input, output, size, size]`.
+    /// Weights and bias of stage `name`, a convolution `[output, input, size, size]`; with `outputs` 1 transposed, `[input, output, size, size]`.
     pub(super) fn conv(&self, name: &str, shape: [usize; 4], outputs: usize) -> Result<[Vec<f32>; 2], WeightsError> {
         let mut weights = self.file.tensor(&format!("{name}.conv.weight"), &shape)?;
         let [scale, shift] = self.scale_and_shift(name, shape[outputs])?;

@@ -1,5 +1,4 @@
-//! The forward pass of the thesis' network without a framework: channels-last, buffers kept, the same weights as [`super::thesis`], which is
-//! trained and which tests compare it with.
+//! The thesis network's forward pass without a framework: channels-last, buffers kept, with the weights of [`super::thesis`]; tests compare both.
 
 mod layers;
 mod pictures;
@@ -67,8 +66,7 @@ impl ThesisEngine {
         Thesis::ignores(name) || stages.any(|stage| name.strip_prefix(&stage).is_some_and(|part| parts.contains(&part)))
     }
 
-    /// Estimates Lambda of one scene, `[rows, columns]` row-major, from `input` `[4, rows, columns]`. Both must be multiples of 2 to the power of
-    /// the levels.
+    /// Estimates Lambda of one scene, `[rows, columns]` row-major, from `input` `[4, rows, columns]`; both are multiples of `2^levels`.
     /// # Panics
     /// On an input of another shape.
     pub fn forward(&self, input: &[f32], [rows, columns]: [usize; 2], buffers: &mut Buffers) -> Vec<f32> {

@@ -9,7 +9,6 @@ const MARGIN: usize = 2;
 /// A picture that continues circularly beyond all four edges. In a line all even cells lie side by side, and after them all odd ones. A kernel
 /// of dilation 2 on an even cell reads even cells alone, and one on an odd cell odd cells; likewise for rows. So the dilated convolution is an
 /// ordinary one of each of four parts, and a 2x2 max-pool takes the largest of the four outputs at the same place of the parts.
-///
 /// `[h + 4 MARGIN, 2, w / 2 + 2 MARGIN, c]`; height and width must be even.
 #[derive(Debug, Default)]
 pub(super) struct Parted {

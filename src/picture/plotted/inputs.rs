@@ -17,8 +17,6 @@ pub struct InputMap {
 
 impl InputMap {
     /// The input maps of both ends, or that of a layout, with its samples.
-    /// # Errors
-    /// As [`layout_samples`].
     pub(super) fn of(
         radar: &Radar,
         elements: &BuiltArray,
@@ -46,8 +44,6 @@ impl InputMap {
 const MAX_NAME_LETTERS: usize = 16;
 
 /// The samples of `layout`, from those of every element; `signal` is `None` where the two ends alone were recorded.
-/// # Errors
-/// [`ComposeError`] where `radar` has no such elements, or their samples are missing.
 pub(super) fn layout_samples(
     radar: &Radar,
     signal: Option<&BeatSignal>,

@@ -23,9 +23,6 @@ pub(super) struct Lettered<B> {
 
 impl<B: DrawingBackend> Lettered<B> {
     /// `backend` with the fonts.
-    ///
-    /// # Errors
-    /// [`PictureError`] where an embedded font can't be read.
     pub fn new(backend: B) -> Result<Self, PictureError> {
         let font = |bytes| FontRef::try_from_slice(bytes).map_err(|_| PictureError::new("the embedded font is broken"));
         Ok(Lettered { backend, fonts: [font(NORMAL)?, font(BOLD)?] })

@@ -22,10 +22,9 @@ use plotters::prelude::*;
 pub struct Panels<'a> {
     /// The scene; of a recording its name and notes, and the echoes found in it as objects.
     pub scene: &'a Scene,
-    /// Of a recording the echoes that the method found, the strongest first. They are drawn and listed in place of the figures that need a known
-    /// scene.
+    /// Of a recording the echoes that the method found, the strongest first, in place of the figures that need a known scene.
     pub found: Option<&'a [Detection]>,
-    /// Radar of the rows, or of the next run where there are no rows.
+    /// The radar of the maps.
     pub radar: &'a Radar,
     /// The maps' settings (reflectors, carrier, floor, normalisation), in words.
     pub about: &'a str,
@@ -208,7 +207,7 @@ impl<'a> Panels<'a> {
         let percent = |part: f64| format!("{:.2} %", 100.0 * part);
         let figures = [
             ("SE", format!("{:.0}", metrics.squared_error)),
-            ("P_D", metrics.detection.map_or_else(|| "no target cell".to_owned(), percent)),
+            ("P_D", metrics.detection.map_or_else(|| "none".to_owned(), percent)),
             ("P_FA", percent(metrics.false_alarm)),
         ];
         let verdict = self.verdicts.filter(|verdicts| !verdicts.objects.is_empty()).map(OutputVerdicts::headline);
@@ -227,7 +226,6 @@ impl<'a> Panels<'a> {
     }
 }
 
-/// See [`Panels::judged`].
 struct Judged<'a> {
     target: Option<&'a RangeAngleMap>,
     output: &'a RangeAngleMap,
@@ -240,7 +238,6 @@ fn short(eta: f32) -> String {
     if exact.len() > "0.000".len() { format!("{eta:.3}") } else { exact }
 }
 
-/// The sentence on the number of echoes and the place of the strongest.
 fn strongest_of(found: &[Detection]) -> String {
     let Some(strongest) = found.first() else { return "no echo found".to_owned() };
     let Detection { range_metres, cos_theta, .. } = strongest;
@@ -287,6 +284,8 @@ mod tests {
         let place = |text: &str| svg.find(text).unwrap();
         assert!(place(&verdicts.headline()) < place(">\nSE\n"), "the headline comes before the cells' figures");
         assert_eq!(svg.matches("<image").count(), 7, "six maps and the one seen from above are one image each");
+        let empty = render_svg(&Panels { scene: &Scene::default(), verdicts: None, ..panels }).unwrap();
+        assert!(empty.contains(">\nnone\n"), "P_FA stands beside it");
         let without = render_svg(&Panels { target: None, ..panels }).unwrap();
         assert_eq!(without.matches("<image").count(), 5, "no target, no map of it and of its threshold");
         assert!(without.contains("Output, seen from above") && !without.contains("P_FA"));

@@ -18,9 +18,7 @@ pub(super) struct Ends {
     pub x_metres: Vec<f64>,
     /// Number of the first end's elements.
     pub first_count: usize,
-    /// Range profile of each element.
     pub profiles: Profiles,
-    /// Antennas of each element.
     pub pairs: Vec<Pair>,
     /// The antennas in lanes; the last one is repeated.
     lanes: Vec<PairBlocks<W>>,
@@ -48,13 +46,11 @@ impl Ends {
         Ends { profiles: Profiles::new(radar, &channels, PROFILE_ROWS_PER_BIN), x_metres, first_count, pairs, lanes }
     }
 
-    /// Number of elements.
     pub fn len(&self) -> usize {
         self.x_metres.len()
     }
 
-    /// Writes the profile of each element at a place in the centre's polar grid into `snapshot`, `[elements]`. The phase of the element's distance is
-    /// taken out.
+    /// Writes each element's profile at a place in the centre's polar grid into `snapshot`, `[elements]`, without the phase of its distance.
     #[inline(always)]
     pub fn fill_snapshot<const FMA: bool>(&self, range_metres: f64, cos_theta: f64, snapshot: &mut [Complex64]) {
         for (i, (pairs, snapshot)) in self.lanes.iter().zip(snapshot.chunks_mut(W)).enumerate() {

@@ -38,7 +38,6 @@ pub(super) struct Model {
 /// Figures of one steering vector, in units of the mean power of the profiles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct VectorFigures {
-    /// The vector's present power.
     pub power: f32,
     /// `|a^H R^-1 z|^2` of the vector a, the covariance R of all powers and noise, and the profiles z.
     pub matched: f32,
@@ -98,7 +97,6 @@ impl Model {
     }
 }
 
-/// Kernel that makes a model.
 struct Make<'a> {
     radar: &'a Radar,
     ends: &'a Ends,

@@ -24,12 +24,10 @@ const CLOSE_GAINS_RIDGE: f64 = 1e-3;
 /// Least energy of an echo over that of the strongest.
 const MIN_ENERGY_PART: f64 = 1e-6;
 
-/// A local maximum of power over direction.
+/// A local maximum of power over direction, in polar coordinates around the array's centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::reconstruct) struct Peak {
-    /// Distance from the array's centre, metres.
     pub range_metres: f64,
-    /// Cosine of the angle to the array's axis.
     pub cos_theta: f64,
     pub power: f64,
 }

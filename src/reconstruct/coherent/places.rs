@@ -26,7 +26,6 @@ const SIDE_LOBE_MARGIN: f64 = 8.0;
 /// Least power of a place over the strongest. Weaker ones may be residuals of it, and are found by a later search.
 const MIN_PLACE_PART: f64 = 1e-4;
 
-/// Largest number of places.
 const MAX_PLACES: usize = 512;
 
 /// A range and a sector.

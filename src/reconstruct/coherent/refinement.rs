@@ -81,7 +81,6 @@ impl<'a> Refinement<'a> {
         Search { radar, fitter, detector, samples, has_white_noise: false, settings, trace }
     }
 
-    /// The residual.
     pub fn residual(&self) -> TwoEnds {
         TwoEnds::of_flat(self.radar, &self.fit.residual.flat(&self.fitter.sensor))
     }
@@ -160,8 +159,7 @@ impl<'a> Refinement<'a> {
     }
 }
 
-/// Whether a reflector's echo is not much stronger at an element between the ends than at the ends: such a reflector would fill the map, though the ends
-/// hardly measure it.
+/// Whether a reflector's echo is not much stronger between the ends than at them: it would fill the map, though the ends hardly measure it.
 fn is_heard_at_the_ends(radar: &Radar, x_metres: f64, y_metres: f64) -> bool {
     let nearest = |from: f64, to: f64| (x_metres - x_metres.clamp(from, to)).hypot(y_metres);
     let outermost = radar.element_x_metres(radar.elements - 1);

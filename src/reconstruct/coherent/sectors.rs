@@ -20,18 +20,15 @@ pub(super) fn end_beam_cos(radar: &Radar) -> f64 {
     radar.beam_cos(radar.end_elements as f64 * radar.element_spacing_metres)
 }
 
-/// An interval of directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sector {
     /// The direction at which models are exact.
     pub middle_cos: f64,
-    /// Half of the sector's width in cos(theta).
     pub half_width_cos: f64,
 }
 
-/// All sectors of a radar, from -1 to 1.
 pub(super) struct Sectors {
-    /// The sectors, in rising order of cos(theta).
+    /// From cos(theta) = -1 to 1.
     pub all: Vec<Sector>,
     /// Directions of a model, relative to the sector's middle, in rising order.
     pub steps_cos: Vec<f64>,

@@ -97,8 +97,7 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// The slopes for transmitters and receivers apart. The decrease of the amplitude is taken as that of equal legs; for unequal ones the error is
-    /// small beside the change of phase.
+    /// The slopes for transmitters and receivers apart, amplitudes as for equal legs: the error is small beside the change of phase.
     #[inline(always)]
     fn of_pairs(pairs: [Pair; W], r: &Reflector) -> Self {
         let of = Lanes::<f64, W>::splat;

@@ -1,7 +1,6 @@
 //! The banded Gram matrix of atoms and of their derivatives, in closed form.
 //!
-//! No samples are used: an inner product of two echoes is one entry of the window's [`Moments`] a channel, and echoes far apart in
-//! range are orthogonal.
+//! Without samples: an inner product of two echoes is an entry of the window's [`Moments`] a channel, and 0 for echoes far apart in range.
 
 use super::atom::Atom;
 use super::echo::{Echo, Echoes};

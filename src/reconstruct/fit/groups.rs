@@ -39,8 +39,7 @@ pub fn distance_bins(bins: usize, a: &BinSpans, b: &BinSpans) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Groups of atom numbers that contain a marked atom. Each atom is within `link_bins` of another one of its group. A group has at most `max_atoms`,
-/// those nearest to a marked one.
+/// Groups of atom numbers that contain a marked one, each within `link_bins` of another; at most `max_atoms`, the nearest to a marked one.
 pub fn groups(bins: usize, spans: &[BinSpans], marked: &[bool], link_bins: f64, max_atoms: usize) -> Vec<Vec<usize>> {
     let n = spans.len();
     let mut seen = vec![false; n];

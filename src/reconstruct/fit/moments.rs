@@ -13,8 +13,7 @@ use std::sync::Arc;
 /// Nodes of the table for each range bin.
 const NODES_PER_BIN: usize = 8;
 
-/// Number of terms of the Taylor series around each node, and the largest distance from the node, range bins, for which it is used. The last terms are
-/// below 1e-14 of the first there.
+/// Terms of the Taylor series around each node, and the largest distance from it, range bins: the last terms are below 1e-14 of the first there.
 const TAYLOR_TERMS: usize = 18;
 const MAX_NODE_DISTANCE_BINS: f64 = 0.3;
 

@@ -153,10 +153,8 @@ mod tests {
             let seed = truth.moved(&[0.002, -0.001, 1e-5, -2e-5]);
             let near = Spectra::new(&radar, &fitter, &samples).gate(&bin_spans(&radar, &seed), 0.0);
             assert_eq!(near.fitter.sensor.samples, 128);
-            assert!(
-                near.contains(&bin_spans(&radar, &truth))
-                    && !near.contains(&bin_spans(&radar, &Atom::Point { x_metres: 9.0, y_metres: 30.0 }))
-            );
+            assert!(near.contains(&bin_spans(&radar, &truth)));
+            assert!(!near.contains(&bin_spans(&radar, &Atom::Point { x_metres: 9.0, y_metres: 30.0 })));
             let all = fitter.energy(&samples);
             let explained = [
                 all - fitter.solve_alone(&samples, seed).cost(),

@@ -63,8 +63,7 @@ pub struct Fitter<'a> {
     pub work: Arc<WorkBudget>,
 }
 
-/// Largest number of reflectors of a refinement that ignores the budget: it may run beside others, where the work done is not the same each
-/// time.
+/// Largest number of reflectors of a refinement without a budget: it may run beside others, where the work done differs each time.
 const MAX_PARALLEL_REFLECTORS: usize = 16;
 
 /// Number of inner products of two echoes in a unit of work.

@@ -23,7 +23,6 @@ pub struct Sensor {
     pub pairs: Vec<Pair>,
     /// Whether each element transmits and receives.
     pub is_monostatic: bool,
-    /// Samples of a chirp.
     pub samples: usize,
     pub end_elements: usize,
     /// Whether each channel has samples; one without has no echoes.

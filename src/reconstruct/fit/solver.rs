@@ -13,8 +13,7 @@ pub struct RidgeSolver {
 }
 
 impl RidgeSolver {
-    /// Factors `matrix`, `[n, n]`, with `ridge` times its diagonal added. The ridge is raised to 1e-14, 1e-11, 1e-8 or 1e-4, the first of them that
-    /// makes the matrix positive definite.
+    /// Factors `matrix` `[n, n]` with `ridge` times its diagonal added, raised to 1e-14, 1e-11, 1e-8 or 1e-4 until it is positive definite.
     pub fn new(matrix: &Mat<Complex64>, ridge: f64) -> Self {
         let n = matrix.nrows();
         let scale: Vec<f64> =
@@ -39,7 +38,6 @@ impl RidgeSolver {
 
 /// The Levenberg-Marquardt step: the solution of `(H + damping diag H) step = gradient`, for `H`, `[n, n]`, and `gradient`, `[n]`. `None` where the
 /// damped matrix is not positive definite or the step is not finite.
-///
 /// Marquardt, J. SIAM 11 (1963) 431.
 pub fn damped_step(hessian: &Mat<f64>, gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
     let n = gradient.len();

@@ -25,8 +25,7 @@ use std::collections::HashSet;
 /// "Strong rules for discarding predictors in lasso-type problems", J. R. Stat. Soc. B 74, 2012).
 #[derive(Debug, Clone, Copy)]
 pub struct Fista {
-    /// Penalty, as a part of the one that would leave no reflector at all, but at least the one that suppresses noise. The default is by
-    /// examples/choose_eta.rs.
+    /// Penalty, as a part of the one that leaves no reflector, at least the one that suppresses noise. Default by examples/choose_eta.rs.
     pub penalty: f64,
     /// Cells that are candidates; at most 4096 are taken, whose Gram matrix fills 268 MB.
     pub candidates: usize,
@@ -62,8 +61,7 @@ struct Problem {
     penalty: f64,
 }
 
-/// The `count` cells with the largest amplitudes of both ends together, in the order of the grid, without those `known`, and with a correlation
-/// with a unit echo above `least`.
+/// The `count` cells, without those `known`, with the largest amplitudes of both ends, in grid order, correlated above `least` with a unit echo.
 fn candidates(
     radar: &Radar,
     cells: &GridCells<'_>,

@@ -80,21 +80,14 @@ mod tests {
         }
     }
 
-    /// The map of three silent elements on an array of `elements`.
-    fn map_of_silence(elements: usize) -> Result<RangeAngleMap, ReconstructError> {
+    #[test]
+    fn silence_of_the_layout_alone_is_a_dark_map() {
         let radar = Radar::default();
         let layout = Layout::random(&radar, 3, 0).unwrap();
-        let samples: Array2<Complex64> = Array2::zeros((elements, 512));
-        layout_matched_filter(&radar, &layout, samples.view(), &Request::default())
-    }
-
-    #[test]
-    fn silence_is_a_dark_map() {
+        let map_of_silence = |elements: usize| {
+            layout_matched_filter(&radar, &layout, Array2::zeros((elements, 512)).view(), &Request::default())
+        };
         assert!(map_of_silence(3).unwrap().lambda.iter().all(|v| *v == 0.0));
-    }
-
-    #[test]
-    fn samples_of_another_shape_are_refused() {
-        assert!(map_of_silence(2).unwrap_err().to_string().contains("[3, 512]"));
+        assert!(map_of_silence(2).unwrap_err().to_string().contains("[3, 512]"), "another shape is refused");
     }
 }

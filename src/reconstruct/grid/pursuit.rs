@@ -159,8 +159,7 @@ impl<'a> Pursuit<'a> {
     }
 }
 
-/// `atom` moved to the nearest place where it explains most of `samples`, and its correlation there, in at most `steps` steps, which get shorter
-/// once none helps.
+/// `atom` moved to the nearest place where it explains most of `samples`, and its correlation there; steps get shorter once none helps.
 fn climbed(cells: &GridCells<'_>, mut atom: ArrayEcho, samples: &[Complex64], steps: usize) -> (f64, ArrayEcho) {
     let radar = cells.radar();
     let place = radar.polar_of(atom.reflector.x_metres, atom.reflector.y_metres);

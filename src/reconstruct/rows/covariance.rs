@@ -65,8 +65,7 @@ pub(super) fn subspaces(covariance: &Mat<Complex64>, row: &RowSnapshot<'_>) -> O
     Some(Subspaces { noise: noise * noise.adjoint(), signals: vectors.subcols(n - count, count).to_owned() })
 }
 
-/// Coefficients `c[m]`, m = 0..n, of `a^H Q a = c[0] + 2 Re sum_m c[m] exp(j w m)` for a plane wave a and Hermitian Q: the sums
-/// of Q's diagonals.
+/// Coefficients `c[m]`, m = 0..n, of `a^H Q a = c[0] + 2 Re sum_m c[m] exp(j w m)` for a plane wave a and Hermitian Q: Q's diagonal sums.
 pub(super) fn diagonal_sums(q: &Mat<Complex64>) -> Vec<Complex64> {
     let n = q.nrows();
     (0..n).map(|m| (0..n - m).map(|i| q[(i, i + m)]).sum()).collect()
@@ -81,6 +80,7 @@ pub(super) fn quadratic_form(q: &Mat<Complex64>, spectrum: &Spectrum) -> Vec<f64
 
 #[cfg(test)]
 mod tests {
+    use super::super::row::with_waves;
     use super::*;
     use std::f64::consts::TAU;
 
@@ -105,17 +105,14 @@ mod tests {
 
     #[test]
     fn smoothing_restores_the_rank_of_coherent_waves() {
-        let snapshot: Vec<Complex64> =
-            wave(12, 0.1).into_iter().zip(wave(12, 0.16)).map(|(a, b)| a + 0.5 * b).collect();
-        let plan = Spectrum::new(16);
-        let row = RowSnapshot { snapshots: [&snapshot; 3], noise_variance: 1e-12, not_plane: 0.0, spectrum: &plan };
-        let subspaces = subspaces(&smoothed(&[&snapshot], 8), &row).unwrap();
-        assert_eq!(subspaces.signals.ncols(), 2);
-        for turns in [0.1, 0.16] {
+        let waves = [(0.1, 1.0), (0.16, 0.5)];
+        let found = with_waves(&waves, |row| subspaces(&smoothed(&[row.own()], 8), row).unwrap());
+        assert_eq!(found.signals.ncols(), 2);
+        for (turns, _) in waves {
             let a = wave(8, turns);
             let left: Complex64 = (0..8)
                 .flat_map(|i| (0..8).map(move |j| (i, j)))
-                .map(|(i, j)| a[i].conj() * subspaces.noise[(i, j)] * a[j])
+                .map(|(i, j)| a[i].conj() * found.noise[(i, j)] * a[j])
                 .sum();
             assert!(left.norm() < 1e-9, "{turns} is orthogonal to the noise subspace: {left}");
         }

@@ -7,8 +7,7 @@ use faer::linalg::solvers::{SelfAdjointEigen, Solve};
 use faer::{Mat, Side};
 use num_complex::Complex64;
 
-/// Directions of each end and range row by total least squares, from a covariance that is averaged forward and backward; their peaks
-/// rendered.
+/// Directions of each end and range row by total least squares, from a covariance averaged forward and backward; their peaks rendered.
 ///
 /// R. Roy and T. Kailath, "ESPRIT: estimation of signal parameters via rotational invariance techniques", IEEE Trans. Acoust., Speech,
 /// Signal Process. 37, 1989.
@@ -21,8 +20,7 @@ pub const ESPRIT: RowMethod = RowMethod {
     render: Render::Peaks,
 };
 
-/// Turns of phase per element within which two waves are one. A covariance that is averaged forward and backward has eigenvalues in pairs `z`,
-/// `1 / conj(z)`, whose phase is the same.
+/// Turns of phase per element within which two waves are one: the averaged covariance has eigenvalues in pairs `z`, `1 / conj(z)` of one phase.
 const SAME_TURNS: f64 = 1e-6;
 
 /// Turns of phase per element of each wave.

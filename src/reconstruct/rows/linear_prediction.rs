@@ -66,34 +66,22 @@ fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::row::with_waves;
     use super::*;
-    use crate::maps::Spectrum;
-    use std::f64::consts::TAU;
 
-    /// Waves of columns 300 and 340 at twelve elements.
-    fn two_waves() -> Vec<Complex64> {
-        let wave = |column: f64, n: usize| Complex64::cis(TAU * column * n as f64 / 1024.0);
-        (0..12).map(|n| wave(300.0, n) + wave(340.0, n)).collect()
-    }
+    /// Waves of columns 300 and 340.
+    const TWO_WAVES: [(f64, f64); 2] = [(300.0 / 1024.0, 1.0), (340.0 / 1024.0, 1.0)];
 
     #[test]
     fn waves_are_predicted() {
-        let own = two_waves();
-        let plan = Spectrum::new(1024);
-        let row =
-            RowSnapshot { snapshots: [&own, &own, &own], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
-        let a = predictor(&row).unwrap();
+        let (a, own) = with_waves(&TWO_WAVES, |row| (predictor(row).unwrap(), row.own().to_vec()));
         let predicted: Complex64 = a.iter().enumerate().map(|(k, a)| a * own[10 - k]).sum();
         assert!((predicted - own[11]).norm() < 1e-9);
     }
 
     #[test]
     fn waves_stand_out() {
-        let own = two_waves();
-        let plan = Spectrum::new(1024);
-        let row =
-            RowSnapshot { snapshots: [&own, &own, &own], noise_variance: 1e-20, not_plane: 1e-10, spectrum: &plan };
-        let power = spectrum(&row).unwrap();
+        let power = with_waves(&TWO_WAVES, spectrum).unwrap();
         let largest = power.iter().copied().fold(0.0, f64::max);
         for column in [300, 340] {
             assert!(power[column] > 0.01 * largest && power[column] > 1e3 * power[320], "{column}");

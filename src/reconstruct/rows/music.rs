@@ -34,19 +34,13 @@ fn spectrum(row: &RowSnapshot) -> Option<Vec<f64>> {
 mod tests {
     use super::super::row::with_waves;
     use super::*;
-    use crate::maps::Spectrum;
-    use num_complex::Complex64;
-    use std::f64::consts::TAU;
 
-    /// Peaks of `power` above a hundredth of its largest, as columns.
+    /// Columns of the peaks above 0.3 of the largest.
     fn peaks(power: &[f64]) -> Vec<usize> {
         let largest = power.iter().copied().fold(0.0, f64::max);
         let n = power.len();
-        (0..n)
-            .filter(|&k| {
-                power[k] > 0.3 * largest && power[k] > power[(k + n - 1) % n] && power[k] >= power[(k + 1) % n]
-            })
-            .collect()
+        let is_peak = |k: &usize| power[*k] > power[(k + n - 1) % n] && power[*k] >= power[(k + 1) % n];
+        (0..n).filter(|k| power[*k] > 0.3 * largest && is_peak(k)).collect()
     }
 
     #[test]
@@ -60,10 +54,7 @@ mod tests {
 
     #[test]
     fn a_plain_beam_is_as_wide_as_twelve_elements_make_it() {
-        let own: Vec<Complex64> = (0..12).map(|n| Complex64::cis(TAU * 0.25 * n as f64)).collect();
-        let plan = Spectrum::new(1024);
-        let row = RowSnapshot { snapshots: [&own, &own, &own], noise_variance: 0.0, not_plane: 1e-10, spectrum: &plan };
-        let power = row.bartlett();
+        let power = with_waves(&[(0.25, 1.0)], |row| row.bartlett());
         assert!((power[256] - 1.0).abs() < 1e-12, "amplitude 1 at its column");
         // Half-power width of a uniform line: 0.886 / (N d / lambda) in cos, here 0.886 * 1024 / 12 columns.
         let width = power.iter().filter(|p| **p > 0.5).count();

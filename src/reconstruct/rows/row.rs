@@ -37,8 +37,7 @@ impl RowSnapshot<'_> {
         nulls.iter().map(|v| strongest * deepest / v.max(deepest)).collect()
     }
 
-    /// Power over angle, in the order of the transform, of the whole array continued from waves of `turns` of phase per element, with amplitudes
-    /// by least squares.
+    /// Power over angle, in the order of the transform, of the whole array: waves of `turns` per element, with amplitudes by least squares.
     pub fn continued(&self, turns: &[f64]) -> Option<Vec<f64>> {
         let own = self.own();
         if turns.is_empty() {

@@ -66,8 +66,7 @@ struct Candidate {
 }
 
 impl Search<'_> {
-    /// A row in the residual of `fit` that begins at one of `points` (x, y; metres) and explains enough. Points on the rows of `fit` are removed from
-    /// `points`.
+    /// A row in the residual of `fit` that begins at one of `points` (x, y; metres) and explains enough; points on rows of `fit` are removed.
     pub fn next_row(&self, fit: &Fit, points: &mut Vec<[f64; 2]>) -> Option<Fit> {
         let flat = fit.residual.flat(&self.fitter.sensor);
         let profile = Profile::new(self.radar, &flat);

@@ -15,7 +15,6 @@ use crate::reconstruct::{ReconstructError, Request};
 use crate::signal::TwoEnds;
 
 /// The objects in the samples of both ends.
-///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
 pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Settings) -> Result<Found, ReconstructError> {
@@ -23,7 +22,6 @@ pub fn find(radar: &Radar, ends: &TwoEnds, request: &Request, settings: &Setting
 }
 
 /// The objects in samples that differ little from those of `previous`, from its objects; by [`find`] where these don't explain the samples.
-///
 /// # Errors
 /// [`ReconstructError::Cancelled`].
 pub fn find_from(

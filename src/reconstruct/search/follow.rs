@@ -45,8 +45,7 @@ impl Search<'_> {
         Ok((has_few_more && (answer.is_complete || is_as_good(&answer.fit))).then_some(answer))
     }
 
-    /// `fit` with the points in whose range bins there is a residual searched again by their tones, however far they moved. `None` where that leaves a
-    /// residual.
+    /// `fit` with the points that have a residual in their range bins searched again by tones, however far they moved; `None` where a residual is left.
     fn found_by_tones(&self, fit: &Fit) -> Result<Option<Fit>, ReconstructError> {
         let have_residual = self.have_residual(fit);
         let is_moved = |i: &usize| have_residual[*i] && matches!(fit.atoms[*i], Atom::Point { .. });

@@ -153,8 +153,7 @@ impl Search<'_> {
         self.refined(fit, &marked, LINK_BINS, GROWING_LIMITS)
     }
 
-    /// The point at (x, y), metres, refined at its own range and at one wrapped by the maximum range; the better one. Beat frequencies wrap, the
-    /// curvature of wavefronts doesn't.
+    /// The point at (x, y), metres, refined at its own range or the wrapped one, the better: beat frequencies wrap, the curvature of waves doesn't.
     pub fn refined_point(&self, fit: &Fit, [x_metres, y_metres]: [f64; 2]) -> (Atom, Gains) {
         let own = Atom::Point { x_metres, y_metres };
         let max_range = self.radar.max_range_metres();

@@ -13,7 +13,7 @@ use crate::signal::{Floor, simulate};
 /// Largest error of the search, over that of a map drawn from the true scene and the noise's true variance.
 const MAX_ERROR_RATIO: f64 = 1.1;
 
-/// The error of the search on `count` scenes of sets 1 and 2, all of whose reflectors it finds, is hardly more than that of the expected map of the true scene.
+/// The error of the search on `count` scenes each of sets 1 and 2 is hardly more than that of the expected map of the true scene.
 fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
     let radar = Radar::default();
     let generator = Generator::new(&radar, Reading::Program, purpose, 0);
@@ -37,10 +37,8 @@ fn costs_hardly_more_than_the_noise(purpose: Purpose, count: u32) {
                 searched += squared_error(&target, &found.expected(&radar, &request).map);
             }
             let [told, searched] = [told, searched].map(|sum| sum / f64::from(count));
-            println!(
-                "{kind}, {snr_db} dB: SE {searched:.0}, of the noise alone {told:.0}, ratio {:.3}",
-                searched / told
-            );
+            let ratio = searched / told;
+            println!("{kind}, {snr_db} dB: SE {searched:.0}, of the noise alone {told:.0}, ratio {ratio:.3}");
             assert!(searched < MAX_ERROR_RATIO * told, "{kind}, {snr_db} dB: {searched} for {told}");
         }
     }

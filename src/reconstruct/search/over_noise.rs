@@ -12,8 +12,7 @@ const MAX_DEPTH_DECADES: f64 = 3.0;
 /// Entries of the table for each decade. Linear interpolation is wrong by at most 1e-6 decades.
 const NODES_PER_DECADE: f64 = 1024.0;
 
-/// `[increase of a cell's mean by the noise, decades; density of its power near zero over that of noise alone]`, from [`MAX_DEPTH_DECADES`] below the
-/// noise on.
+/// From [`MAX_DEPTH_DECADES`] below the noise on: increase of a cell's mean, decades, and density of its power near zero over that of noise alone.
 static TABLE: LazyLock<Vec<[f32; 2]>> = LazyLock::new(|| {
     let nodes = (NODES_PER_DECADE * (MAX_DEPTH_DECADES + 0.5 * MAX_NOISY_POWER_RATIO.log10())) as usize + 2;
     let node = |i: usize| {

@@ -6,7 +6,6 @@ use crate::radar::Decibels;
 use crate::scene::generate::{Generator, Kind, Purpose, Reading};
 use crate::scene::{Line, Object, Point, Scene};
 use crate::signal::{Floor, simulate};
-use crate::task::Task;
 use ndarray::Array2;
 use num_complex::Complex64;
 
@@ -63,14 +62,6 @@ fn scenes_of_points_are_reconstructed_to_the_floor() {
 }
 
 #[test]
-fn silence_is_an_empty_scene() {
-    let radar = Radar::default();
-    let ends = ends_of(&radar, &Scene::default());
-    let found = Nomp::default().reconstruct(&radar, &ends, &Request::default()).unwrap();
-    assert!(found.reflectors.is_empty() && found.lambda.lambda.iter().all(|v| *v == 0.0));
-}
-
-#[test]
 fn gain_changes_neither_positions_nor_map() {
     let radar = Radar::default();
     let scene = Scene::of_points([(4.0, 9.0), (-12.0, 15.0)]);
@@ -91,29 +82,12 @@ fn gain_changes_neither_positions_nor_map() {
 }
 
 #[test]
-fn noise_alone_and_one_sample_give_a_bounded_answer() {
+fn noise_alone_is_not_a_scene() {
     let radar = Radar::default();
     let mut noise = crate::signal::BeatSignal::silence(&radar);
     crate::signal::floor::add_noise(&mut noise, &vec![1.0; radar.elements], 3);
     let found = Nomp::default().reconstruct(&radar, &noise.two_ends(&radar), &Request::default()).unwrap();
-    assert!(found.reflectors.is_empty(), "noise is not a scene: {:?}", found.reflectors);
-
-    let mut one = ends_of(&radar, &Scene::default());
-    // The last end must hear something, however little.
-    (one.first[[3, 100]], one.last[[0, 0]]) = (Complex64::from(1.0), Complex64::from(1e-12));
-    let found = Nomp::default().reconstruct(&radar, &one, &Request::default()).unwrap();
-    assert!(found.lambda.lambda.iter().all(|v| (0.0..=1.0).contains(v)));
-    assert!(found.reflectors.iter().all(|r| r.x_metres.is_finite() && r.reflectivity.is_finite()));
-}
-
-#[test]
-fn a_cancelled_request_ends_with_an_error() {
-    let radar = Radar::default();
-    let task = Task::default();
-    task.cancel();
-    let request = Request { task, ..Request::default() };
-    let ends = ends_of(&radar, &Scene::of_points([(4.0, 9.0)]));
-    assert_eq!(Nomp::default().reconstruct(&radar, &ends, &request), Err(ReconstructError::Cancelled));
+    assert!(found.reflectors.is_empty(), "{:?}", found.reflectors);
 }
 
 #[test]
@@ -134,33 +108,22 @@ fn under_thermal_noise_it_finds_little_but_what_is_there() {
 }
 
 #[test]
-fn a_shorter_line_is_found() {
+fn lines_and_crowds_are_found_with_every_reflector() {
     let radar = Radar::default();
-    let bin = radar.range_resolution_metres();
-    let line = Line::vertical(7.0, 6.0, 1.5 * bin, 40);
-    let scene = Scene { objects: vec![Object::Line(line), Object::Point(Point::new(-4.0, 15.0))], ..Scene::default() };
-    let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
-    assert_eq!(found.reflectors.len(), 41);
-    assert!(worst_error_metres(&scene, &found) < 1e-6, "{:e}", worst_error_metres(&scene, &found));
-}
-
-#[test]
-fn a_crowd_is_found_to_rounding() {
-    let radar = Radar::default();
-    let scene = Generator::new(&radar, Reading::Program, Purpose::Validation, 7).scene(Kind::Crowd, 1);
-    let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
-    assert_eq!(found.reflectors.len(), scene.reflector_count());
-    assert!(worst_error_metres(&scene, &found) < 1e-7, "{:e}", worst_error_metres(&scene, &found));
-}
-
-#[test]
-fn a_slanted_wall_is_found_with_both_its_ends() {
-    let radar = Radar::default();
-    let wall = Line { direction_degrees: 70.0, ..Line::vertical(-2.0, 6.0, 0.14, 45) };
-    let scene = Scene { objects: vec![Object::Line(wall), Object::Point(Point::new(7.0, 22.0))], ..Scene::default() };
-    let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
-    assert_eq!(found.reflectors.len(), 46);
-    assert!(worst_error_metres(&scene, &found) < 1e-5, "{:e}", worst_error_metres(&scene, &found));
+    let pair = |line, point| Scene { objects: vec![Object::Line(line), Object::Point(point)], ..Scene::default() };
+    let short = Line::vertical(7.0, 6.0, 1.5 * radar.range_resolution_metres(), 40);
+    let slanted = Line { direction_degrees: 70.0, ..Line::vertical(-2.0, 6.0, 0.14, 45) };
+    let crowd = Generator::new(&radar, Reading::Program, Purpose::Validation, 7).scene(Kind::Crowd, 1);
+    for (what, scene, metres) in [
+        ("a short line", pair(short, Point::new(-4.0, 15.0)), 1e-6),
+        ("a slanted wall", pair(slanted, Point::new(7.0, 22.0)), 1e-5),
+        ("a crowd", crowd, 1e-7),
+    ] {
+        let found = Nomp::default().reconstruct(&radar, &ends_of(&radar, &scene), &Request::default()).unwrap();
+        assert_eq!(found.reflectors.len(), scene.reflector_count(), "{what}");
+        let worst = worst_error_metres(&scene, &found);
+        assert!(worst < metres, "{what}: {worst:e}");
+    }
 }
 
 #[test]

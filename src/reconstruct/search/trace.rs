@@ -76,16 +76,12 @@ mod tests {
         }
         let attempts = trace.into_attempts();
         assert_eq!(attempts.len(), MAX_ATTEMPTS);
-        assert_eq!(
-            (attempts[1].rung, attempts[1].tried, attempts[1].work),
-            ("first rung", Proposal::Together { count: 1 }, 3)
-        );
+        let second = &attempts[1];
+        assert_eq!((second.rung, second.tried, second.work), ("first rung", Proposal::Together { count: 1 }, 3));
     }
 
     #[test]
     fn a_gain_over_nothing_is_no_number_of_decades() {
-        assert_eq!(decades(0.0, 0.0), 0.0);
-        assert_eq!(decades(1.0, 0.0), 0.0);
-        assert_eq!(decades(100.0, 1.0), 2.0);
+        assert_eq!([decades(0.0, 0.0), decades(1.0, 0.0), decades(100.0, 1.0)], [0.0, 0.0, 2.0]);
     }
 }

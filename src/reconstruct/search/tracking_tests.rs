@@ -9,15 +9,8 @@ use std::sync::Arc;
 
 /// A few points, the first of which moves by (0.01, 0.004) m a step.
 fn scene(step: u32) -> Scene {
-    let moved = f64::from(step);
-    Scene::of_points([
-        (3.0 + 0.01 * moved, 9.0 + 0.004 * moved),
-        (-6.0, 13.0),
-        (1.0, 16.0),
-        (8.0, 5.0),
-        (-2.0, 25.0),
-        (12.0, 12.5),
-    ])
+    let first = (3.0 + 0.01 * f64::from(step), 9.0 + 0.004 * f64::from(step));
+    Scene::of_points([first, (-6.0, 13.0), (1.0, 16.0), (8.0, 5.0), (-2.0, 25.0), (12.0, 12.5)])
 }
 
 fn ends_of(scene: &Scene, seed: u64) -> TwoEnds {

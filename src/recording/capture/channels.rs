@@ -1,5 +1,4 @@
-//! Corrections of channels by the `.cfg`: transmitters that send at once are separated, channels are multiplied by factors, and the range bias is
-//! removed.
+//! Corrections of channels by the `.cfg`: separation of transmitters that send at once, factors of channels, and the range bias.
 
 use super::plan::CapturePlan;
 use crate::radar::SPEED_OF_LIGHT;

@@ -1,7 +1,6 @@
 //! The strong Doppler cells of each range bin, without the phases that moving echoes gain between transmitters that send in turn.
 //!
-//! A bin keeps the cells of all echoes in it, side lobes of other bins' echoes included: a later window over the samples removes these only where all
-//! bins have them.
+//! A bin keeps side lobes of other bins' echoes, too: a later window over the samples removes these only where all bins have them.
 //!
 //! The phase of a moving echo changes by `f` turns from loop to loop, and by equal parts of it from chirp to chirp of a loop. The Doppler cell gives
 //! `f` up to a whole number of turns. Each whole number gives other phases between the transmitters: that with the sharpest spectrum over the array is
@@ -27,8 +26,7 @@ const MIN_DISTANCE_CELLS: f64 = 3.0;
 /// Least phase change over all loops of an echo that counts as moving, turns.
 const MIN_MOVING_TURNS: f64 = 0.5;
 
-/// Samples of the strong Doppler cells, `[chirps, receivers, samples]`, and a sentence on them. `turns` are the phases of the chosen chirps' pairs for an
-/// echo at a cosine of 1.
+/// Samples of the strong Doppler cells, `[chirps, receivers, samples]`, and a sentence on them; `turns` as in [`super::join_strongest`].
 pub(super) fn strongest(
     frame: &Frame,
     channels: &Channels,

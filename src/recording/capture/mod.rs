@@ -60,7 +60,6 @@ impl Capture {
 
     /// Reads the loop or joins the loops of the frame, `[chirps, receivers, samples]`, with sentences on doubts. `turns` are as in [`join_strongest`];
     /// `beat_rises` where an echo's phase rises from sample to sample.
-    ///
     /// # Errors
     /// [`Fault`] where the layout, the `.cfg` and the file contradict each other.
     pub(super) fn read(

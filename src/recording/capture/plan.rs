@@ -144,7 +144,6 @@ impl CapturePlan {
     }
 }
 
-/// The error of a key of the table that contradicts the file or the `.cfg`.
 fn unfit(key: &str, found: impl Display, expected: &str) -> Fault {
     Fault::Data(format!("recording.capture.{key} {found}; expected {expected}"))
 }

@@ -57,7 +57,6 @@ impl Quality {
         }
     }
 
-    /// Whether chirp `n` of the frame has a run of zeros.
     pub fn has_zeros(&self, n: usize) -> bool {
         self.zeros.get(n).copied().unwrap_or(false)
     }

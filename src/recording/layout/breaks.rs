@@ -104,8 +104,7 @@ impl Breaks {
         shorter.map(|l| (self.residual_ratio(l, length), l)).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The length of rows, a divisor of `longest`. Where an echo's phase is almost continuous from receiver to receiver, residuals are large at the
-    /// beginnings of loops alone, and `longest` is a loop.
+    /// The length of rows, a divisor of `longest`, which is a loop where an echo's phase is almost continuous from receiver to receiver.
     pub fn divided(&self, longest: usize, lengths: &[usize]) -> usize {
         let mut length = longest;
         while let Some((_, shorter)) =

@@ -25,8 +25,7 @@ const USUAL_SAMPLES: [usize; 50] = [
 const INTERLEAVED_RECEIVERS: [usize; 5] = [16, 8, 4, 3, 2];
 /// Least correlation of a row's logarithmic spectrum with itself, shifted circularly, for interleaved receivers.
 const MIN_COMB_CORRELATION: f64 = 0.6;
-/// Least height of a spectral line above the median of a logarithmic spectrum, as a part of the strongest line's height: of any line, of a strong
-/// line, and of a line in a clipped file.
+/// Least height of a spectral line above the median over the strongest line's: of any line, of a strong line, and of one in a clipped file.
 const MIN_LINE_PART: f64 = 0.3;
 const MIN_STRONG_LINE_PART: f64 = 0.6;
 const MIN_CLIPPED_LINE_PART: f64 = 0.75;
@@ -102,9 +101,6 @@ struct Cut {
 
 /// Searches the lengths of rows, for the orders of parts with the sharpest spectra: the lengths at whose multiples linear prediction fails, and of
 /// which the file holds a whole number. Also returns whether the samples are clipped.
-///
-/// # Errors
-/// Those of reading the stream.
 pub(super) fn search<R: Read + Seek>(
     stream: &mut CaptureStream<R>,
     marks: Option<Marks>,
@@ -137,8 +133,7 @@ pub(super) fn search<R: Read + Seek>(
     Ok((ways, is_clipped))
 }
 
-/// The likely cuts of the numbers into rows, each with others that are almost as likely. `chirp_bytes` is the length of a chirp of all receivers
-/// where the file has headers.
+/// The likely cuts of the numbers into rows, each with others almost as likely. `chirp_bytes` are those of all receivers in a file with headers.
 fn cuts(layout: Layout, numbers: &[Complex64], file_bytes: u64, chirp_bytes: Option<usize>) -> Vec<(Cut, Vec<Cut>)> {
     let fits =
         |length: &usize| chirp_bytes.is_none_or(|bytes| bytes.is_multiple_of(length * layout.part_order.bytes()));
@@ -183,8 +178,7 @@ fn length_log_odds(layout: &Layout, length: usize, file_bytes: u64) -> f64 {
     fills + if is_usual { USUAL_LENGTH_LOG_ODDS } else { 0.0 }
 }
 
-/// Mean logarithm of the spectrum's power, nepers, summed over [`LEVEL_ROW_LENGTHS`]. Rows of real numbers are twice as long, to hold as many bytes.
-/// `None` where there are too few numbers.
+/// Mean logarithm of the spectrum's power, nepers, summed over [`LEVEL_ROW_LENGTHS`] (twice as long for real numbers); `None` for too few.
 fn spectrum_level(numbers: &[Complex64], is_real: bool) -> Option<f64> {
     let mut sum = 0.0;
     for length in LEVEL_ROW_LENGTHS {
@@ -231,8 +225,7 @@ fn interleaved_receivers(numbers: &[Complex64], length: usize) -> usize {
     INTERLEAVED_RECEIVERS.into_iter().find(repeats).unwrap_or(1)
 }
 
-/// Whether receivers are interleaved beyond doubt: every strong echo in the spectrum repeats once for each receiver, and there are two such echoes or
-/// more. A single echo may repeat by chance.
+/// Whether receivers are interleaved beyond doubt: all strong echoes, two or more, repeat once for each receiver. One may repeat by chance.
 fn is_comb(numbers: &[Complex64], cut: &Cut) -> bool {
     let logs = log_spectrum(numbers, cut.samples * cut.interleaved);
     let (bins, places) = (logs.len(), cut.interleaved - 1);
@@ -261,8 +254,7 @@ fn shifted_correlation(logs: &[f64], shift: usize) -> f64 {
     correlation(logs.iter().copied(), logs.iter().cycle().skip(shift).take(logs.len()).copied())
 }
 
-/// Whether the strongest line repeats at four in five multiples of `shift` bins at least. A repeat counts from the part `least` of its height above
-/// the median.
+/// Whether the strongest line repeats, with the part `least` of its height above the median, at four in five multiples of `shift` bins or more.
 fn peaks_repeat(logs: &[f64], shift: usize, least: f64) -> bool {
     let (median, height) = median_and_height(logs);
     let strongest = (0..logs.len()).max_by(|a, b| logs[*a].total_cmp(&logs[*b])).unwrap_or(0);
@@ -343,14 +335,12 @@ fn rows(numbers: &[Complex64], samples: usize, interleaved: usize) -> Array2<Com
     })
 }
 
-/// Period of the rows of a cut.
 fn period_of(cut: &Cut, numbers: &[Complex64]) -> Option<Period> {
     let is_real = cut.layout.part_order == PartOrder::Real || numbers.iter().all(|v| v.im == 0.0);
     period(&rows(numbers, cut.samples, cut.interleaved), cut.interleaved, is_real)
 }
 
-/// Counts of receivers, chirps and loops for a cut, the most likely first, by the period of its rows and the length of the file. `chirp_bytes` is the
-/// length of a chirp of all receivers where the file has headers.
+/// Counts of receivers, chirps and loops for a cut, the likeliest first, by its rows' period and the file's length; `chirp_bytes` as in [`cuts`].
 fn likely_counts(
     cut: &Cut,
     numbers: &[Complex64],

@@ -45,8 +45,7 @@ pub struct Evidence {
 pub(super) const LEVEL_LOG_ODDS: f64 = 300.0;
 /// Log-odds of a correlation of 1 between the receivers' range profiles.
 const CORRELATION_LOG_ODDS: f64 = 10.0;
-/// Log-odds of each echo in the near half of the range axis, where the power in both halves counts as one echo. Most echoes that count: those of a far
-/// scene are in the far half together.
+/// Log-odds of each echo in the near half of the range axis (power counts as one), and most that count: a far scene's are in the far half.
 const HALF_LOG_ODDS: f64 = 0.7;
 const MAX_HALF_ECHOES: f64 = 8.0;
 /// The same without a `.cfg`: five echoes at random ranges are in one half too often for certainty.
@@ -58,8 +57,7 @@ const MAX_IMAGES: usize = 6;
 const CONFIG_IQ_LOG_ODDS: f64 = 5.0;
 const CONFIG_RECEIVERS_LOG_ODDS: f64 = 8.0;
 const CONFIG_REAL_LOG_ODDS: f64 = 40.0;
-/// Log-odds against receivers one after another on four lanes, where each lane carries a receiver. Spectra are no evidence: those of both orders are equal
-/// for an echo at broadside.
+/// Log-odds against receivers one after another on four lanes, where each lane carries one: at broadside both orders have equal spectra.
 const FOUR_LANES_LOG_ODDS: f64 = 20.0;
 
 /// The `.cfg` and the number of data bytes of the file.

@@ -63,7 +63,6 @@ pub struct Found {
 }
 
 /// Finds the layout of a capture; `profile` is its `.cfg`, where there is one.
-///
 /// # Errors
 /// [`Fault`] where the file can't be read or is too short, or by no layout has echoes.
 pub fn find<R: Read + Seek>(stream: &mut CaptureStream<R>, profile: Option<&RadarProfile>) -> Result<Found, Fault> {
@@ -132,7 +131,6 @@ fn all_zeros() -> Fault {
     Fault::Data("begins with nothing but zeros or one constant: no echo to find a layout by".to_owned())
 }
 
-/// Adds the candidates of all counts.
 fn add_candidates<R: Read + Seek>(
     stream: &mut CaptureStream<R>,
     all_counts: &[LikelyCounts],

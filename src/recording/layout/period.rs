@@ -27,8 +27,7 @@ pub(super) struct Period {
     pub next: Option<usize>,
 }
 
-/// Period of the rows: rows so far apart differ by a constant phase, that of a moving echo. `None` where no period fits. A row holds the samples of
-/// `interleaved` receivers.
+/// Period of rows of `interleaved` receivers: rows so far apart differ by a constant phase, that of a moving echo. `None` where none fits.
 pub(super) fn period(rows: &Array2<Complex64>, interleaved: usize, is_real: bool) -> Option<Period> {
     let mut centred = rows.slice(s![..rows.nrows().min(MAX_ROWS), ..]).to_owned();
     if is_real {
@@ -60,8 +59,7 @@ pub(super) fn period(rows: &Array2<Complex64>, interleaved: usize, is_real: bool
     Some(Period { rows: found.rows, next: other_period(found, &all) })
 }
 
-/// Likeness of rows `rows` apart: the part `alike` of their power that correlates with one phase, and the part `steady` of the correlation that has one
-/// phase.
+/// Likeness of rows `rows` apart: the part `alike` of their power that correlates, and the part `steady` of that with one phase.
 struct Likeness {
     rows: usize,
     alike: f64,

@@ -110,8 +110,7 @@ fn echoes(power: &[f64]) -> [usize; 2] {
     [0..bins / 2, bins / 2..bins].map(|mut half| half.by_ref().filter(is_peak).count())
 }
 
-/// Number of echoes in the near half with an image at the mirrored bin of the far half. Images of the echo's exact power don't count: those are of real
-/// samples stored as complex ones.
+/// Number of echoes in the near half with an image at the mirrored bin, but for images of equal power: those of real samples stored as complex.
 fn images(power: &[f64], is_coherent: impl Fn(usize) -> bool) -> usize {
     let bins = power.len();
     let Some((peak, median)) = peak_and_median(power) else { return 0 };
@@ -127,8 +126,7 @@ fn images(power: &[f64], is_coherent: impl Fn(usize) -> bool) -> usize {
     (CONSTANT_BINS..(bins / 2).saturating_sub(1)).filter(is_image).count()
 }
 
-/// Coherence of a bin's values with the conjugates of the mirrored bin's, over all profiles: 1 for an image. It is low for two echoes, whose phases
-/// differ by direction and speed.
+/// Coherence of a bin's values with the mirrored bin's conjugates over all profiles: 1 for an image, low for two echoes of unequal phases.
 fn coherence(profiles: ArrayView2<'_, Complex64>, bin: usize) -> f64 {
     let [near, far] = [bin, profiles.ncols() - bin].map(|n| profiles.column(n));
     let power = |of: &ArrayView1<'_, Complex64>| of.iter().map(|v| v.norm_sqr()).sum::<f64>();

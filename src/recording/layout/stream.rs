@@ -32,7 +32,6 @@ struct PacketSequence {
 
 impl<R: Read + Seek> CaptureStream<R> {
     /// The data of `file`, which holds packets where the headers at its beginning fit.
-    ///
     /// # Errors
     /// The error of the read or the seek.
     pub fn new(mut file: R) -> io::Result<Self> {
@@ -43,7 +42,6 @@ impl<R: Read + Seek> CaptureStream<R> {
     }
 
     /// The bytes of `file`, even if it holds packets.
-    ///
     /// # Errors
     /// The error of the seek.
     pub fn plain(mut file: R) -> io::Result<Self> {
@@ -67,7 +65,6 @@ impl<R: Read + Seek> CaptureStream<R> {
     }
 
     /// Reads `buffer.len()` data bytes from `offset` on. Lost packets and bytes after the end are zeros.
-    ///
     /// # Errors
     /// The error of the read or the seek.
     pub fn read_at(&mut self, offset: u64, buffer: &mut [u8]) -> io::Result<()> {

@@ -30,14 +30,22 @@ fn chirps() -> Vec<Vec<Complex64>> {
 
 /// Eight chirps of three receivers, with this amplitude of the second echo.
 fn seen(second: f64) -> Vec<Vec<Complex64>> {
-    let mut noise = noise(7, 1.0);
-    let mut sample = move |receiver: usize, n: usize| {
-        let turns = |bin: f64, phase: f64| {
-            Complex64::from_polar(1.0, TAU * (bin * n as f64 / SAMPLES as f64 + phase * receiver as f64))
-        };
-        900.0 * turns(13.3, 0.21) + second * turns(29.7, -0.13) + 8.0 * Complex64::new(noise(), noise())
-    };
-    (0..8).map(|_| (0..3 * SAMPLES).map(|n| sample(n / SAMPLES, n % SAMPLES)).collect()).collect()
+    rows(8, 3 * SAMPLES, noise(7, 8.0), |n| {
+        let (receiver, n) = ((n / SAMPLES) as f64, (n % SAMPLES) as f64);
+        let turns = |bin: f64, phase: f64| TAU * (bin * n / SAMPLES as f64 + phase * receiver);
+        900.0 * Complex64::cis(turns(13.3, 0.21)) + second * Complex64::cis(turns(29.7, -0.13))
+    })
+}
+
+/// Rows of `length` samples: echoes, and noise beside them.
+fn rows(
+    count: usize,
+    length: usize,
+    mut noise: impl FnMut() -> f64,
+    echoes: impl Fn(usize) -> Complex64,
+) -> Vec<Vec<Complex64>> {
+    let mut sample = |n| echoes(n) + Complex64::new(noise(), noise());
+    (0..count).map(|_| (0..length).map(&mut sample).collect()).collect()
 }
 
 fn written(layout: &Layout, chirps: &[Vec<Complex64>]) -> Vec<u8> {
@@ -97,8 +105,7 @@ fn every_layout_is_found_by_the_spectrum_alone() {
 #[test]
 fn complex_and_real_samples_are_judged_by_the_same_bytes() {
     let right = in_order(PartOrder::TwoLanes);
-    let quiet = chirps();
-    let mut all = [quiet.clone(), quiet.clone(), quiet.clone(), quiet].concat();
+    let mut all = vec![chirps(); 4].concat();
     // Where the second half is louder, real samples, which are half as long, must not be judged by the first half alone.
     let mut turns = noise(1, 1.0);
     all[8..].iter_mut().flatten().for_each(|sample| *sample += Complex64::from_polar(120.0, TAU * turns()));
@@ -202,13 +209,11 @@ fn a_cfg_of_another_capture_is_doubted() {
 
 #[test]
 fn two_echoes_at_mirrored_places_are_no_image() {
-    let mut noise = noise(3, 8.0);
-    let mut sample = |n: usize| {
+    let all = rows(8, 3 * SAMPLES, noise(3, 8.0), |n| {
         let (receiver, n) = ((n / SAMPLES) as f64, (n % SAMPLES) as f64 / SAMPLES as f64);
         let far = Complex64::from_polar(900.0, TAU * (66.0 * n + 0.13 * receiver));
-        far + Complex64::from_polar(500.0, TAU * (30.0 * n + 0.21 * receiver)) + Complex64::new(noise(), noise())
-    };
-    let all: Vec<Vec<Complex64>> = (0..8).map(|_| (0..3 * SAMPLES).map(&mut sample).collect()).collect();
+        far + Complex64::from_polar(500.0, TAU * (30.0 * n + 0.21 * receiver))
+    });
     let right = in_order(PartOrder::Pairs);
     let found = found(written(&right, &all), Some(&profile("adcbufCfg -1 0 0 1 1\n")));
     let best = found.best();
@@ -230,15 +235,11 @@ fn a_constant_part_or_saturation_does_not_change_the_words() {
 
 #[test]
 fn rows_of_a_nearly_continuous_echo_are_separated() {
-    let mut noise = noise(7, 8.0);
     // Two transmitters and four receivers: from row to row of a loop the phase goes on but for a hundredth of a turn.
-    let mut sample = |n: usize| {
-        let turns = 13.3 * (n % 125) as f64 / 125.0 + 0.29 * (n / 125 % 8) as f64;
-        Complex64::from_polar(900.0, TAU * turns) + Complex64::new(noise(), noise())
-    };
-    let loops: Vec<Vec<Complex64>> = (0..16).map(|_| (0..1000).map(&mut sample).collect()).collect();
-    let pairs = in_order(PartOrder::Pairs);
-    let found = found(written(&pairs, &loops), None);
+    let loops = rows(16, 1000, noise(7, 8.0), |n| {
+        Complex64::from_polar(900.0, TAU * (13.3 * (n % 125) as f64 / 125.0 + 0.29 * (n / 125 % 8) as f64))
+    });
+    let found = found(written(&in_order(PartOrder::Pairs), &loops), None);
     let counts = found.best().counts;
     assert_eq!((counts.samples, counts.receivers, counts.chirps), (125, 4, 2), "{:#?}", found.sentences());
 }
@@ -246,15 +247,13 @@ fn rows_of_a_nearly_continuous_echo_are_separated() {
 #[test]
 fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
     for (part_order, chirps) in [(PartOrder::Pairs, 2), (PartOrder::Pairs, 3), (PartOrder::Real, 2)] {
-        let mut noise = noise(7, 40.0);
         // Receivers half a wavelength apart, transmitters in turn, and a fifth of a turn from chirp to chirp.
-        let mut sample = |n: usize| {
+        let loops = rows(40, 480 * chirps, noise(7, 40.0), |n| {
             let row = n / 120;
             let turns = 13.3 * (n % 120) as f64 / 120.0 + 0.21 * (row % (4 * chirps)) as f64 + 0.2 * (row / 4) as f64;
-            Complex64::from_polar(900.0, TAU * turns) + Complex64::new(noise(), noise())
-        };
-        let rows: Vec<Vec<Complex64>> = (0..40).map(|_| (0..480 * chirps).map(&mut sample).collect()).collect();
-        let found = found(written(&in_order(part_order), &rows), None);
+            Complex64::from_polar(900.0, TAU * turns)
+        });
+        let found = found(written(&in_order(part_order), &loops), None);
         let counts = found.best().counts;
         assert_eq!((counts.samples, counts.receivers, counts.chirps), (120, 4, chirps), "{:#?}", found.sentences());
     }
@@ -262,16 +261,11 @@ fn rows_of_an_echo_that_moves_repeat_up_to_a_turn() {
 
 #[test]
 fn equal_rows_leave_the_receivers_open() {
-    let mut noise = noise(7, 8.0);
-    let echoes =
-        |n: usize| [(900.0, 13.3), (300.0, 29.7)].map(|(size, bin)| (size, TAU * bin * n as f64 / SAMPLES as f64));
-    let mut sample = |n: usize| {
-        let of_echoes: Complex64 = echoes(n).iter().map(|(size, turns)| Complex64::from_polar(*size, *turns)).sum();
-        of_echoes + Complex64::new(noise(), noise())
-    };
-    let one: Vec<Vec<Complex64>> = (0..320).map(|_| (0..SAMPLES).map(&mut sample).collect()).collect();
-    let right = in_order(PartOrder::Pairs);
-    let found = found(written(&right, &one), None);
+    let one = rows(320, SAMPLES, noise(7, 8.0), |n| {
+        let echo = |size: f64, bin: f64| Complex64::from_polar(size, TAU * bin * n as f64 / SAMPLES as f64);
+        echo(900.0, 13.3) + echo(300.0, 29.7)
+    });
+    let found = found(written(&in_order(PartOrder::Pairs), &one), None);
     assert_ne!(found.certainty(), Certainty::Sure, "{:#?}", found.sentences());
 }
 

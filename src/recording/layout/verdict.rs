@@ -30,6 +30,15 @@ impl Certainty {
             _ => Certainty::Sure,
         }
     }
+
+    /// Words on a choice that is not sure, and words before the next: "open" and "As likely is".
+    pub(in crate::recording) fn doubt(self) -> Option<[&'static str; 2]> {
+        match self {
+            Certainty::Sure => None,
+            Certainty::Likely => Some(["likely, not sure", "It may also be"]),
+            Certainty::Open => Some(["open", "As likely is"]),
+        }
+    }
 }
 
 impl Found {

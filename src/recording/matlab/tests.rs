@@ -12,6 +12,12 @@ fn element(kind: u32, bytes: &[u8]) -> Vec<u8> {
 
 fn variable(name: &str, class: u32, shape: &[i32], parts: &[(u32, Vec<u8>)]) -> Vec<u8> {
     let flags = class | if parts.len() == 2 { 0x800 } else { 0 };
+    let parts: Vec<Vec<u8>> = parts.iter().map(|(kind, bytes)| element(*kind, bytes)).collect();
+    array_of(name, flags, shape, &parts)
+}
+
+/// An array of these elements, or in which others stand, or one inside of it, which has no name.
+fn array_of(name: &str, flags: u32, shape: &[i32], parts: &[Vec<u8>]) -> Vec<u8> {
     let shape: Vec<u8> = shape.iter().flat_map(|d| d.to_le_bytes()).collect();
     let mut body = element(6, &[flags.to_le_bytes(), [0; 4]].concat());
     body.extend(element(5, &shape));
@@ -20,7 +26,7 @@ fn variable(name: &str, class: u32, shape: &[i32], parts: &[(u32, Vec<u8>)]) -> 
     small.extend_from_slice(name.as_bytes());
     small.resize(8, 0);
     body.extend(if name.len() <= 4 { small } else { element(1, name.as_bytes()) });
-    parts.iter().for_each(|(kind, bytes)| body.extend(element(*kind, bytes)));
+    parts.iter().for_each(|part| body.extend(part));
     element(MATRIX, &body)
 }
 
@@ -102,31 +108,18 @@ fn what_inflates_without_end_takes_no_memory() {
     assert!(message.contains("at most 8"), "{message}");
 }
 
-/// An array in which others stand, or one inside of it, which has no name.
-fn named(name: &str, class: u32, shape: &[i32], parts: &[Vec<u8>]) -> Vec<u8> {
-    let shape: Vec<u8> = shape.iter().flat_map(|d| d.to_le_bytes()).collect();
-    let mut body = element(6, &[class.to_le_bytes(), [0; 4]].concat());
-    body.extend(element(5, &shape));
-    body.extend(element(1, name.as_bytes()));
-    parts.iter().for_each(|part| body.extend(part));
-    element(MATRIX, &body)
-}
-
 #[test]
 fn members_of_structs_and_cells_are_found() {
-    let numbers = |values: &[f64]| {
-        let (kind, bytes) = doubles(values);
-        named("", 6, &[1, values.len() as i32], &[element(kind, &bytes)])
-    };
+    let numbers = |values: &[f64]| variable("", 6, &[1, values.len() as i32], &[doubles(values)]);
     let members = [b"rate\0\0\0\0".as_slice(), b"adcData\0"].concat();
     let of_struct =
         vec![element(5, &8i32.to_le_bytes()), element(1, &members), numbers(&[5.0]), numbers(&[1.0, 2.0, 3.0])];
     let of_cells = vec![numbers(&[1.0, 2.0]), numbers(&[3.0, 4.0])];
     let odd = vec![numbers(&[1.0]), numbers(&[3.0, 4.0])];
     let bytes = file(&[
-        compressed(&named("radar", STRUCT, &[1, 1], &of_struct)),
-        named("frames", CELL, &[1, 2], &of_cells),
-        named("odd", CELL, &[1, 2], &odd),
+        compressed(&array_of("radar", STRUCT, &[1, 1], &of_struct)),
+        array_of("frames", CELL, &[1, 2], &of_cells),
+        array_of("odd", CELL, &[1, 2], &odd),
     ]);
     let found: Vec<(String, Vec<usize>)> = shapes(bytes.as_slice()).unwrap();
     let names: Vec<(&str, &[usize])> = found.iter().map(|(name, shape)| (name.as_str(), shape.as_slice())).collect();

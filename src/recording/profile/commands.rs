@@ -13,7 +13,6 @@ pub(super) struct ChirpLine {
     pub profile: usize,
     /// Bit mask of the transmitters.
     pub transmitters: u32,
-    /// Line of the file that defines the chirp.
     pub line: usize,
     /// Name of its first change of frequency, slope or start that is not 0.
     pub differs: Option<&'static str>,
@@ -89,7 +88,6 @@ pub(super) struct Frame {
     pub loops: usize,
     /// Number of frames; 0 for no limit.
     pub frames: usize,
-    /// Line of the file that defines the frame.
     pub line: usize,
 }
 

@@ -73,7 +73,6 @@ const MAX_RANGE_BIAS_METRES: f64 = 1000.0;
 
 impl RadarProfile {
     /// Reads a `.cfg`: profileCfg, channelCfg, chirpCfg and a frame are needed, other commands are optional.
-    ///
     /// # Errors
     /// [`Fault`] names the line, the command and the expected value, or the dialect.
     pub fn parse(text: &str) -> Result<RadarProfile, Fault> {
@@ -90,7 +89,6 @@ impl RadarProfile {
     }
 
     /// [`RadarProfile::parse`] for the sub-frame with this index, the first where it is `None`.
-    ///
     /// # Errors
     /// As [`RadarProfile::parse`].
     pub fn of_sub_frame(text: &str, sub_frame: Option<usize>) -> Result<RadarProfile, Fault> {

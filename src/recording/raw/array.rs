@@ -1,6 +1,7 @@
 //! Arrays without a TOML: the kinds of their axes by evidence, and the TOML with them.
 
 use super::axes::{Reading, readings};
+use super::beside;
 use super::boards::Board;
 use super::imported::Imported;
 use super::line::{ElementLine, element_line, uniform};
@@ -40,12 +41,7 @@ pub(super) fn import(
         best.description(&shape)
     )];
     sentences.extend(best.reasons.iter().cloned());
-    if let Some(next) = all.get(1)
-        && Certainty::of(Some(best.log_odds - next.log_odds)) != Certainty::Sure
-    {
-        doubts
-            .push(format!("The meaning of the axes is likely, not sure. As likely is: {}.", next.description(&shape)));
-    }
+    doubts.extend(all.get(1).and_then(|next| doubt_of_axes(best, next, &shape)));
     if profile.is_none() {
         doubts.push(
             "No .cfg says the carrier and the slope: a bin of range is shown as one metre, and directions are those of elements half a \
@@ -65,12 +61,30 @@ pub(super) fn import(
         )
     };
     let (offers, lines): (Vec<ReadingOption>, Vec<ElementLine>) = all.iter().map(offer).unzip();
+    lines.first().map_or(Ok(()), |line| check_directions(line, best, &shape, data)).map_err(|fault| fault.of(data))?;
     let board = lines.first().and_then(|element_line| element_line.board);
     doubts.extend(lines.into_iter().take(1).flat_map(|element_line| element_line.doubts));
     let frames = best.len(AxisKind::Frame, &shape) as u64;
     let data = data.to_owned();
     let origin = Origin { data, config, offers, sentences, doubts, board, frames, ..Origin::default() };
     Ok(Imported { origin, found: None })
+}
+
+/// A sentence on the `next` reading where the `best` is not sure.
+fn doubt_of_axes(best: &Reading, next: &Reading, shape: &[usize]) -> Option<String> {
+    let [how, or] = Certainty::of(Some(best.log_odds - next.log_odds)).doubt()?;
+    Some(format!("The meaning of the axes is {how}. {or}: {}.", next.description(shape)))
+}
+
+/// Refuses a single element, and names the TOML that describes the array where there is one.
+fn check_directions(line: &ElementLine, best: &Reading, shape: &[usize], data: &Path) -> Result<(), Fault> {
+    if line.transmitter_x_metres.len() * line.receiver_x_metres.len() > 1 {
+        return Ok(());
+    }
+    let found = format!("is read as {}, which tell ranges and no directions", best.description(shape));
+    let toml = beside::toml_of(data);
+    let instead = toml.map_or_else(String::new, |toml| format!(", or {}, which describes this file", toml.display()));
+    Err(Fault::key("the array", found, format!("two elements or more{instead}")))
 }
 
 /// The array with the most numbers of the file, and its name where it has one.
@@ -206,10 +220,27 @@ mod tests {
     #[test]
     fn arrays_of_no_fitting_shape_are_refused() {
         let flat = ArrayD::from_elem(vec![64], Complex64::ONE);
-        let folder = folder(&[("flat.npy", &npy(flat)), ("new.h5", b"\x89HDF"), ("no.npz", b"PK")]);
+        let row = npy(ArrayD::from_elem(vec![1, 86], Complex64::ONE));
+        let folder = folder(&[
+            ("flat.npy", &npy(flat)),
+            ("new.h5", b"\x89HDF"),
+            ("no.npz", b"PK"),
+            ("row.npy", &row),
+            ("row.toml", b"[recording]\nfile = \"row.npy\"\n"),
+            ("bare.npy", &row),
+            ("bare.toml", b"[recording]\nfile = \"row.npy\"\n"),
+        ]);
         let told = |name: &str| load(&folder.path().join(name)).unwrap_err().to_string();
         assert!(told("flat.npy").contains("has shape [64]; expected 2 to 5 axes"), "{}", told("flat.npy"));
         assert!(told("new.h5").contains("not an HDF5 file"), "{}", told("new.h5"));
         assert!(told("no.npz").contains("no.npz"), "{}", told("no.npz"));
+        let row = told("row.npy");
+        assert!(row.contains("row.npy: the array is read as 1 element × 86 samples"), "{row}");
+        assert!(
+            row.contains("two elements or more, or ") && row.ends_with("row.toml, which describes this file"),
+            "{row}"
+        );
+        let bare = told("bare.npy");
+        assert!(bare.contains("bare.npy: the array") && bare.ends_with("expected two elements or more"), "{bare}");
     }
 }

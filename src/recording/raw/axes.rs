@@ -1,5 +1,6 @@
 //! The kinds of an array's axes by evidence: lengths, sameness along an axis, spectra, usual orders, and the `.cfg`.
 
+use crate::radar::counted;
 use crate::recording::AxisKind::{self, Chirp, Element, Frame, Iq, Receiver, Sample, Transmitter};
 use crate::recording::layout::Spectrum;
 use crate::recording::numbers::Numbers;
@@ -19,6 +20,9 @@ const CONFIG_COUNT_LOG_ODDS: f64 = 8.0;
 const SAMENESS_LOG_ODDS: f64 = 6.0;
 const FLATNESS_LOG_ODDS_PER_DB: f64 = 0.5;
 const MAX_FLATNESS_DB: f64 = 12.0;
+/// Least level below a flat spectrum, decibels, and least part of power that is the same, that are named as evidence: less would be printed as 0.
+const MIN_NAMED_FLATNESS_DB: f64 = 0.05;
+const MIN_NAMED_SAMENESS: f64 = 0.005;
 
 /// Log-odds of real and imaginary part for an axis of two real numbers.
 const IQ_LOG_ODDS: f64 = 5.0;
@@ -50,7 +54,7 @@ impl Reading {
     pub fn description(&self, shape: &[usize]) -> String {
         let axis = |(kind, len): (&AxisKind, &usize)| match kind {
             Iq => "real and imaginary part".to_owned(),
-            kind => format!("{len} {kind}s"),
+            kind => counted(*len, &kind.to_string(), &format!("{kind}s")),
         };
         self.kinds.iter().zip(shape).map(axis).collect::<Vec<_>>().join(" × ")
     }
@@ -119,19 +123,22 @@ fn judge(kinds: &[AxisKind], lengths: &[usize], figures: &[AxisFigures], profile
         match kind {
             Sample => {
                 log_odds += FLATNESS_LOG_ODDS_PER_DB * of_axis.flatness_db.clamp(0.0, MAX_FLATNESS_DB);
-                reasons.push(format!(
-                    "Axis {n} counts samples: its spectrum lies {:.1} dB below a flat one.",
-                    of_axis.flatness_db
-                ));
+                let is_named = of_axis.flatness_db >= MIN_NAMED_FLATNESS_DB;
+                reasons.extend(is_named.then(|| {
+                    let flatness_db = of_axis.flatness_db;
+                    format!("Axis {n} counts samples: its spectrum lies {flatness_db:.1} dB below a flat one.")
+                }));
                 power.clone_from(&of_axis.power);
             }
             Frame if *len > 1 => log_odds += SAMENESS_LOG_ODDS / 2.0 * of_axis.same,
             Chirp if *len > 1 => {
                 log_odds += SAMENESS_LOG_ODDS * of_axis.same;
-                reasons.push(format!(
-                    "Axis {n} counts chirps: {:.0} % of the power is the same along it or along every second or third.",
-                    100.0 * of_axis.same
-                ));
+                let percent = 100.0 * of_axis.same;
+                reasons.extend((of_axis.same >= MIN_NAMED_SAMENESS).then(|| {
+                    format!(
+                        "Axis {n} counts chirps: {percent:.0} % of the power is the same along it or along every second or third."
+                    )
+                }));
             }
             _ => {}
         }
@@ -145,7 +152,6 @@ fn judge(kinds: &[AxisKind], lengths: &[usize], figures: &[AxisFigures], profile
     Reading { kinds: kinds.to_vec(), log_odds, power, reasons }
 }
 
-/// Log-odds of a length for an axis of this kind.
 fn length_log_odds(kind: AxisKind, len: usize) -> f64 {
     let usual = if len.is_power_of_two() { 0.5 } else { 0.0 };
     match (kind, len) {
@@ -198,7 +204,9 @@ fn agrees_with_config(kind: AxisKind, len: usize, profile: &RadarProfile, has_tr
 }
 
 fn measure_axis(numbers: &Numbers, iq: Option<usize>, axis: usize) -> AxisFigures {
-    let rows = rows_along(numbers, iq, axis);
+    let mut rows = rows_along(numbers, iq, axis);
+    let scale = word_scale(&rows);
+    rows.mapv_inplace(|v| v * scale);
     let len = rows.ncols().max(1) as f64;
     let all: f64 = rows.iter().map(|v| v.norm_sqr()).sum();
     // With transmitters in turn every second or third chirp is the same.
@@ -212,7 +220,18 @@ fn measure_axis(numbers: &Numbers, iq: Option<usize>, axis: usize) -> AxisFigure
     let spectrum = Spectrum::of(&rows, 1);
     let spectrum = if is_real { spectrum.of_real() } else { spectrum };
     let flatness_db = if is_real { spectrum.flatness_db() + 10.0 * 2f64.log10() } else { spectrum.flatness_db() };
-    AxisFigures { same: if all > 0.0 { (same / all).min(1.0) } else { 0.0 }, flatness_db, power: spectrum.power }
+    let power = spectrum.power.iter().map(|p| p / (scale * scale)).collect();
+    AxisFigures { same: if all > 0.0 { (same / all).min(1.0) } else { 0.0 }, flatness_db, power }
+}
+
+/// Factor to the scale of 16-bit words, whose rounding a spectrum counts with: numbers that are not whole may have any unit. 1 for whole or larger numbers.
+fn word_scale(rows: &Array2<Complex64>) -> f64 {
+    if rows.iter().all(|v| v.re.fract() == 0.0 && v.im.fract() == 0.0) {
+        return 1.0;
+    }
+    let peak = rows.iter().fold(0.0f64, |peak, v| peak.max(v.re.abs()).max(v.im.abs()));
+    let scale = f64::from(i16::MAX) / peak;
+    if scale.is_finite() { scale.max(1.0) } else { 1.0 }
 }
 
 /// At most [`MAX_AXIS_ROWS`] rows along an axis, `[rows, numbers]`.
@@ -268,6 +287,29 @@ mod tests {
         let one = cube().index_axis_move(Axis(0), 0);
         assert_eq!(named(&Numbers::Complex(one.clone())), [Chirp, Element, Sample]);
         assert_eq!(named(&Numbers::Complex(one.index_axis_move(Axis(0), 0))), [Element, Sample]);
+    }
+
+    #[test]
+    fn the_unit_of_an_array_changes_no_evidence() {
+        let reading = |gain: f64| readings(&Numbers::Complex(cube().mapv(|v| gain * v)), None).swap_remove(0);
+        let (quiet, loud) = (reading(1e-4), reading(100.0));
+        assert_eq!((&quiet.kinds, &quiet.reasons), (&loud.kinds, &loud.reasons));
+        assert!((quiet.log_odds - loud.log_odds).abs() < 1e-6, "{} and {}", quiet.log_odds, loud.log_odds);
+        for (quiet, loud) in quiet.power.iter().zip(&loud.power) {
+            assert!((1e12 * quiet / loud - 1.0).abs() < 1e-6, "{quiet} and {loud}");
+        }
+    }
+
+    #[test]
+    fn what_tells_nothing_is_no_evidence() {
+        let mut flat = ArrayD::from_elem(IxDyn(&[3, 32, 64]), Complex64::new(1.0, 1.0));
+        let all = readings(&Numbers::Complex(flat.clone()), None);
+        // The same along every axis: no echo is seen along any.
+        assert!(all.iter().all(|reading| reading.reasons.iter().all(|r| !r.contains("samples"))), "{all:?}");
+        assert!(all.iter().any(|reading| reading.reasons.iter().any(|r| r.contains("100 % of the power"))), "{all:?}");
+        flat.fill(Complex64::ZERO);
+        let all = readings(&Numbers::Complex(flat), None);
+        assert!(all.iter().all(|reading| reading.reasons.iter().all(|r| !r.contains("chirps"))), "{all:?}");
     }
 
     #[test]

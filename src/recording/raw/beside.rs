@@ -2,6 +2,7 @@
 
 use crate::files::{ends_in, folder_of};
 use crate::platform::fs;
+use crate::recording::recording_text::data_path;
 use crate::recording::{Fault, RecordingError};
 use std::path::{Path, PathBuf};
 
@@ -28,6 +29,12 @@ pub(super) fn data_of(path: &Path) -> Result<PathBuf, RecordingError> {
 pub(super) fn config_of(data: &Path) -> Option<PathBuf> {
     let same = data.with_extension("cfg");
     if fs::exists(&same) { Some(same) } else { only(data, &["cfg"]) }
+}
+
+/// The TOML of the same name beside the file `data`, where it describes that file.
+pub(super) fn toml_of(data: &Path) -> Option<PathBuf> {
+    let toml = data.with_extension("toml");
+    (data_path(&toml)? == data).then_some(toml)
 }
 
 /// The file with one of these endings in the folder of `path`; `None` where there are several.

@@ -30,12 +30,13 @@ use super::axes::{ChirpChoice, Join};
 use super::capture::{Capture, Treatment};
 use super::chain::{Source, open_joined};
 use super::layout::stream::CaptureStream;
-use super::layout::{Candidate, Certainty, EvidenceKind, Found, config_claims, find};
+use super::layout::{Candidate, EvidenceKind, Found, config_claims, find};
 use super::profile::RadarProfile;
 use super::recording_text::{open_file, read_config_text};
 use super::{Fault, Origin, ReadingOption, Recording, RecordingError};
 use crate::files::ends_in;
 use crate::files::kind::text_kind_at;
+use crate::radar::counted;
 use boards::Board;
 use first_frame::FirstFrame;
 use std::io::{self, BufReader, Cursor, Read};
@@ -53,9 +54,7 @@ pub fn is_raw_at(path: &Path) -> bool {
     is_raw(path) || ends_in(path, &["npz"]) && array::has_samples(path)
 }
 
-/// Reads a raw capture or an array by its most likely layout and antennas. `config` is its `.cfg`; for `None`, the one of the same name beside it, or the
-/// only one in its folder.
-///
+/// Reads a raw capture or an array by its most likely layout and antennas. `config` is its `.cfg`; else that of its name beside it, or the only one.
 /// # Errors
 /// [`RecordingError`] names the file and the expected content.
 pub fn open(path: &Path, config: Option<&Path>) -> Result<Recording, RecordingError> {
@@ -63,7 +62,6 @@ pub fn open(path: &Path, config: Option<&Path>) -> Result<Recording, RecordingEr
 }
 
 /// Finds the ways to read a raw capture or an array. `config` is as for [`open`], and `board` has the antennas; for `None` the most usual board is used.
-///
 /// # Errors
 /// [`RecordingError`] names the file and the expected content.
 pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
@@ -89,7 +87,6 @@ pub fn import(path: &Path, config: Option<&Path>, board: Option<&'static Board>)
 }
 
 /// Finds the ways to read one frame's bytes from a capture card; `config` is the radar's `.cfg`.
-///
 /// # Errors
 /// [`RecordingError`] names the `.cfg`, or the fault of the bytes.
 pub fn of_frame(bytes: Vec<u8>, config: &Path, board: Option<&'static Board>) -> Result<Imported, RecordingError> {
@@ -110,7 +107,6 @@ pub fn frame_path(config: &Path) -> PathBuf {
 }
 
 /// Bytes of a frame by the `.cfg` at `path`, at most 1 GiB.
-///
 /// # Errors
 /// [`RecordingError`] names the file and the fault.
 pub fn frame_bytes(path: &Path) -> Result<usize, RecordingError> {
@@ -206,15 +202,10 @@ pub(super) fn read_config(path: &Path) -> Result<RadarProfile, RecordingError> {
     read().map_err(|fault| fault.of(path))
 }
 
-/// Doubts about the layout, a sentence each.
 fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     let mut doubts = found.notes.clone();
     let rivals: Vec<String> = found.rivals().into_iter().map(Candidate::description).collect();
-    if found.certainty() != Certainty::Sure && !rivals.is_empty() {
-        let (how, or) = match found.certainty() {
-            Certainty::Open => ("open", "As likely is"),
-            _ => ("likely, not sure", "It may also be"),
-        };
+    if let Some([how, or]) = found.certainty().doubt().filter(|_| !rivals.is_empty()) {
         doubts.push(format!("The layout is {how}: {}. {or}: {}.", found.best().description(), rivals.join("; or: ")));
     }
     let best = found.best();
@@ -232,16 +223,17 @@ fn doubts_of(found: &Found, profile: Option<&RadarProfile>) -> Vec<String> {
     doubts
 }
 
-/// The radar and the counts of the `.cfg`, a sentence each.
 fn config_sentences(profile: &RadarProfile) -> Vec<String> {
     let RadarProfile { samples, receivers, loops, frames, .. } = *profile;
-    let frames = if frames == 0 { "frames until stopped".to_owned() } else { format!("{frames} frames") };
+    let count = |number: usize, noun: &str| counted(number, noun, &format!("{noun}s"));
+    let frames = if frames == 0 { "frames until stopped".to_owned() } else { count(frames, "frame") };
+    let [samples, receivers] = [count(samples, "sample"), count(receivers, "receiver")];
+    let [chirps, loops] = [count(profile.chirp_transmitters.len(), "chirp"), count(loops, "loop")];
     let mut sentences = vec![format!(
-        "The .cfg says: carrier {:.3} GHz in the middle of the samples, bandwidth {:.1} MHz, {samples} samples, {receivers} receivers, {} chirps \
-         in each of {loops} loops, {frames}.",
+        "The .cfg says: carrier {:.3} GHz in the middle of the samples, bandwidth {:.1} MHz, {samples}, {receivers}, {chirps} \
+         in each of {loops}, {frames}.",
         1e-9 * profile.carrier_hz(),
-        1e-6 * profile.bandwidth_hz(),
-        profile.chirp_transmitters.len()
+        1e-6 * profile.bandwidth_hz()
     )];
     sentences.extend((!profile.rises()).then(|| "The chirp falls.".to_owned()));
     let bias = profile.range_bias_metres;

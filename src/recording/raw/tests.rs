@@ -33,8 +33,7 @@ fn parts_of_a_split_capture_are_read_as_one() {
     assert_eq!(recording.samples, open(&whole.path().join("w.bin"), None).unwrap().samples);
 }
 
-/// The files of the four chips of a cascade, receivers at `places` in half wavelengths: one transmitter, 64 samples, eight loops, an echo in range
-/// bin 11.4 at cos 0.3.
+/// Files of a cascade's four chips, receivers at `places` in half wavelengths: one transmitter, an echo in range bin 11.4 at cos 0.3, eight loops.
 fn cascade(places: [f64; 16]) -> tempfile::TempDir {
     let sample = |receiver: usize, n: usize| {
         let turns = TAU * (11.4 * n as f64 / 64.0) - TAU * 0.5 * 0.3 * places[receiver];
@@ -57,10 +56,8 @@ fn any_chip_of_a_cascade_opens_all_four() {
     for name in ["master_0000_data.bin", "slave2_0000_data.bin"] {
         let imported = import(&folder.path().join(name), None, None).unwrap();
         let toml = imported.origin.toml();
-        assert!(
-            toml.contains("file = \"master_0000_data.bin\"") && toml.contains("chips = [\"slave1_0000_data.bin\""),
-            "{toml}"
-        );
+        let parts = ["file = \"master_0000_data.bin\"", "chips = [\"slave1_0000_data.bin\""];
+        assert!(parts.iter().all(|part| toml.contains(part)), "{toml}");
         let recording = imported.origin.recording().unwrap();
         // Places from 0 to 53, of which 16 hold a receiver.
         assert_eq!((recording.radar.elements, recording.missing.len()), (54, 38));

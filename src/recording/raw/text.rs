@@ -99,8 +99,7 @@ fn signs(out: &mut String, profile: Option<&RadarProfile>, says_carrier: bool) {
     }
 }
 
-/// Writes the table `[radar]`. `constants` are carrier, hertz, bandwidth, hertz, and duration of the samples, seconds, where the TOML does not name the
-/// `.cfg`.
+/// Writes the table `[radar]`. Without a named `.cfg`, `constants` are carrier and bandwidth, hertz, and duration of the samples, seconds.
 fn radar(out: &mut String, constants: Option<[f64; 3]>, samples: usize, subject: &Subject<'_>) {
     out.push_str("\n[radar]\nconvention = \"physical\"\n");
     if let Some([carrier, bandwidth, seconds]) = constants {

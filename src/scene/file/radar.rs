@@ -40,9 +40,8 @@ mod tests {
     #[test]
     fn faults_of_a_radar_have_their_place() {
         let told = |text: &str| radar_of(text).unwrap_err();
-        assert!(
-            told("[radar]\nsamples = 64\ncarrier_hz = -5").starts_with("line 3, column 14: radar.carrier_hz is -5")
-        );
+        let negative = told("[radar]\nsamples = 64\ncarrier_hz = -5");
+        assert!(negative.starts_with("line 3, column 14: radar.carrier_hz is -5"), "{negative}");
         let uneven = told("[radar]\ntransmitter_x_metres = [0, 1, 1.7]\nreceiver_x_metres = [0, 0.31]");
         assert!(uneven.ends_with("expected at most 1.675 mm"), "{uneven}");
         for text in ["a = ", "a = 3"] {

@@ -1,5 +1,4 @@
-//! Scenes read from TOML, with errors that name the line. A text without `format` is of format 1. Format 2 adds names of objects; it is
-//! written only where one has a name.
+//! Scenes read from TOML, with errors that name the line. Format 1 has no key `format`; format 2, with names of objects, is written where one has a name.
 
 use super::content::{SceneFile, SceneTextError, one_line};
 use super::objects::objects;
@@ -68,8 +67,7 @@ fn table(text: &str) -> Result<Spanned<DeTable<'_>>, SceneTextError> {
 }
 
 fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> ReadScene<T> {
-    /// All keys but the objects, which are read one by one. The field of objects stands here for the message about an unknown key. So does the field
-    /// of the recording under a scene, which belongs to the app.
+    /// All keys but the objects, which are read one by one. Their field, and the app's of a recording, are for the message about an unknown key.
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Head {
@@ -94,6 +92,10 @@ fn parse<T: DeserializeOwned>(text: &str, beside: Option<&str>) -> ReadScene<T> 
     let document = table(text)?;
     let span = document.span();
     let mut document = document.into_inner();
+    if let Some(recording) = document.get("recording") {
+        let message = "this is a recording; expected a scene".to_owned();
+        return Err(SceneTextError::at(text, recording.span().start, message));
+    }
     check_format(text, &document)?;
     document.remove("format");
     let entries = document.remove("object");
@@ -129,8 +131,7 @@ fn check_format(text: &str, document: &DeTable<'_>) -> Result<(), SceneTextError
     Err(SceneTextError::at(text, format.span().start, message))
 }
 
-/// The place of a field of a table, or of the object with this index under `key`, in a text that was read before; that of the table where it has
-/// no such field. It is looked up for errors only.
+/// The place of a field of a table, or of the object with this index under `key`, in a text read before; else that of the table. For errors only.
 pub(super) fn span_of(text: &str, key: &str, index: Option<usize>, field: &str) -> Range<usize> {
     let document = table(text).ok();
     let value = document.as_ref().and_then(|document| document.get_ref().get(key));
@@ -187,9 +188,12 @@ mod tests {
             |kind: &str, keys| format!("[[object]]\nkind = \"{kind}\"\nx_metres = 1\n{keys}\ncount = 1000000000000\n");
         let crossed = "[[object]]\nkind = \"polygon\"\ncorners_metres = [[0, 5], [1, 6], [1, 5], [0, 6]]";
         let inside = "[[object]]\nkind = \"post\"\nx_metres = 0\ny_metres = 0\nradius_metres = 3";
-        let section = |dbsm: &str| format!("{point}y_metres = 2\ncross_section_dbsm = {dbsm}\n");
+        let section = |keys: &str| format!("{point}y_metres = 2\n{keys}\n");
+        let endless = crowd("line", "y_start_metres = 1\nspacing_metres = 1");
+        let wall = "[[object]]\nkind = \"wall\"\ncross_section_dbsm = 3\n";
         for (text, line, parts) in [
             ("name = 3", 1, vec!["integer", "string"]),
+            ("format = 3\n[recording]\nfile = \"a.npz\"", 2, vec!["this is a recording; expected a scene"]),
             ("\ncolour = 3", 2, vec!["colour", "object", "radar"]),
             ("[radar]\ncarier = \"one-way\"", 2, vec!["carier", "carrier"]),
             ("[radar]\nelements = 1024\ncarrier_hz = -5", 3, vec!["carrier_hz", "above 0"]),
@@ -203,15 +207,11 @@ mod tests {
             (&format!("{point}y_metres = 2\ncolour = 1\n"), 5, vec!["object 1", "colour", "reflectivity"]),
             (&format!("{point}y_metres = nan\n"), 4, vec!["object 1", "y_metres", "NaN", "finite"]),
             (&format!("{point}y_metres = 2\n{point}y_metres = 1e13\n"), 8, vec!["object 2", "1e12"]),
-            (
-                &crowd("line", "y_start_metres = 1\nspacing_metres = 1").replace("1000000000000", "-4"),
-                6,
-                vec!["object 1", "-4"],
-            ),
+            (&endless.replace("1000000000000", "-4"), 6, vec!["object 1", "-4"]),
             ("[radar]\nsamples = 65536\nelements = 65536", 3, vec!["65536 elements", "1.0 TiB", "4.0 GiB"]),
             ("[radar]\nsamples = 65536\nelements = 65535", 2, vec!["samples"]),
             ("[radar]\nelements = 10000000000000", 2, vec!["elements", "65536"]),
-            (&crowd("line", "y_start_metres = 1\nspacing_metres = 1"), 1, vec!["1000000000000 reflectors", "200000"]),
+            (&endless, 1, vec!["1000000000000 reflectors", "200000"]),
             (&crowd("gaussian", "y_metres = 1\nx_std_metres = 1\ny_std_metres = 1"), 1, vec!["reflectors", "200000"]),
             (&format!("notes = \"{}\"", ".".repeat(MAX_MARKS)), 1, vec!["values and tables"]),
             ("[[object]", 1, vec!["]"]),
@@ -220,17 +220,9 @@ mod tests {
             (inside, 1, vec!["object 1 (post)", "element 0"]),
             ("shadows = 3", 1, vec!["boolean"]),
             ("a = 1\na = 2", 2, vec!["duplicate"]),
-            (&section("nan"), 5, vec!["object 1", "is NaN", "-2000 to 2000"]),
-            (
-                &format!("{point}y_metres = 2\nreflectivity = 1\ncross_section_dbsm = 0\n"),
-                6,
-                vec!["beside reflectivity"],
-            ),
-            (
-                "[[object]]\nkind = \"wall\"\ncross_section_dbsm = 3\n",
-                3,
-                vec!["a wall has no cross_section_dbsm", "shape"],
-            ),
+            (&section("cross_section_dbsm = nan"), 5, vec!["object 1", "is NaN", "-2000 to 2000"]),
+            (&section("reflectivity = 1\ncross_section_dbsm = 0"), 6, vec!["beside reflectivity"]),
+            (wall, 3, vec!["a wall has no cross_section_dbsm", "shape"]),
             ("[radar.budget]\nnoise_figure_db = -1", 1, vec!["radar.budget.noise_figure_db is -1", "0 to 100 dB"]),
         ] {
             let error = from_toml(text).unwrap_err();

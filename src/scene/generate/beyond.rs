@@ -1,5 +1,4 @@
-//! Scenes apart from all training and tuning, which test how well choices made on the other kinds generalise. They share no code with the
-//! other generators, so that changes there leave them as they are.
+//! Scenes apart from all training and tuning: a test of how well choices generalise. No code is shared with other generators, which may change.
 
 use crate::scene::{Object, Point};
 use rand::RngExt;
@@ -231,11 +230,8 @@ mod tests {
         for (kind, most) in Beyond::ALL.into_iter().zip([302, 200, 300, 8, 10, 300]) {
             for (number, scene) in scenes(kind, 200).iter().enumerate() {
                 scene.validate(&Radar::default()).unwrap_or_else(|e| panic!("{kind:?} {number}: {e}"));
-                assert!(
-                    (1..=most).contains(&scene.reflector_count()),
-                    "{kind:?} {number}: {}",
-                    scene.reflector_count()
-                );
+                let count = scene.reflector_count();
+                assert!((1..=most).contains(&count), "{kind:?} {number}: {count}");
             }
         }
     }

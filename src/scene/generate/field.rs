@@ -76,8 +76,7 @@ impl PlacementField {
         self.point(10f64.powf(rng.random_range(-40.0..-10.0) / 20.0), rng)
     }
 
-    /// Two parallel rows of points, one at either side of a way that leads ahead or up to 20 degrees to the side. Points outside the field are
-    /// left out.
+    /// Two parallel rows of points in the field, on either side of a way that leads ahead or up to 20 degrees to the side.
     fn fences(&self, rng: &mut ChaCha8Rng) -> Vec<Object> {
         loop {
             let direction = (90.0 + rng.random_range(-20.0..20.0f64)).to_radians();

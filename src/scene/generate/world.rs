@@ -226,7 +226,7 @@ mod tests {
     use super::super::{Generator, Kind, Purpose, Reading};
     use super::*;
     use crate::radar::presets::RadarPreset;
-    use crate::scene::Scene;
+    use crate::scene::{Reflector, Scene};
     use rand::SeedableRng;
 
     fn scenes(radar: &Radar, count: u32) -> Vec<Scene> {
@@ -246,11 +246,8 @@ mod tests {
                 assert!(!scene.is_silent() && scene.reflector_count() <= MAX_POINTS, "{number}");
                 assert!(scene.objects.len() - scene.reflector_count() <= MAX_BODIES, "{number}");
                 assert!(scene.echo_count() <= MAX_POINTS + MAX_BODIES * 64 + MAX_ROUGH_BODIES * 310, "{number}");
-                let reflectors = scene.reflectors();
-                assert!(
-                    reflectors.iter().all(|r| r.y_metres >= 0.0 && r.x_metres.hypot(r.y_metres) <= far),
-                    "{number}"
-                );
+                let is_within = |r: &Reflector| r.y_metres >= 0.0 && r.x_metres.hypot(r.y_metres) <= far;
+                assert!(scene.reflectors().iter().all(is_within), "{number}");
             }
         }
     }

@@ -32,13 +32,9 @@ struct Monkey {
     kills: u64,
 }
 
-fn methods() -> Vec<Arc<dyn Reconstructor>> {
-    vec![Arc::new(Baseline), Arc::new(CAPON)]
-}
-
 impl Monkey {
     fn start(seed: u64) -> Monkey {
-        let mut s = Session::with_methods(methods());
+        let mut s = Session::with_methods(with_capon());
         let folder = s.folder.path().to_owned();
         let head = "[radar]\nelements = 64\nsamples = 32\nbandwidth_hz = 2.5e8\n\n";
         let point = "[[object]]\nkind = \"point\"\nx_metres = 2.0\ny_metres = 9.0\n";
@@ -111,7 +107,7 @@ impl Monkey {
         let after = tempdir().unwrap();
         copy_at_one_moment(self.s.folder.path(), after.path());
         let asked = self.rng.random_bool(0.3).then_some("b.toml");
-        let app = harness(after.path(), asked, methods(), USUAL_SIZE);
+        let app = harness(after.path(), asked, with_capon(), USUAL_SIZE);
         self.s = Session { app, folder: after };
         self.s.app.step();
         if let Err(lost) = self.witness.compare(self.s.state()) {
@@ -121,7 +117,7 @@ impl Monkey {
     }
 }
 
-fn listing(folder: &Path) -> Vec<(std::path::PathBuf, u64, Option<std::time::SystemTime>)> {
+fn listing(folder: &Path) -> Vec<(PathBuf, u64, Option<std::time::SystemTime>)> {
     let mut list = Vec::new();
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let Ok(about) = entry.metadata() else { continue };

@@ -49,8 +49,7 @@ impl Witness {
         }
     }
 
-    /// Checks that a window that was started after a kill has all documents that were unsaved at one of the moments. The error names those missing of
-    /// the latest moment.
+    /// Checks that a window started after a kill has all documents of one of the moments. The error names those missing of the first.
     pub fn compare(&self, app: &App) -> Result<(), String> {
         let editor = &app.editor;
         let back = |kept: &Kept| editor.left().iter().chain([editor.document()]).any(|d| kept.is(d));

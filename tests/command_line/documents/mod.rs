@@ -194,12 +194,8 @@ fn the_page_of_methods_is_the_programs_list() {
     };
     for method in methods::all() {
         let name = method.name();
-        let row = format!(
-            "| `{name}` | {} | {} | {} |",
-            method.description(),
-            takes("chip-8", name),
-            takes("cascade-86", name)
-        );
+        let [chip, cascade] = ["chip-8", "cascade-86"].map(|recording| takes(recording, name));
+        let row = format!("| `{name}` | {} | {chip} | {cascade} |", method.description());
         let at = rows.iter().position(|found| *found == row).unwrap_or_else(|| panic!("docs/methods.md lacks\n{row}"));
         rows.remove(at);
     }
@@ -213,9 +209,8 @@ fn methods_are_listed_and_say_which_radar_they_refuse() {
     let listed = apertura(&folder).arg("methods").assert().success();
     let text = String::from_utf8(listed.get_output().stdout.clone()).unwrap();
     assert_eq!(text.lines().filter(|line| line.starts_with("  ")).count(), methods::all().len());
-    let chip = root().join("assets/recordings/chip-8.toml");
     let refused = contains("transmitters stand apart").and(contains(format!("{:<27}yes", "iaa")));
-    apertura(&folder).arg("methods").arg(chip).assert().success().stdout(refused);
+    apertura(&folder).args(["methods", crate::recordings::CHIP]).assert().success().stdout(refused);
 }
 
 #[test]

@@ -33,8 +33,7 @@ pub fn commands(line: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The arguments with a number in place of each that a shell fills in (a variable, `{}` of parallel, and `I/N`), and with the backend that every
-/// build has.
+/// The arguments with a number for each that a shell fills in (a variable, `{}` of parallel, `I/N`), and with the backend that every build has.
 pub fn filled(arguments: &[String]) -> Vec<String> {
     let is_backend = |at: usize| at > 0 && arguments[at - 1] == "--backend";
     arguments

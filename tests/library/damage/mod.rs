@@ -1,6 +1,4 @@
 //! Damaged files: after any damage to a valid one, readers answer with a file or an error, in bounded memory and time.
-//!
-//! `cargo test --release --test library damage -- --ignored --nocapture` tries hundreds of thousands; `fuzz/` goes on from there.
 
 pub mod allocation;
 mod mutate;

@@ -174,7 +174,6 @@ fn lessons() -> Reader {
         lesson.steps.iter().for_each(|step| drop(step.scene()));
         Ok(())
     };
-    // The reflectors of the largest scene, and the tables of the text.
     Reader { name: "lesson", files, read, bound: [16 << 20, 1024], slow: 4 }
 }
 
@@ -202,13 +201,8 @@ mod networks {
             let renamed = file.renamed(|name| format!("x.{name}")).map_err(|e| e.to_string())?;
             told(WeightFile::parse("renamed", &renamed))
         };
-        Reader {
-            name: "safetensors",
-            files: vec![LIVE.to_vec(), THESIS.to_vec()],
-            read,
-            bound: [1 << 20, 256],
-            slow: 1,
-        }
+        let files = vec![LIVE.to_vec(), THESIS.to_vec()];
+        Reader { name: "safetensors", files, read, bound: [1 << 20, 256], slow: 1 }
     }
 
     fn checkpoints() -> Reader {

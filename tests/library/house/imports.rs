@@ -65,12 +65,8 @@ impl House {
                 found.extend(target.iter().map(|t| room_of(t)).filter(|r| *r != room));
             }
         }
-        rooms.remove("lib");
-        rooms.remove("main");
-        // The page, and the program that writes man pages, are programs of their own, as `main` is that of the desktop.
-        rooms.remove("page");
-        rooms.remove("manual");
-        rooms.remove("console");
+        // The library's root and the programs are no rooms.
+        rooms.retain(|room, _| !["lib", "main", "page", "manual", "console"].contains(&room.as_str()));
         for imports in rooms.values_mut() {
             imports.remove("lib");
         }

@@ -1,6 +1,4 @@
-//! Checks of the source against its plan: ARCHITECTURE.md's table of rooms, no import circle, no long function, names with a noun.
-//!
-//! `cargo test --test library house -- --nocapture` prints the rooms and their imports.
+//! Checks of the source against its plan: ARCHITECTURE.md's table of rooms, no import circle, no long function, names.
 
 mod imports;
 mod names;
@@ -8,6 +6,7 @@ mod source;
 
 use crate::prelude::*;
 use imports::{House, circles, rust_files};
+use names::{Names, held_files};
 use source::Source;
 
 const LONGEST_FUNCTION: usize = 60;
@@ -37,34 +36,30 @@ fn table() -> Vec<(String, BTreeSet<String>)> {
     rooms
 }
 
-const CRATES: [(&str, &[&str]); 3] =
-    [("rustfft", &["maps", "signal", "reconstruct", "benchmark"]), ("burn", &["network"]), ("rfd", &["platform"])];
+/// Code that few places have. Only `platform` asks whether it runs on a page; SIMD kernels ask for the processor's instructions.
+const RARE_CODE: [(&str, &[&str]); 4] = [
+    ("rustfft::", &["maps", "signal", "reconstruct", "benchmark"]),
+    ("burn::", &["network"]),
+    ("rfd::", &["platform"]),
+    ("target_arch", &["platform", "signal/simd", "network/kernels/vector.rs"]),
+];
 
 #[test]
-fn some_crates_belong_to_few_rooms() {
+fn some_crates_and_the_target_belong_to_few_rooms() {
     let src = root().join("src");
-    for (name, rooms) in CRATES {
-        let (mut inside, mut outside) = (0, Vec::new());
-        for path in rust_files(&src) {
-            let text = std::fs::read_to_string(&path).unwrap();
-            let is_code = |line: &&str| !line.trim_start().starts_with("//");
-            if text.lines().filter(is_code).any(|line| line.contains(&format!("{name}::"))) {
-                let is_allowed = rooms.iter().any(|room| path.starts_with(src.join(room)));
-                if is_allowed { inside += 1 } else { outside.push(path) }
-            }
-        }
-        assert!(inside > 0 && outside.is_empty(), "{name}: {outside:?}");
+    for (code, places) in RARE_CODE {
+        let is_code = |line: &&str| !line.trim_start().starts_with("//");
+        let has = |path: &PathBuf| fs::read_to_string(path).unwrap().lines().filter(is_code).any(|l| l.contains(code));
+        let may = |path: &PathBuf| places.iter().any(|place| path.starts_with(src.join(place)));
+        let (inside, outside): (Vec<_>, Vec<_>) = rust_files(&src).into_iter().filter(has).partition(may);
+        assert!(!inside.is_empty() && outside.is_empty(), "{code}: {outside:?}");
     }
 }
 
 /// Names that ARCHITECTURE.md and CONTRIBUTING.md give in backticks: a path of Rust, or of a file.
 #[test]
 fn the_names_that_contributors_read_are_there() {
-    let sources: String = ["src", "tests", "python/src", "examples"]
-        .iter()
-        .flat_map(|folder| rust_files(&root().join(folder)))
-        .map(|path| std::fs::read_to_string(path).unwrap())
-        .collect();
+    let sources: String = held_files().into_iter().map(|(_, text)| text).collect();
     let words: BTreeSet<&str> = sources.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
     let mut missing = Vec::new();
     for page in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
@@ -131,17 +126,10 @@ fn no_files_import_each_other_in_a_circle() {
 #[test]
 fn no_function_is_long() {
     let mut long = Vec::new();
-    for folder in ["src", "tests", "examples"] {
-        for path in rust_files(&root().join(folder)) {
-            let functions = Source::parse(&std::fs::read_to_string(&path).unwrap(), true).unwrap().functions;
-            let name = path.strip_prefix(root()).unwrap().display();
-            long.extend(
-                functions
-                    .into_iter()
-                    .filter(|(_, lines)| *lines > LONGEST_FUNCTION)
-                    .map(|(function, lines)| format!("{name}: {function} has {lines} lines")),
-            );
-        }
+    for (name, text) in held_files().into_iter().filter(|(name, _)| !name.starts_with("python/")) {
+        let functions = Source::parse(&text, true).unwrap().functions.into_iter();
+        let found = functions.filter(|(_, lines)| *lines > LONGEST_FUNCTION);
+        long.extend(found.map(|(function, lines)| format!("{name}: {function} has {lines} lines")));
     }
     assert!(long.is_empty(), "more than {LONGEST_FUNCTION} lines:\n{}", long.join("\n"));
 }
@@ -159,17 +147,6 @@ fn circles_are_found() {
     assert!(circles(&graph(&[("a", "b"), ("b", "c"), ("a", "c")])).is_empty());
     let circle = circles(&graph(&[("a", "b"), ("b", "c"), ("c", "b"), ("c", "d")]));
     assert_eq!(circle, [BTreeSet::from(["b", "c"])]);
-}
-
-/// Only `platform` asks whether it runs on a page; SIMD kernels ask for the processor's instructions.
-#[test]
-fn the_target_is_asked_for_in_the_platform_alone() {
-    let src = root().join("src");
-    let kernels = ["platform", "signal/simd", "network/kernels/vector.rs"].map(|p| src.join(p));
-    let asks = |path: &PathBuf| std::fs::read_to_string(path).unwrap().contains("target_arch");
-    let (may, must_not): (Vec<PathBuf>, Vec<PathBuf>) =
-        rust_files(&src).into_iter().filter(asks).partition(|path| kernels.iter().any(|k| path.starts_with(k)));
-    assert!(!may.is_empty() && must_not.is_empty(), "{must_not:?}");
 }
 
 /// Paths are followed through `pub use`, `super`, renamed modules and inline test modules.
@@ -204,20 +181,11 @@ fn imports_are_resolved() {
 
 /// The tests of the crate, each as its file and name, and whether it is ignored.
 fn tests() -> Vec<(String, bool)> {
+    let is_of_the_crate = |file: &str| file.starts_with("src/") || file.starts_with("tests/");
     let mut found = Vec::new();
-    for path in ["src", "tests"].iter().flat_map(|folder| rust_files(&root().join(folder))) {
-        let file = path.strip_prefix(root()).unwrap().display();
-        let (mut is_test, mut is_ignored) = (false, false);
-        for line in std::fs::read_to_string(&path).unwrap().lines().map(str::trim) {
-            is_test |= line == "#[test]";
-            is_ignored |= line.starts_with("#[ignore");
-            if let Some((name, _)) = line.strip_prefix("fn ").and_then(|rest| rest.split_once('(')) {
-                if std::mem::take(&mut is_test) {
-                    found.push((format!("{file}::{name}"), is_ignored));
-                }
-                is_ignored = false;
-            }
-        }
+    for (file, text) in held_files().into_iter().filter(|(file, _)| is_of_the_crate(file)) {
+        let Names { tests, ignored, .. } = Names::of(&text);
+        found.extend(tests.iter().map(|(name, _)| (format!("{file}::{name}"), ignored.contains(name))));
     }
     found
 }
@@ -245,9 +213,8 @@ fn every_filter_of_tests_in_the_documents_runs_one() {
     let (mut count, mut wrong) = (0, Vec::new());
     for page in docs.filter(|path| path.extension().is_some_and(|ending| ending == "md")).chain(pages) {
         let text = std::fs::read_to_string(&page).unwrap();
-        for (filter, are_ignored) in
-            text.lines().flat_map(|line| line.split("cargo test").skip(1)).filter_map(filter_in)
-        {
+        let rests = text.lines().flat_map(|line| line.split("cargo test").skip(1));
+        for (filter, are_ignored) in rests.filter_map(filter_in) {
             count += 1;
             if !tests.iter().any(|(name, is_ignored)| name.contains(filter) && *is_ignored == are_ignored) {
                 wrong.push(format!("{}: {filter}", page.display()));

@@ -27,14 +27,15 @@ const EXEMPT_ROOMS: [&str; 7] = [
 ];
 
 #[derive(Default)]
-struct Names {
+pub struct Names {
     constants: Vec<(String, usize)>,
     public_types: Vec<(String, usize)>,
-    tests: Vec<(String, usize)>,
+    pub tests: Vec<(String, usize)>,
+    pub ignored: BTreeSet<String>,
 }
 
 impl Names {
-    fn of(text: &str) -> Names {
+    pub fn of(text: &str) -> Names {
         let mut names = Names::default();
         names.visit_file(&syn::parse_file(text).unwrap());
         names
@@ -102,14 +103,19 @@ impl<'ast> Visit<'ast> for Names {
     }
 
     fn visit_item_fn(&mut self, item: &'ast syn::ItemFn) {
-        if item.attrs.iter().any(|a: &Attribute| a.path().is_ident("test")) {
+        let has = |name: &str| item.attrs.iter().any(|a: &Attribute| a.path().is_ident(name));
+        if has("test") {
             self.tests.push(named(&item.sig.ident));
+        }
+        if has("ignore") {
+            self.ignored.insert(item.sig.ident.to_string());
         }
         visit::visit_item_fn(self, item);
     }
 }
 
-fn held_files() -> Vec<(String, String)> {
+/// Every file that is held to the rules: its path from the project's folder on, and its text.
+pub fn held_files() -> Vec<(String, String)> {
     let paths = ["src", "tests", "examples", "fuzz/fuzz_targets", "python/src"].map(|f| rust_files(&root().join(f)));
     let files = paths.concat().into_iter().map(|path| {
         let name = path.strip_prefix(root()).unwrap().display().to_string();

@@ -1,12 +1,10 @@
 use super::*;
 use crate::app::state::Methods;
-use crate::app::widgets::seen::User;
+use crate::app::widgets::seen::{self, Harness, Queryable, User};
 use crate::radar::Radar;
 use crate::recording::Recording;
 use crate::scene::{Object, Point};
 use crate::signal::BeatSignal;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 
 /// The bar for a method that finds reflectors in a recording, or for a scene without methods.
 fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'static, Vec<Command>> {
@@ -22,10 +20,7 @@ fn bar_for(width: f32, finds_reflectors: bool, developer: bool) -> Harness<'stat
     };
     state.settings.developer = developer;
     state.editor.add(Object::Point(Point::new(0.0, 9.0)));
-    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        asked.extend(show(ui, &state));
-    };
-    Harness::builder().with_size([width, 800.0]).build_ui_state(draw, vec![])
+    seen::asking([width, 800.0], move |ui| show(ui, &state))
 }
 
 fn bar(width: f32) -> Harness<'static, Vec<Command>> {
@@ -83,17 +78,6 @@ fn the_palette_names_the_menus_in_which_a_command_stands() {
 }
 
 #[test]
-fn the_help_menu_lists_its_pages() {
-    let mut menu = bar(900.0);
-    menu.clicks(&["Help"]);
-    for name in ["Guide", "Captions on the maps", "Keys and pointer", "Where figures come from", "About apertura"] {
-        assert!(menu.query_by_label(name).is_some(), "{name}");
-    }
-    menu.clicks(&["Keys and pointer"]);
-    assert_eq!(*menu.state(), [Command::Window(WindowCommand::Help(HelpPage::Keys))]);
-}
-
-#[test]
 fn random_scenes_have_a_menu_of_their_own_with_their_seed() {
     let mut menu = bar(900.0);
     menu.clicks(&["Scene"]);
@@ -127,17 +111,11 @@ fn panels_with_nothing_to_show_are_not_listed() {
 #[test]
 fn menus_ask_for_what_they_list() {
     let mut menu = bar(900.0);
-    menu.clicks(&["+ Line", "Cartesian", "Scene", "Presets", "Four reflectors"]);
-    let preset = presets::ALL.iter().position(|p| p.id == "four-reflectors").unwrap();
-    let projection = Command::View(ViewCommand::SetProjection(Projection::Cartesian));
-    assert_eq!(
-        *menu.state(),
-        [
-            Command::Edit(EditCommand::Add(NewObject::Line, None)),
-            projection,
-            Command::Document(DocumentCommand::Preset(preset))
-        ]
-    );
+    menu.clicks(&["+ Line", "Cartesian", "Scene", "Presets", "Four reflectors", "Help", "Keys and pointer"]);
+    let add = Command::from(EditCommand::Add(NewObject::Line, None));
+    let projection = Command::from(ViewCommand::SetProjection(Projection::Cartesian));
+    let preset = DocumentCommand::Preset(presets::ALL.iter().position(|p| p.id == "four-reflectors").unwrap());
+    assert_eq!(*menu.state(), [add, projection, preset.into(), WindowCommand::Help(HelpPage::Keys).into()]);
 }
 
 #[test]

@@ -133,7 +133,6 @@ impl Failures {
         self.run.begin(Run { plan, generation: self.table.generation(), album });
     }
 
-    /// Removes every row.
     pub fn clear(&mut self) {
         self.run.cancel();
         self.take_in_rows();
@@ -153,7 +152,6 @@ impl Failures {
         self.before.as_ref().map(|(rows, _)| rows.len())
     }
 
-    /// Brings back the rows last replaced.
     pub fn bring_back(&mut self) {
         self.run.cancel();
         if let Some((rows, conditions)) = self.before.take() {

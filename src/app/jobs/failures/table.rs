@@ -36,12 +36,10 @@ impl RowTable {
         &self.rows
     }
 
-    /// Names of the methods in the rows.
     pub fn methods(&self) -> &BTreeSet<String> {
         &self.methods
     }
 
-    /// Floor, normalisation and radar of the rows.
     pub fn conditions(&self) -> &Conditions {
         &self.conditions
     }

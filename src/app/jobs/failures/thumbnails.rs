@@ -17,9 +17,7 @@ use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 
-/// Columns of a thumbnail.
 pub const THUMBNAIL_COLUMNS: usize = 96;
-/// Rows of a thumbnail.
 pub const THUMBNAIL_ROWS: usize = 48;
 /// Most thumbnails that are kept, some 5 MB.
 const MAX_THUMBNAILS: usize = 512;
@@ -36,7 +34,6 @@ pub struct Thumbnail {
 }
 
 impl Thumbnail {
-    /// The thumbnail of a trial and a method's answer.
     pub fn of(trial: &Trial, answer: &TimedAnswer) -> Thumbnail {
         Thumbnail { target: shrunk(&trial.radar, &trial.target), output: shrunk(&trial.radar, &answer.found.lambda) }
     }
@@ -102,13 +99,11 @@ impl Album {
         platform::lock(&self.0).get(&(generation, RowKey::of(row)))
     }
 
-    /// Adds the thumbnail of a row of table `generation`.
     pub fn insert(&self, generation: u64, row: &Row, made: Made) {
         platform::lock(&self.0).insert((generation, RowKey::of(row)), made);
     }
 }
 
-/// Rows whose thumbnails are missing.
 pub struct MissingThumbnails {
     generation: u64,
     conditions: Conditions,
@@ -119,7 +114,6 @@ pub struct MissingThumbnails {
 /// The maker of thumbnails of rows from files, one after the other.
 pub struct Thumbnails {
     pub album: Album,
-    /// The job that makes the missing ones.
     pub job: RowJob<MissingThumbnails>,
     asked: Vec<RowKey>,
 }
@@ -219,10 +213,8 @@ mod tests {
             let far =
                 |i: &usize| i / THUMBNAIL_COLUMNS + THUMBNAIL_ROWS / rows.min(THUMBNAIL_ROWS) + 1 >= THUMBNAIL_ROWS;
             assert!(!bright.is_empty() && bright.iter().all(far), "{rows}, {columns}: {bright:?}");
-            assert!(
-                bright.iter().any(|i| (i % THUMBNAIL_COLUMNS).abs_diff(THUMBNAIL_COLUMNS / 3) <= 1),
-                "{rows}, {columns}: {bright:?}"
-            );
+            let is_near = |i: &usize| (i % THUMBNAIL_COLUMNS).abs_diff(THUMBNAIL_COLUMNS / 3) <= 1;
+            assert!(bright.iter().any(is_near), "{rows}, {columns}: {bright:?}");
         }
     }
 

@@ -151,7 +151,6 @@ pub(super) fn display(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>
     });
 }
 
-/// Draws the choice between a global threshold and the detectors.
 pub(super) fn detector(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command>) {
     let tooltip = "The rule for detected cells in the panels Target > η' and Output > η";
     row_of(ui, "Detect", tooltip, |ui| {
@@ -174,7 +173,6 @@ pub(super) fn detector(ui: &mut Ui, settings: &Settings, asked: &mut Vec<Command
     });
 }
 
-/// Draws the fields of the detector's cells and of its rate.
 pub(super) fn detector_cells(ui: &mut Ui, cfar: &Cfar, error: Option<&str>, asked: &mut Vec<Command>) {
     let mut changed = *cfar;
     let tooltip = "Cells a side that may hold the echo itself and measure nothing";

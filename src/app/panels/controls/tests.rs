@@ -1,6 +1,6 @@
 use super::*;
 use crate::app::state::{EditCommand, RadarCommand, Settings, View};
-use crate::app::widgets::seen::{self, User};
+use crate::app::widgets::seen::{self, Harness, Queryable, User};
 use crate::evaluate::Metrics;
 use crate::interact::Snap;
 use crate::maps::Normalisation;
@@ -8,8 +8,6 @@ use crate::maps::cfar::{Cfar, Statistic};
 use crate::radar::{DecibelMilliwatts, Decibels, WindowFunction};
 use crate::reconstruct::{Baseline, CAPON, Reconstructor};
 use crate::signal::Floor;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
 
 fn panel(run: impl Fn() -> Run<'static> + 'static) -> Harness<'static, Vec<Command>> {
@@ -28,14 +26,12 @@ fn panel_of(
 ) -> Harness<'static, Vec<Command>> {
     let mut state = State { settings, ..State::new(vec![Arc::new(Baseline), Arc::new(CAPON)]) };
     state.settings.method = Baseline.name().to_owned();
-    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
+    seen::asking(size, move |ui| {
         let input = Input { state: &state, eta: Baseline.eta(), range_db: None, run: Run::default(), uses: Uses::ALL };
-        asked.extend(show(ui, &change(input)));
-    };
-    Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
+        show(ui, &change(input))
+    })
 }
 
-/// A reconstruction with its figures.
 fn scored() -> Run<'static> {
     let metrics = Metrics { squared_error: 321.4, detection: Some(1.0), false_alarm: 0.0163 };
     let scores = Some(Scores { metrics, target_blobs: 1, output_blobs: 2 });
@@ -104,7 +100,6 @@ fn the_focus_passes_through_a_threshold_without_rounding_it() {
     assert!(shown.iter().any(|t| t.text == "0.7631942"), "every digit, so that P_FA can be had again: {shown:?}");
 }
 
-/// Opens the folded groups.
 fn unfold<State>(controls: &mut Harness<'_, State>) {
     controls.clicks(&["Seed of the noise"]);
 }

@@ -12,7 +12,6 @@ use egui_plot::LineStyle;
 /// Largest distance of the pointer from a marker to drag it, points.
 const MARKER_REACH_POINTS: f32 = 7.0;
 
-/// Names of the two markers.
 pub const NAMES: [&str; 2] = ["A", "B"];
 
 /// Places on the axis of a cut.
@@ -24,7 +23,6 @@ pub struct Markers {
 }
 
 impl Markers {
-    /// Whether no marker is placed.
     pub fn is_empty(&self) -> bool {
         self.places == [None, None]
     }
@@ -64,7 +62,6 @@ impl Markers {
         }
     }
 
-    /// Draws the markers with their names, over the lines.
     pub fn draw(&self, drawn: &Drawn, ink: Color32) {
         for (place, name) in self.places.into_iter().zip(NAMES) {
             let Some(place) = place else { continue };
@@ -304,9 +301,7 @@ mod tests {
     #[test]
     fn values_are_read_only_between_cells() {
         let line = [[0.0, -10.0], [2.0, -20.0]];
-        assert_eq!(
-            [-0.1, 0.0, 1.0, 2.0, 2.1].map(|x| value_at(&line, x)),
-            [None, Some(-10.0), Some(-15.0), Some(-20.0), None]
-        );
+        let values = [-0.1, 0.0, 1.0, 2.0, 2.1].map(|x| value_at(&line, x));
+        assert_eq!(values, [None, Some(-10.0), Some(-15.0), Some(-20.0), None]);
     }
 }

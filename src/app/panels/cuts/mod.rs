@@ -160,7 +160,6 @@ fn style(kind: MapKind) -> LineStyle {
     }
 }
 
-/// Draws one cut: its chart, with the markers' readings beneath.
 fn draw(ui: &mut Ui, area: Rect, state: &State, maps: &[CutMap], memory: &mut CutsMemory, cut: Cut) {
     let (radar, cursor, units) = (state.radar(), state.cut_cursor(), state.settings.units);
     let traces = traces(state, maps, &memory.hidden, cut);

@@ -16,7 +16,6 @@ pub enum Cut {
 }
 
 impl Cut {
-    /// Both directions.
     pub const ALL: [Cut; 2] = [Cut::Angle, Cut::Range];
 
     pub fn name(self) -> &'static str {
@@ -63,7 +62,6 @@ impl Cut {
     }
 }
 
-/// A line of a cut.
 #[derive(Debug, Clone)]
 pub struct Trace {
     pub kind: MapKind,

@@ -1,11 +1,9 @@
 use super::*;
 use crate::app::panels::recording::tests::some_recording;
-use crate::app::widgets::seen::{self, User};
+use crate::app::widgets::seen::{self, Harness, Queryable, User};
 use crate::maps::LogMap;
 use crate::scene::{Object, Point, Scene};
 use eframe::egui::{Color32, ColorImage};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
 
 fn radar(chirps: usize) -> Radar {
@@ -19,14 +17,10 @@ fn result(radar: &Radar) -> DopplerResult {
     DopplerResult { radar: radar.clone(), knows_interval: true, decades: LogMap::new(decades), image: Arc::new(image) }
 }
 
-/// The panel of this state with this map.
 fn drawn(size: [f32; 2], mut state: State, result: Option<DopplerResult>) -> Harness<'static, Vec<Command>> {
     state.settings.normalisation = Normalisation::DynamicRange(crate::radar::Decibels(60.0));
     let mut texture = Texture::default();
-    let draw = move |ui: &mut Ui, asked: &mut Vec<Command>| {
-        asked.extend(show(ui, &state, result.as_ref().map(Ok), &mut texture));
-    };
-    Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
+    seen::asking(size, move |ui| show(ui, &state, result.as_ref().map(Ok), &mut texture))
 }
 
 /// The panel of a recording of 20 frames.
@@ -73,10 +67,8 @@ fn the_map_has_its_axes_in_a_wide_panel_or_a_narrow_one() {
         let panel = panel(size, 64, -9.0, 0.0);
         let rect = panel.get_by_label("Range-Doppler map").rect();
         assert!(rect.height() > 60.0 && rect.right() <= size[0], "{rect:?}");
-        let texts = seen::texts(panel.output());
-        for text in ["radial velocity, m/s", "range, m", "1", "−78.0", "−50", "0", "50", "78.0"] {
-            assert!(texts.iter().any(|t| t.text == text), "{text} in {texts:?}");
-        }
+        let told = ["radial velocity, m/s", "range, m", "1", "−78.0", "−50", "0", "50", "78.0"];
+        seen::assert_reads(panel.output(), &told);
         seen::assert_readable(panel.output());
     }
 }
@@ -85,9 +77,8 @@ fn the_map_has_its_axes_in_a_wide_panel_or_a_narrow_one() {
 fn what_folds_is_said_with_what_helps() {
     let most = radar(64).unambiguous_velocity_metres_per_second();
     let panel = panel([700.0, 420.0], 64, 1.5 * most, 0.0);
-    let texts = seen::texts(panel.output());
-    assert!(texts.iter().any(|t| t.text.contains("beyond the unambiguous")), "{texts:?}");
-    assert!(texts.iter().any(|t| t.text == "1 folded"), "{texts:?}");
+    assert!(seen::texts(panel.output()).iter().any(|t| t.text.contains("beyond the unambiguous")));
+    seen::assert_reads(panel.output(), &["1 folded"]);
 }
 
 #[test]

@@ -1,15 +1,11 @@
-//! Tests of the panel by clicks, drags and keys.
-
 use super::*;
 use crate::app::jobs::Calibrated;
 use crate::app::state::ViewCommand;
-use crate::app::widgets::seen::User;
+use crate::app::widgets::seen::{Harness, Queryable, User};
 use crate::radar::LayoutKind;
 use crate::scene::Reflector;
 use crate::signal::{Floor, calibrate, simulate_built};
 use eframe::egui::{self, Key, pos2, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 
 struct Panel {
     state: State,

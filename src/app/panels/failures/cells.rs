@@ -96,10 +96,8 @@ mod tests {
         }
         assert_eq!(heading(Column::SquaredError), "Squared error");
         assert_eq!(title(Column::NearestPairBins), "Nearest pair\nbins");
-        assert_eq!(
-            [Column::Set, Column::DetectionAtPrinted, Column::Found, Column::Doubt].map(|c| text(&row, c)),
-            ["scenes", "–", "1", "93.0"]
-        );
+        let columns = [Column::Set, Column::DetectionAtPrinted, Column::Found, Column::Doubt];
+        assert_eq!(columns.map(|c| text(&row, c)), ["scenes", "–", "1", "93.0"]);
         assert_eq!(name(&row), "set scenes, scene 3, live");
     }
 }

@@ -33,7 +33,6 @@ impl View {
     ];
 }
 
-/// The chosen chart, and the points computed for it.
 pub struct ChartsMemory {
     pub view: View,
     x: Column,

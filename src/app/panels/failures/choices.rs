@@ -10,7 +10,6 @@ use crate::radar::counted;
 use crate::scene::generate::Kind;
 use eframe::egui::{self, Ui};
 
-/// The chosen methods and scenes.
 pub struct ChoicesMemory(FailureChoice);
 
 impl Default for ChoicesMemory {
@@ -19,7 +18,6 @@ impl Default for ChoicesMemory {
     }
 }
 
-/// Draws the choices, and the buttons of run and files.
 pub fn show(ui: &mut Ui, input: &Input<'_>, ChoicesMemory(choice): &mut ChoicesMemory, asked: &mut Vec<Command>) {
     choice.methods.retain(|name| input.state.methods.all.iter().any(|m| m.name() == *name));
     if choice.methods.is_empty() {

@@ -56,7 +56,6 @@ pub fn show(ui: &mut Ui, methods: &[&str], memory: &mut FilterMemory) {
     }
 }
 
-/// Writes the error of the expression, if there is one.
 pub fn problem(ui: &mut Ui, memory: &FilterMemory) {
     if let Some(error) = &memory.error {
         ui.add(Label::new(RichText::new(error.to_string()).color(ui.visuals().error_fg_color)).wrap());
@@ -97,9 +96,7 @@ fn suggestions(query: &CompletionQuery<'_>, methods: &[&str]) -> Vec<Suggestion>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
 
     fn field() -> Harness<'static, FilterMemory> {
         let draw = |ui: &mut Ui, memory: &mut FilterMemory| {

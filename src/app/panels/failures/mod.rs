@@ -21,7 +21,6 @@ pub use input::{Input, Now};
 use order::{Boxed, Order, Sort};
 use std::collections::BTreeSet;
 
-/// State of the panel's parts, kept between frames.
 #[derive(Default)]
 pub struct FailuresMemory {
     choices: choices::ChoicesMemory,

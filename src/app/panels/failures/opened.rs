@@ -8,7 +8,6 @@ use crate::evaluate::rows::Row;
 use crate::evaluate::worsen::{WorseningGoal, WorseningMeasure, WorseningSearch};
 use eframe::egui::{Button, Grid, TextEdit, Ui};
 
-/// Settings of the search, and the note for a kept scene.
 #[derive(Default)]
 pub struct OpenedMemory {
     search: WorseningSearch,

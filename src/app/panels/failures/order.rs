@@ -59,8 +59,7 @@ pub struct Order {
 }
 
 impl Order {
-    /// Filters and sorts again if something changed. Without a sorting rows stay in the order in which they came; rows outside a box are not shown. Returns the
-    /// time until the next call, if new rows wait for it.
+    /// Filters and sorts again if something changed; unsorted rows stay in the order in which they came. Returns the time until waiting new rows are due.
     pub fn update(
         &mut self,
         table: &RowTable,

@@ -30,7 +30,6 @@ pub struct Dot {
     pub rows: [usize; 2],
 }
 
-/// Content of a chart.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Points {
     /// The dots of a scatter plot; for a histogram, one dot on the axis for each row.

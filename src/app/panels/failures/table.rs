@@ -23,10 +23,8 @@ pub struct Picture {
     texture: Texture,
 }
 
-/// State of the table, kept between frames.
 #[derive(Default)]
 pub struct TableMemory {
-    /// Pictures of the rows in sight.
     pub pictures: HashMap<(u64, usize), Picture>,
     /// Indices of the rows in sight, from top to bottom.
     pub in_sight: Vec<usize>,

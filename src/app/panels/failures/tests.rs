@@ -1,14 +1,12 @@
 use super::*;
 use crate::app::jobs::{Failures, THUMBNAIL_HEIGHT, THUMBNAIL_WIDTH, Thumbnail, some_row};
 use crate::app::state::{Conditions, FailureChoice, OpenedRow, Purpose};
-use crate::app::widgets::seen::{self, User};
+use crate::app::widgets::seen::{self, Harness, Queryable, User};
 use crate::evaluate::rows::{Column, Row};
 use crate::platform::Instant;
 use crate::reconstruct::{Baseline, CAPON, Reconstructor};
 use crate::scene::generate::Kind;
 use eframe::egui::{Context, Key, Vec2, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
@@ -97,7 +95,6 @@ fn a_box_in_the_scatter_plot_selects_rows() {
     assert_eq!(panel.state().memory.order.shown.len(), 200);
 }
 
-/// Rows with pictures, sorted by a title.
 fn with_pictures(count: u32) -> Harness<'static, Drawn> {
     let mut panel = panel(count);
     let Failures { table, thumbnails, .. } = &panel.state().job;
@@ -142,12 +139,9 @@ fn only_rows_in_sight_are_drawn_and_their_pictures_held() {
 fn an_opened_row_keeps_its_figures_beside_those_of_now() {
     let mut panel = panel(3);
     panel.clicks(&["set 1, scene 2, capon"]);
-    let texts = seen::texts(panel.output());
     let error = format!("{:.1}", panel.state().job.table.rows()[2].squared_error);
-    for said in [error.clone(), format!("SE {error}")] {
-        assert!(texts.iter().any(|t| t.text == said), "{said}: in the table, and beside the live ones");
-    }
-    assert!(texts.iter().any(|t| t.text == "1 found, 2 missed"), "{texts:?}");
+    // In the table, and beside the live ones.
+    seen::assert_reads(panel.output(), &[&error, &format!("SE {error}"), "1 found, 2 missed"]);
 }
 
 /// Every scene by two methods; the second misses objects that have a near neighbour.
@@ -166,11 +160,8 @@ fn two_methods_are_compared_in_a_sentence() {
     panel.clicks(&["A against B"]);
     let texts = seen::texts(panel.output());
     let told = texts.iter().find(|t| t.text.starts_with("SE of live less that of nomp: +0.0")).unwrap();
-    assert!(
-        told.text.contains("by live alone: 24 scenes, by nomp alone: 0 (McNemar p = below 0.0001)"),
-        "{}",
-        told.text
-    );
+    let verdict = "by live alone: 24 scenes, by nomp alone: 0 (McNemar p = below 0.0001)";
+    assert!(told.text.contains(verdict), "{}", told.text);
 }
 
 #[test]

@@ -154,10 +154,8 @@ fn look_of_body(field: Field) -> Quantity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
     use eframe::egui::{Key, Role};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn a_length_has_the_digits_that_a_point_of_the_canvas_is_worth() {

@@ -7,7 +7,6 @@ use crate::lesson::{Lesson, Progress, shipped};
 use crate::radar::counted;
 use eframe::egui::{self, Color32, ProgressBar, RichText, TextEdit, Ui};
 
-/// Width of a bar of progress, points.
 const PROGRESS_BAR_POINTS: f32 = 120.0;
 
 /// Room for "0 of 5 steps", points.

@@ -1,14 +1,10 @@
-//! Tests of the lesson panel: fields of questions, and texts after an answer.
-
 use super::*;
 use crate::app::state::{Arrangement, Before, MapViews, SceneView, Setup, Task, View};
-use crate::app::widgets::seen::{self, User};
+use crate::app::widgets::seen::{self, Harness, Queryable, User};
 use crate::app::widgets::theme;
 use crate::lesson::{Guess, Progress, Stage};
 use crate::radar::Radar;
 use crate::scene::Scene;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
 
 fn run(lesson: &str, step: usize) -> LessonRun {
@@ -140,7 +136,6 @@ fn each_step_starts_at_its_top() {
     assert!(panel.get_by_label_contains("Step ").rect().top() > 0.0);
 }
 
-/// A run in which a step was answered.
 fn answered_run(lesson: &str, step: usize, guess: Guess) -> LessonRun {
     let mut run = run(lesson, step);
     let current = run.current().unwrap();
@@ -152,32 +147,15 @@ fn answered_run(lesson: &str, step: usize, guess: Guess) -> LessonRun {
 
 #[test]
 fn an_answer_stands_beside_the_right_one() {
-    let cases: [(_, _, _, &[&str]); 4] = [
-        (
-            "range-and-bandwidth",
-            1,
-            Guess::Number(0.075),
-            &["Your answer: 0.075 m. Exact: 0.075 m.", "Correct: 0.075 m."],
-        ),
-        ("range-and-bandwidth", 1, Guess::Number(0.15), &["Not quite: it is 0.075 m; you were 100 % off."]),
-        (
-            "range-and-bandwidth",
-            3,
-            Guess::Choice(1),
-            &[
-                "It shrinks to a third",
-                "your answer, wrong",
-                "It stays",
-                "the right answer",
-                "Not quite: the answer is “It stays”.",
-            ],
-        ),
-        (
-            "windows-and-side-lobes",
-            1,
-            Guess::Eta(0.01),
-            &["Your answer: 0.01. The green part of the scale is right.", "Any threshold from"],
-        ),
+    let (bandwidth, windows) = ("range-and-bandwidth", "windows-and-side-lobes");
+    let wrong = ["It shrinks to a third", "your answer, wrong", "It stays", "the right answer"];
+    let threshold = "Your answer: 0.01. The green part of the scale is right.";
+    let cases: [(_, _, _, &[&str]); 5] = [
+        (bandwidth, 1, Guess::Number(0.075), &["Your answer: 0.075 m. Exact: 0.075 m.", "Correct: 0.075 m."]),
+        (bandwidth, 1, Guess::Number(0.15), &["Not quite: it is 0.075 m; you were 100 % off."]),
+        (bandwidth, 3, Guess::Choice(1), &wrong),
+        (bandwidth, 3, Guess::Choice(1), &["Not quite: the answer is “It stays”."]),
+        (windows, 1, Guess::Eta(0.01), &[threshold, "Any threshold from"]),
     ];
     for (lesson, step, guess, told) in cases {
         let panel = harness(Some(answered_run(lesson, step, guess)));

@@ -7,7 +7,6 @@ use crate::evaluate::{Metrics, eta_text};
 /// Figures that the caption is made of.
 pub struct Caption<'a> {
     pub kind: MapKind,
-    /// Thresholds, detector and units.
     pub view: &'a View,
     pub method: Option<&'static str>,
     /// Text on a map of an earlier scene or of another method, with a space behind it.

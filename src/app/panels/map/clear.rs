@@ -49,10 +49,7 @@ mod tests {
         assert!(!patch.expand(BLOB_DISTANCE_POINTS).contains(small.center()));
         let (first, count) = clear_patch(RECT, &[RECT.center()], &lines);
         let (other, again) = clear_patch(RECT, &[RECT.center(), first.center()], &lines);
-        assert!(
-            [count, again] == [7, 7] && !first.intersects(other),
-            "what stands in one corner sends them to another"
-        );
+        assert!([count, again] == [7, 7] && !first.intersects(other), "a taken corner sends them to another");
     }
 
     #[test]

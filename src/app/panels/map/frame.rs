@@ -18,7 +18,6 @@ pub const BUTTON_SIZE_POINTS: Vec2 = vec2(24.0, 20.0);
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
     pub rect: Rect,
-    /// The visible part of the map.
     pub view: MapView,
     pub radar: &'a Radar,
     pub projection: Projection,
@@ -27,7 +26,6 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// Frame of a part of a map.
     pub fn of(rect: Rect, view: MapView, radar: &'a Radar, projection: Projection, centre_x_metres: f64) -> Self {
         Frame { rect, view, radar, projection, centre_x_metres }
     }
@@ -53,7 +51,6 @@ impl<'a> Frame<'a> {
         self.at(Polar { range_metres, cos_theta: self.radar.cos_of_column(cell.column) })
     }
 
-    /// Place on screen of a cursor.
     pub fn cursor(&self, cursor: &Cursor) -> Pos2 {
         let cos_theta = cursor.cos_theta * self.radar.squint();
         self.at(Polar { range_metres: cursor.range_metres, cos_theta })
@@ -129,7 +126,6 @@ fn fraction(radar: &Radar, projection: Projection, polar: Polar) -> Pos2 {
     }
 }
 
-/// Values of a map's cells.
 pub struct Cells<'a> {
     /// Lambda, `[range bins, columns]`.
     pub map: &'a RangeAngleMap,
@@ -140,8 +136,7 @@ pub struct Cells<'a> {
 }
 
 impl Cells<'_> {
-    /// Texts of a cell: Lambda, and decibels relative to the peak without their unit where the scale is known, both with a sign for a difference. `None`
-    /// outside the map.
+    /// Texts of a cell, with a sign for a difference: Lambda, and decibels relative to the peak where the scale is known. `None` outside the map.
     pub fn texts(&self, bin: usize, column: usize) -> Option<(String, Option<String>)> {
         let lambda = *self.map.lambda.get((bin, column))?;
         let range_db = self.scale.map(|s| s.decibels());
@@ -187,25 +182,18 @@ mod tests {
         let radar = Radar::default();
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(1024.0, 512.0));
         let reflector = Reflector { x_metres: -0.832 * 20.0, y_metres: 0.5548 * 20.0, reflectivity: 1.0 };
-        let frame =
-            |projection, centre_x_metres| Frame::of(rect, MapView::default(), &radar, projection, centre_x_metres);
+        let frame = |projection, centre_x| Frame::of(rect, MapView::default(), &radar, projection, centre_x);
         let target = frame(Projection::RangeAngle, 0.0);
         let cos = |at: Pos2| radar.cos_of_column(f64::from(at.x) - 0.5);
         assert!((cos(target.blob(&reflector)) + 0.81).abs() < 2e-3, "the blob");
         assert!((cos(target.true_direction(&reflector)) + 0.832).abs() < 2e-3, "the direction");
         let input = frame(Projection::RangeAngle, radar.end_centre_metres(End::First));
-        assert!(
-            cos(input.blob(&reflector)) > cos(target.blob(&reflector)),
-            "the left end sees it less far to the left"
-        );
+        assert!(cos(input.blob(&reflector)) > cos(target.blob(&reflector)), "less far to the left of the left end");
         for projection in [Projection::RangeAngle, Projection::Cartesian] {
             let frame = frame(projection, 0.0);
             let cursor = Cursor::at_place(&radar, Place::new(reflector.x_metres, reflector.y_metres));
             let blob = frame.blob(&reflector);
-            assert!(
-                (frame.cursor(&cursor) - blob).length() < 1e-2,
-                "the pointer over it in the scene is over its blob"
-            );
+            assert!((frame.cursor(&cursor) - blob).length() < 1e-2, "a pointer over it in the scene is over its blob");
             let polar = radar.blob_of(0.0, reflector.x_metres, reflector.y_metres);
             let of_cell = frame.at_fraction(fraction(&radar, Projection::RangeAngle, polar));
             assert!((of_cell - blob).length() < 1e-2, "{of_cell:?}, not {blob:?}");

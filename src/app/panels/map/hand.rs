@@ -11,7 +11,6 @@ use eframe::egui::{CursorIcon, PointerButton, Pos2, Response, Ui};
 /// Most reflectors among which the one under a resting pointer is looked for in every frame.
 const MAX_HOVERED_REFLECTORS: usize = 2000;
 
-/// State of the pointer, kept between frames.
 #[derive(Default)]
 pub struct HandMemory {
     /// The map in which a blob is dragged, the blob, and the place on the map where the drag began.
@@ -71,13 +70,11 @@ mod tests {
     use super::super::{Input, show};
     use super::*;
     use crate::app::state::{MapView, Projection, State};
-    use crate::app::widgets::seen::User;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
     use crate::interact::Snap;
     use crate::radar::Radar;
     use crate::scene::Reflector;
     use eframe::egui::{Modifiers, Rect, Vec2, vec2};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     struct Desk {
         state: State,
@@ -123,15 +120,10 @@ mod tests {
 
     const POINTS: [(f64, f64); 2] = [(-8.0, 18.0), (9.0, 25.0)];
 
-    /// Place on screen of a point's blob.
-    fn blob_at(
-        map: &Harness<'static, Desk>,
-        kind: MapKind,
-        projection: Projection,
-        [x_metres, y_metres]: [f64; 2],
-    ) -> Pos2 {
+    fn blob_at(map: &Harness<'static, Desk>, kind: MapKind, projection: Projection, place: [f64; 2]) -> Pos2 {
         let rect = map.get_by_label(&format!("{} map", kind.title())).rect();
-        frame(&Radar::default(), kind, projection, rect).blob(&Reflector { x_metres, y_metres, reflectivity: 1.0 })
+        let reflector = Reflector { x_metres: place[0], y_metres: place[1], reflectivity: 1.0 };
+        frame(&Radar::default(), kind, projection, rect).blob(&reflector)
     }
 
     /// The map after a drag of the second point, and the expected place of its blob.

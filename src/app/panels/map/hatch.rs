@@ -13,7 +13,6 @@ const MIN_CELL_POINTS: f32 = 4.0;
 /// Margin around the drawn cell of a ghost, points: a column of a whole map is narrower than a pixel.
 const GHOST_MARGIN_POINTS: f32 = 0.75;
 
-/// Distance between two lines of a hatch, points.
 const LINE_DISTANCE_POINTS: f32 = 7.0;
 
 /// Maps and thresholds that separate hits, misses and false alarms.
@@ -101,9 +100,9 @@ impl ToldApart<'_> {
 mod tests {
     use super::*;
     use crate::app::state::{MapView, Projection};
+    use crate::app::widgets::seen::Harness;
     use crate::radar::Radar;
     use eframe::egui::Ui;
-    use egui_kittest::Harness;
     use ndarray::Array2;
 
     /// Lines drawn over a map whose upper half is missed, seen as a whole or zoomed in.
@@ -115,11 +114,8 @@ mod tests {
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 200.0));
         let harness = Harness::builder().with_size(rect.size()).build_ui(|ui: &mut Ui| {
             let frame = Frame::of(rect, view, &radar, Projection::RangeAngle, 0.0);
-            ToldApart { output: &output, target: &target, etas: [0.5, 0.9], ghosts: &[] }.draw(
-                ui.painter(),
-                frame,
-                true,
-            );
+            let told_apart = ToldApart { output: &output, target: &target, etas: [0.5, 0.9], ghosts: &[] };
+            told_apart.draw(ui.painter(), frame, true);
         });
         harness.output().shapes.iter().filter(|s| matches!(s.shape, Shape::LineSegment { .. })).count()
     }

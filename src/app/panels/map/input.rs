@@ -13,7 +13,6 @@ use eframe::egui::TextureId;
 pub struct Input<'a> {
     pub kind: MapKind,
     pub state: &'a State,
-    /// Texture of the picture, if there is one.
     pub texture: Option<TextureId>,
     /// Projection of the picture; for a moment after a change it is still the former one, and no picture is drawn.
     pub pictured: Projection,

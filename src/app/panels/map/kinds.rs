@@ -14,7 +14,6 @@ use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Vec2, vec2};
 /// Largest distance of the pointer from a mark to show its tooltip, points.
 const MARK_REACH_POINTS: f32 = 10.0;
 
-/// Most marks that are drawn.
 const MAX_KIND_MARKS: usize = 400;
 
 /// Verdicts on all objects that the map should show.
@@ -219,14 +218,9 @@ pub mod tests {
 
     /// Objects with one of each verdict, and a ghost.
     pub fn judged() -> JudgedOutput {
+        use ObjectVerdict::{Found, Hidden, Merged, Missed, WrongTooth};
         let scene = Scene::of_points([(-8.0, 12.0), (-4.0, 16.0), (0.0, 20.0), (3.0, 24.0), (6.0, 28.0)]);
-        let objects = [
-            ObjectVerdict::Found,
-            ObjectVerdict::Missed,
-            ObjectVerdict::Merged { with: 3 },
-            ObjectVerdict::WrongTooth { columns: -3 },
-            ObjectVerdict::Hidden,
-        ];
+        let objects = [Found, Missed, Merged { with: 3 }, WrongTooth { columns: -3 }, Hidden];
         JudgedOutput::made_up(scene, &objects, &[[100, 300]])
     }
 

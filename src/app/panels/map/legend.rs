@@ -5,7 +5,6 @@ use crate::app::widgets::{axes, theme};
 use crate::picture::CellVerdict;
 use eframe::egui::{self, Align2, Color32, Painter, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
-/// Height of a row, points.
 const ROW_HEIGHT_POINTS: f32 = 18.0;
 
 /// Most rows: more would leave too little of the map.

@@ -95,7 +95,6 @@ pub fn show(ui: &mut Ui, input: Input<'_>, view: &mut MapView, memory: &mut Hand
     asked
 }
 
-/// Draws the context menu: overlays, views, pictures.
 fn menu(ui: &mut Ui, state: &State, kind: MapKind, asked: &mut Vec<Command>) {
     ui.menu_button("Overlays", |ui| {
         ViewCommand::OVERLAYS.into_iter().for_each(|command| item(ui, state, command, asked));

@@ -10,10 +10,8 @@ use crate::picture::finer;
 use crate::scene::{Object, Reflector, Scene};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, Vec2, pos2, vec2};
 
-/// Most reflectors that are marked.
 pub const MAX_MARKED_REFLECTORS: usize = 4000;
 
-/// Radius of a ring, points.
 const RING_RADIUS_POINTS: f32 = 6.0;
 
 /// Shortest beam that is drawn, points, and half the height of the marks at its ends.
@@ -43,8 +41,7 @@ pub fn line(painter: &Painter, frame: Frame<'_>, map: &RangeAngleMap, ink: Color
     painter.add(Shape::line(cells.iter().enumerate().map(point).collect(), Stroke::new(1.6, ink)));
 }
 
-/// Draws the beam width of the map's elements as a bar in a corner: echoes nearer to each other are not resolved. Beams too narrow to see or
-/// too wide for the map have none.
+/// Draws the beam width of the map's elements, within which echoes are not resolved, as a bar in a corner; none where it is too narrow or too wide.
 pub fn beam(painter: &Painter, frame: Frame<'_>, columns: f64) {
     let part = columns as f32 / frame.radar.elements as f32;
     let length = part * frame.rect.width() / (frame.view.high.x - frame.view.low.x);
@@ -130,7 +127,6 @@ pub fn selected(painter: &Painter, frame: Frame<'_>, scene: &Scene, selection: &
     }
 }
 
-/// Points of a line's curve.
 const CURVE_POINTS: usize = 96;
 
 /// Draws the straight line between two reflectors as the map shows it, with a dot at each end; in pieces where it wraps around the end of the ranges.
@@ -208,12 +204,11 @@ fn value_text(cells: &Cells<'_>, units: Units, bin: usize, column: usize) -> Opt
 mod tests {
     use super::*;
     use crate::app::state::MapView;
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, Harness};
     use crate::maps::{LambdaScale, RangeAngleMap};
     use crate::radar::Radar;
     use crate::scene::Line;
     use eframe::egui::{FullOutput, Rect};
-    use egui_kittest::Harness;
     use ndarray::array;
 
     #[test]
@@ -236,7 +231,6 @@ mod tests {
         assert_eq!(told, ["0.0 dB  (Λ 1.000)", "≤ −200 dB  (Λ 0.100)"]);
     }
 
-    /// Five blobs this far apart.
     fn five(step: f32) -> Vec<Pos2> {
         (0..5).map(|i| Pos2::new(step * i as f32, 50.0)).collect()
     }
@@ -280,11 +274,8 @@ mod tests {
         let told = |drawn: FullOutput| seen::texts(&drawn).into_iter().find(|t| t.text.starts_with("stands at"));
         assert!(told(wall(false)).is_none());
         let told = told(wall(true)).unwrap();
-        assert!(
-            told.text.starts_with("stands at −56.3° · cos θ −0.832\nseen at −54.1° · cos θ −0.81"),
-            "{}",
-            told.text
-        );
+        let directions = "stands at −56.3° · cos θ −0.832\nseen at −54.1° · cos θ −0.81";
+        assert!(told.text.starts_with(directions), "{}", told.text);
     }
 
     #[test]

@@ -31,8 +31,7 @@ pub fn is_wide(area: Rect) -> bool {
     area.width() > 200.0
 }
 
-/// Zooms by wheel, pinch and keys, pans by dragging and by arrow keys (where these are `free`, without Ctrl), and shows the whole map
-/// after a double click.
+/// Zooms by wheel, pinch and keys, pans by dragging and by arrow keys (where these are `free`, without Ctrl); a double click shows the whole map.
 pub fn navigate(ui: &Ui, rect: Rect, response: &Response, view: &mut MapView, pans: bool, free: bool) {
     if let Some(pos) = response.hover_pos() {
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
@@ -84,7 +83,6 @@ const MAX_COLUMN_OF_SLACK_COS: f64 = 0.05;
 /// Degrees between marks, the finest first.
 const DEGREE_STEPS: [f64; 7] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0];
 
-/// Gap between the labels of two directions, points.
 const DIRECTION_GAP_POINTS: f32 = 8.0;
 
 /// Ticks at round angles from straight ahead, for an axis of cos θ from `low` to `high` over `length` points: the finest step whose labels

@@ -38,7 +38,6 @@ mod tests {
 
     const END: f32 = 0.2;
 
-    /// Ends and title of the bar.
     fn scale(kind: MapKind, units: Units, absolute: bool) -> (f64, f64, &'static str) {
         let mut state = State::new(Vec::new());
         (state.settings.units, state.settings.difference) = (units, DifferenceView { absolute, whole: false });

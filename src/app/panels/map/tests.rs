@@ -1,5 +1,3 @@
-//! Tests of drawn maps: texts in the place of a picture, and labels that stay inside.
-
 impl<'a> Input<'a> {
     /// A map without a picture.
     pub fn bare(kind: MapKind, state: &'a State) -> Input<'a> {
@@ -26,13 +24,11 @@ impl<'a> Input<'a> {
 use super::*;
 use crate::app::jobs::JudgedOutput;
 use crate::app::state::{Cursor, Projection, State, Units};
-use crate::app::widgets::seen::{self, User};
+use crate::app::widgets::seen::{self, Harness, Queryable, User};
 use crate::maps::{LambdaScale, RangeAngleMap};
 use crate::radar::Carrier;
 use crate::scene::Scene;
 use eframe::egui::{Shape, TextureId};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use ndarray::Array2;
 use std::sync::LazyLock;
 
@@ -132,7 +128,6 @@ fn every_map_has_the_same_margins() {
     }
 }
 
-/// The state in which objects are marked by the verdicts on them.
 fn marking() -> State {
     let mut state = state();
     state.settings.show_kinds = true;
@@ -174,7 +169,6 @@ fn a_map_of_an_earlier_scene_says_so_where_it_is_there() {
     }
 }
 
-/// A map with marks for the verdicts on objects.
 fn judged(size: [f32; 2]) -> Harness<'static> {
     let mut map = drawn(size, marking(), |input| {
         let kinds = Some(Kinds { judged: &JUDGED_OUTPUT, current: true });

@@ -34,7 +34,6 @@ const COMB_COLOUR: Color32 = Color32::from_rgb(255, 140, 220);
 const BOUND_COLOUR: Color32 = Color32::from_rgb(150, 255, 160);
 const ALIAS_COLOUR: Color32 = Color32::from_rgb(205, 190, 255);
 
-/// Length of ticks, points.
 const TICK_LENGTH_POINTS: f32 = 7.0;
 /// Least size of the drawn ellipse, points.
 const MIN_ELLIPSE_POINTS: f32 = 9.0;
@@ -106,7 +105,6 @@ impl Theory<'_> {
         Some((outline(times), times))
     }
 
-    /// The lines of text with their colours.
     fn lines(&self, frame: Frame<'_>) -> Vec<(Color32, String)> {
         let radar = frame.radar;
         let Overlay { place, blob, streak, .. } = self.overlay;
@@ -161,8 +159,7 @@ impl Theory<'_> {
         format!("same cell: {} m{wrapped}; {folds}", ranges.join(", "))
     }
 
-    /// Writes the numbers in a corner, clear of the blob and, where that leaves room for some, of the `taken` places. Under the
-    /// `pointer` only the name stays, so that the map is in sight.
+    /// Writes the numbers in a corner, clear of the blob and, where there is room, of the `taken` places. Under the `pointer` only the name stays.
     pub fn tell(&self, painter: &Painter, frame: Frame<'_>, pointer: Option<Pos2>, taken: &[Pos2]) {
         let rect = frame.rect;
         if rect.width() < MIN_NUMBERS_MAP_POINTS.x || rect.height() < MIN_NUMBERS_MAP_POINTS.y {
@@ -250,8 +247,6 @@ mod tests {
         (reflector, Overlay::of(radar, &reflector, Aperture::Full).unwrap())
     }
 
-    /// On screen, the box of the half-power widths holds the cells of the simulated map that are above half power in the peak's row and
-    /// column, and no others.
     #[test]
     fn the_box_is_drawn_around_what_the_map_has_above_half_power() {
         for (x_metres, y_metres) in [(0.6, 2.6), (-2.0, 3.0), (1.0, 9.0)] {
@@ -290,17 +285,10 @@ mod tests {
         let text: Vec<String> = theory(&overlay, reflector).lines(frame(&radar)).into_iter().map(|(_, t)| t).collect();
         let all = text.join("\n");
         // The comb of 1.04 columns at true directions is squinted with everything else.
-        for part in [
-            "Theory of middle of line 1, as a point",
-            "c/2B 7.5 cm",
-            "at −20 dB",
-            "every 1.01 columns",
-            "first side lobe −84.4 dB",
-            "58.4",
-            "no grating lobe (every 2.05",
-            "at 20 dB, drawn × ",
-        ] {
-            assert!(all.contains(part), "{part} in:\n{all}");
+        let lobes = ["c/2B 7.5 cm", "at −20 dB", "every 1.01 columns", "first side lobe −84.4 dB", "58.4"];
+        let others = ["Theory of middle of line 1, as a point", "no grating lobe (every 2.05", "at 20 dB, drawn × "];
+        for part in lobes.iter().chain(&others) {
+            assert!(all.contains(*part), "{part} in:\n{all}");
         }
         let radar = Radar { carrier: crate::radar::Carrier::TwoWay, ..Radar::default() };
         let (reflector, overlay) = of(&radar, 10.0, 17.32);

@@ -160,8 +160,7 @@ pub fn caption_of(state: &State, jobs: &Jobs, kind: MapKind) -> Vec<String> {
     })
 }
 
-/// Figures of a method's output against the target. There are none while a lesson's question is open, and none for a recording, whose target
-/// is the recording itself.
+/// Figures of a method's output against the target; none while a lesson's question is open, and none for a recording, which is its own target.
 pub fn scores(state: &State, jobs: &Jobs, slot: MethodSlot) -> Option<Scores> {
     let is_shown = !state.is_predicting() && !state.is_recorded();
     jobs.pipeline.scores_in(slot).filter(|_| is_shown)

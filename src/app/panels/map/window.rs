@@ -15,7 +15,6 @@ const TEXT_OFFSET_POINTS: f32 = 28.0;
 /// Least width of a piece beyond an edge, as a part of the map's width; less is a rounding error.
 const MIN_PIECE_RATIO: f32 = 1e-4;
 
-/// Draws the window around the pointer's cell.
 pub fn draw(painter: &Painter, frame: Frame<'_>, cursor: &Cursor, cells: Option<&Cells<'_>>, cfar: &Cfar) {
     let Some((bin, column)) = cursor.cell(frame.radar) else { return };
     let map = [frame.radar.samples, frame.radar.elements];
@@ -79,12 +78,11 @@ fn outlines(frame: Frame<'_>, [bin, column]: [usize; 2], sides: [usize; 2]) -> V
 mod tests {
     use super::*;
     use crate::app::state::{MapView, Projection};
-    use crate::app::widgets::seen;
+    use crate::app::widgets::seen::{self, Harness};
     use crate::maps::{LambdaScale, RangeAngleMap};
     use crate::radar::{Convention, Radar};
     use crate::theory::MapPlace;
     use eframe::egui::{Rect, vec2};
-    use egui_kittest::Harness;
 
     #[test]
     fn the_window_is_around_its_cell_in_either_convention() {

@@ -8,7 +8,6 @@ use crate::scene::Object;
 use eframe::egui::{Align, CollapsingHeader, Label, Sense, Stroke, Ui, vec2};
 use egui_plot::{HLine, LineStyle};
 
-/// The group's heading.
 pub(super) const HEADING: &str = "Link budget";
 
 /// Height and largest width of the chart, points.
@@ -53,7 +52,6 @@ const CHIRP: Quantity = Quantity::metres(
 )
 .with(" µs", [0.1, 1e5], 0.1, 2);
 
-/// Draws the group of the link budget.
 pub(super) fn show(ui: &mut Ui, table: Table, radar: &mut Radar, selected: Option<&(String, Object)>) {
     let is_sought = table.sought == Some(HEADING);
     let group = CollapsingHeader::new(HEADING).id_salt(HEADING).open(is_sought.then_some(true));

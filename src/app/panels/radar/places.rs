@@ -75,9 +75,7 @@ fn places(text: &str) -> Result<Vec<f64>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::User;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{Harness, Queryable, User};
 
     #[test]
     fn a_list_is_read_as_it_is_written() {

@@ -9,10 +9,8 @@ use eframe::egui::{
     vec2,
 };
 
-/// Height of the drawing, points.
 const STRIP_HEIGHT_POINTS: f32 = 54.0;
 
-/// Room for the names of the rows, points.
 const NAMES_WIDTH_POINTS: f32 = 84.0;
 
 /// Room beside the antennas for dragging, as a part of the line on which they stand.
@@ -137,8 +135,7 @@ impl Drawn {
     }
 }
 
-/// Step of an antenna along the line, metres: two spacings, which move its elements by one. The spacing is that of the filled array, where
-/// the elements stand on its places.
+/// Step of an antenna along the line, metres: two spacings of the filled array, which move its elements by one.
 fn step_metres(radar: &Radar) -> f64 {
     let times = radar.element_spacing_metres / radar.filled_spacing_metres();
     let on_filled = times > 0.5 && (times - times.round()).abs() < 1e-6 * times;
@@ -252,14 +249,14 @@ fn by_keys(ui: &Ui, response: &Response, drawn: &Drawn, step_metres: f64) -> Opt
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::widgets::seen::{self, User};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::app::widgets::seen::{self, Harness, Queryable, User};
 
     fn panel() -> Harness<'static, Radar> {
         let radar = Radar { elements: 6, ..Radar::default() }.of_pairs(3, 4).unwrap();
         let draw = |ui: &mut Ui, radar: &mut Radar| show(ui, radar, true);
-        Harness::builder().with_size([600.0, 80.0]).build_ui_state(draw, radar)
+        let mut panel = Harness::builder().with_size([600.0, 80.0]).build_ui_state(draw, radar);
+        panel.run();
+        panel
     }
 
     fn at(panel: &Harness<'_, Radar>, (row, number): One) -> Pos2 {
@@ -268,60 +265,55 @@ mod tests {
         drawn.at(row, drawn.x_metres[row][number], 0.0)
     }
 
-    #[test]
-    fn a_transmitter_that_is_dragged_leaves_a_gap() {
+    /// The panel while one antenna is held, the radar before, and the place of the antenna.
+    fn held(one: One) -> (Harness<'static, Radar>, Radar, Pos2) {
         let mut panel = panel();
+        let (before, at) = (panel.state().clone(), at(&panel, one));
+        panel.drag_at(at);
         panel.run();
-        let before = panel.state().clone();
-        let last = at(&panel, (0, 2));
-        panel.drag_at(last);
+        (panel, before, at)
+    }
+
+    fn move_to(panel: &mut Harness<'_, Radar>, at: Pos2) {
+        panel.hover_at(at);
         panel.run();
-        panel.hover_at(last + vec2(30.0, 0.0));
+    }
+
+    fn assert_it_goes_back(mut panel: Harness<'_, Radar>, at: Pos2, before: &Radar) {
+        move_to(&mut panel, at);
+        panel.drop_at(at);
         panel.run();
-        let steps = (panel.state().antennas.as_ref().unwrap().gaps(), panel.state().elements);
-        assert!(steps.0 > 0 && steps.1 > 12, "{steps:?}");
-        panel.hover_at(last - vec2(60.0, 0.0));
-        panel.run();
-        assert!(panel.state().end_elements < before.end_elements, "fewer elements have shorter ends");
-        panel.hover_at(last);
-        panel.run();
-        panel.drop_at(last);
-        panel.run();
-        assert_eq!(*panel.state(), before, "it goes back where it came from");
+        assert_eq!(panel.state(), before);
         seen::assert_readable(panel.output());
     }
 
     #[test]
+    fn a_transmitter_that_is_dragged_leaves_a_gap() {
+        let (mut panel, before, last) = held((0, 2));
+        move_to(&mut panel, last + vec2(30.0, 0.0));
+        let steps = (panel.state().antennas.as_ref().unwrap().gaps(), panel.state().elements);
+        assert!(steps.0 > 0 && steps.1 > 12, "{steps:?}");
+        move_to(&mut panel, last - vec2(60.0, 0.0));
+        assert!(panel.state().end_elements < before.end_elements, "fewer elements have shorter ends");
+        assert_it_goes_back(panel, last, &before);
+    }
+
+    #[test]
     fn a_receiver_that_is_dragged_up_stands_nearer_to_the_scene() {
-        let mut panel = panel();
-        panel.run();
-        let before = panel.state().clone();
-        let third = at(&panel, (1, 2));
-        panel.drag_at(third);
-        panel.run();
-        panel.hover_at(third + vec2(0.0, FORWARD_STEP_POINTS));
-        panel.run();
+        let (mut panel, before, third) = held((1, 2));
+        move_to(&mut panel, third + vec2(0.0, FORWARD_STEP_POINTS));
         assert_eq!(*panel.state(), before, "a hand that trembles bends nothing");
-        panel.hover_at(third - vec2(0.0, 4.0 * FORWARD_STEP_POINTS));
-        panel.run();
+        move_to(&mut panel, third - vec2(0.0, 4.0 * FORWARD_STEP_POINTS));
         let antennas = panel.state().antennas.clone().unwrap();
         let expected = [0.0, 0.0, 3.0 * FORWARD_STEP_METRES, 0.0];
-        assert_eq!(
-            (antennas.receiver_y_metres(), antennas.receiver_x_metres()),
-            (&expected[..], before.antennas.as_ref().unwrap().receiver_x_metres())
-        );
-        panel.hover_at(third);
-        panel.run();
-        panel.drop_at(third);
-        panel.run();
-        assert_eq!(*panel.state(), before, "it goes back where it came from");
-        seen::assert_readable(panel.output());
+        let x_metres = before.antennas.as_ref().unwrap().receiver_x_metres();
+        assert_eq!((antennas.receiver_y_metres(), antennas.receiver_x_metres()), (&expected[..], x_metres));
+        assert_it_goes_back(panel, third, &before);
     }
 
     #[test]
     fn shift_with_an_arrow_moves_the_chosen_antenna() {
         let mut panel = panel();
-        panel.run();
         panel.get_by_label("Antennas").focus();
         panel.run();
         for _ in 0..2 {

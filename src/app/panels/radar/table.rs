@@ -3,7 +3,6 @@
 use crate::app::widgets::Quantity;
 use eframe::egui::{Align, Color32, Grid, Id, Label, Response, TextStyle, Ui};
 
-/// Gap between two columns, points.
 const COLUMN_GAP_POINTS: f32 = 12.0;
 
 /// Width of the widest value, two names of windows beside each other, points.

@@ -1,14 +1,12 @@
 use super::*;
 use crate::app::state::Panel;
 use crate::app::state::lesson_focus::control_of;
-use crate::app::widgets::seen::{self, User};
+use crate::app::widgets::seen::{self, Harness, Queryable, User};
 use crate::lesson::shipped;
 use crate::recording::Recording;
 use crate::scene::Scene;
 use crate::signal::BeatSignal;
 use eframe::egui;
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 
 type Drawn = (State, Vec<Command>);
 
@@ -46,14 +44,9 @@ fn every_consequence_can_be_read_in_a_small_window() {
     for width in PANEL_WIDTHS_POINTS.into_iter().chain([480.0, 600.0]) {
         let panel = panel_of([width, 900.0], State::of(Radar::default(), Scene::default()));
         seen::assert_readable(panel.output());
-        for label in [
-            "range bin 7.49 cm",
-            "one phase cycle per wavelength of range (the thesis' convention)",
-            "maximum range",
-            "far field",
-            "first grating lobe",
-            "from side to side",
-        ] {
+        let convention = "one phase cycle per wavelength of range (the thesis' convention)";
+        let lengths = ["range bin 7.49 cm", "maximum range", "far field", "first grating lobe", "from side to side"];
+        for label in lengths.into_iter().chain([convention]) {
             let text = panel.get_by_label_contains(label).rect();
             let lines = text.height() / panel.get_by_label("power").rect().height();
             assert!(text.right() <= width && lines < 4.5, "{label} at {width}: {text}");
@@ -136,10 +129,8 @@ fn a_measured_radar_stays_as_it_is() {
     // Ends and window are no part of a measurement.
     measured.enters("elements of an end", "20");
     measured.clicks(&["hamming"]);
-    assert_eq!(
-        (measured.state().0.radar().end_elements, measured.state().0.radar().window),
-        (20, WindowFunction::Hamming)
-    );
+    let radar = measured.state().0.radar();
+    assert_eq!((radar.end_elements, radar.window), (20, WindowFunction::Hamming));
 }
 
 #[test]
@@ -179,8 +170,8 @@ fn a_snapshot_has_no_ranges_and_no_bandwidth() {
     assert!(measured.query_by_label_contains("2000").is_none());
 }
 
-/// The heading of the group.
 const BUDGET: &str = "Link budget";
+const USE: &str = "Use a link budget";
 
 fn with_budget(size: [f32; 2]) -> Harness<'static, Drawn> {
     let mut state = State::of(Radar::default(), Scene::of_points([(0.0, 10.0)]));
@@ -188,10 +179,6 @@ fn with_budget(size: [f32; 2]) -> Harness<'static, Drawn> {
     panel_of(size, state)
 }
 
-/// Label of the box that switches a link budget on or off.
-const USE: &str = "Use a link budget";
-
-/// The panel of a radar with a link budget.
 fn with_budget_in_use(size: [f32; 2]) -> Harness<'static, Drawn> {
     let mut panel = with_budget(size);
     panel.clicks(&[BUDGET, USE]);

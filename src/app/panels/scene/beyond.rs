@@ -26,8 +26,7 @@ struct Beyond<'a> {
     is_whole: bool,
 }
 
-/// Draws a sign beside every object beyond the maximum range, or at the edge of the canvas where the object is out of sight. Returns a
-/// sentence on these objects.
+/// Draws a sign for every object beyond the maximum range. Returns a sentence on these objects.
 pub fn warn(ui: &Ui, painter: &Painter, canvas: Canvas<'_>, scene: &Scene) -> Option<String> {
     if canvas.radar.samples == 1 {
         // A snapshot has no ranges.
@@ -86,8 +85,7 @@ fn sentence(radar: &Radar, beyond: &[Beyond<'_>]) -> Option<String> {
     })
 }
 
-/// Draws a triangle with an exclamation mark beside the farthest reflector, or at the edge of the canvas with an arrow outwards where that is
-/// out of sight. Returns the triangle's place.
+/// Draws a triangle beside the farthest reflector; where that is out of sight, at the edge of the canvas with an arrow outwards. Returns its place.
 fn sign(painter: &Painter, canvas: Canvas<'_>, one: &Beyond<'_>, ink: Color32) -> Pos2 {
     let (target, inner) = (canvas.at(one.farthest), canvas.rect.shrink(SIGN_INSET_POINTS));
     let in_sight = inner.contains(target);
@@ -116,7 +114,6 @@ fn on_edge(inner: Rect, target: Pos2) -> Pos2 {
 /// Most objects whose mirror images are drawn.
 const MAX_OBJECTS_BEHIND: usize = 100;
 
-/// Radius of a mirror image, points.
 const MIRROR_RADIUS_POINTS: f32 = 4.5;
 
 /// Draws the mirror images of objects behind the array. Returns a sentence on them, if there are any.

@@ -73,8 +73,7 @@ pub fn shadows(
     }
 }
 
-/// The shadow of a shape for a viewer at `from`, out to `far_metres` from there: its outermost corners on both sides, and the places behind
-/// them. `None` from within.
+/// The shadow of a shape for a viewer at `from`: its outermost corners on both sides, and the places behind them at `far_metres`. `None` from within.
 fn behind(from: [f64; 2], shape: &Shape, far_metres: f64) -> Option<[[f64; 2]; 4]> {
     let (centre, radius) = shape.around();
     let to = [centre[0] - from[0], centre[1] - from[1]];

@@ -17,14 +17,12 @@ const MAX_DRAWN_REFLECTORS: usize = 400;
 /// Width of the marks of both ends beside the middle of the array, points.
 const END_MARK_WIDTH_POINTS: f32 = 22.0;
 
-/// Least gap between the labels of two rings, points.
 const LABEL_GAP_POINTS: f32 = 5.0;
 
 /// Rectangle of the canvas, and the part of the scene that it shows.
 #[derive(Clone, Copy)]
 pub struct Canvas<'a> {
     pub rect: Rect,
-    /// The visible part of the scene.
     pub view: SceneView,
     pub radar: &'a Radar,
     /// Largest range that is drawn.
@@ -154,7 +152,6 @@ pub struct Look {
     pub hovered: bool,
 }
 
-/// Draws an object: selected, hovered or neither.
 pub fn object(painter: &Painter, canvas: Canvas<'_>, object: &Object, look: Look) {
     let (Canvas { view, inks, .. }, Look { selected, hovered }) = (canvas, look);
     let colour = if selected { inks.selected } else { inks.reflector };
@@ -269,7 +266,6 @@ fn turning_arrow(painter: &Painter, at: Pos2, stroke: Stroke) {
     }
 }
 
-/// Draws the reflectors that the method found.
 pub fn found(painter: &Painter, canvas: Canvas<'_>, found: &[Reflector]) {
     let stroke = Stroke::new(1.5, canvas.inks.found);
     for r in found.iter().take(2000) {
@@ -299,7 +295,6 @@ pub fn cursor(painter: &Painter, canvas: Canvas<'_>, cursor: &Cursor) {
     painter.circle_stroke(at, 6.0, stroke);
 }
 
-/// Draws the box that is dragged to select objects.
 pub fn selection_box(painter: &Painter, canvas: Canvas<'_>, corner: Place, pointer: Pos2) {
     let colour = canvas.inks.selected;
     let rect = Rect::from_two_pos(canvas.at(corner), pointer);
@@ -336,7 +331,6 @@ fn length_text(metres: f64) -> String {
 /// Gap between the arrow and the places at its ends, points.
 const ARROW_GAP_POINTS: f32 = 12.0;
 
-/// Length of an arrow's head, points.
 const ARROW_HEAD_POINTS: f32 = 11.0;
 
 /// Distance from the edge of the canvas that the head of an object's arrow keeps, points.
@@ -392,9 +386,6 @@ mod tests {
             assert!(matches!(digits, Some('1' | '2' | '5')), "{text}");
             assert!(text.chars().filter(|c| ('1'..='9').contains(c)).count() == 1 && text.len() < 9, "{text}");
         }
-        assert_eq!(
-            [length_text(10.0), length_text(0.5), length_text(0.002), length_text(2000.0)],
-            ["10 m", "50 cm", "2 mm", "2 km"]
-        );
+        assert_eq!([10.0, 0.5, 0.002, 2000.0].map(length_text), ["10 m", "50 cm", "2 mm", "2 km"]);
     }
 }

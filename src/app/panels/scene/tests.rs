@@ -1,10 +1,8 @@
 use super::*;
-use crate::app::widgets::seen::{self, User};
+use crate::app::widgets::seen::{self, Harness, Queryable, User};
 use crate::interact::grips;
 use crate::radar::Radar;
 use crate::scene::{Block, GaussianCluster, Line, Object, Point, Scene, Wall};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 
 mod answers;
 
@@ -103,10 +101,8 @@ fn a_snapshot_is_drawn_out_to_where_it_heard_something() {
     let scene = Harness::builder().with_size([480.0, 300.0]).build_ui_state(draw, state);
     seen::assert_readable(scene.output());
     let rect = scene.get_by_label("Scene").rect();
-    assert!(
-        rect.contains(scene.state().scene_view.to_screen(rect, Place::new(0.0, 15.0))),
-        "what was found is in sight"
-    );
+    let found = scene.state().scene_view.to_screen(rect, Place::new(0.0, 15.0));
+    assert!(rect.contains(found), "it is in sight");
 }
 
 fn selected(object: Object) -> Harness<'static, Held> {
@@ -257,9 +253,8 @@ fn arrow_keys_pan_the_scene_while_nothing_is_selected() {
     scene.state_mut().state.editor.select([0], SelectionMode::Replace);
     scene.presses(&[egui::Key::ArrowRight]);
     assert_eq!(centre(&scene), panned, "arrows are the selection's");
-    assert!(
-        scene.state().asked.iter().any(|c| matches!(c, Command::Edit(crate::app::state::EditCommand::Nudge { .. })))
-    );
+    let is_nudge = |c: &Command| matches!(c, Command::Edit(crate::app::state::EditCommand::Nudge { .. }));
+    assert!(scene.state().asked.iter().any(is_nudge));
     scene.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::ArrowUp);
     scene.run_steps(2);
     assert!(centre(&scene).y_metres > panned.y_metres, "with Ctrl they pan whatever is selected");

@@ -1,5 +1,4 @@
-//! Every command that a button, a menu entry, a shortcut, the palette or a panel can send, in groups. Each group has a file of its name in `app::apply`, which
-//! does the commands.
+//! Every command of buttons, menus, shortcuts, the palette and panels, in groups. Each group has a file of its name in `app::apply`, which does them.
 
 mod file;
 

@@ -68,8 +68,7 @@ fn preset((index, preset): (usize, &presets::Preset)) -> Entry {
     named(DocumentCommand::Preset(index), name, tooltip, None)
 }
 
-/// Every command of the table, of the panels, of the kinds of random scenes and of the presets, in the order of the palette. The list has those that a desktop
-/// or a page offers. Methods are not in it: each app has its own.
+/// Every command that the program offers on this desktop or page, in the order of the palette. Methods are not in it: each app has its own.
 pub fn listed() -> &'static [Entry] {
     static LISTED: OnceLock<Vec<Entry>> = OnceLock::new();
     LISTED.get_or_init(|| listed_where(if platform::IN_A_BROWSER { on_a_page } else { on_a_desktop }))

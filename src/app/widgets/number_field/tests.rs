@@ -1,8 +1,6 @@
 use super::*;
-use crate::app::widgets::seen::User;
+use crate::app::widgets::seen::{Harness, Queryable, User};
 use eframe::egui::{Event, Modifiers};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 
 /// A field for x, a field for a count, and the number of changes of x.
 struct Shown {
@@ -28,20 +26,6 @@ fn panel() -> Harness<'static, Shown> {
 fn field<'h>(panel: &'h Harness<'_, Shown>, name: &'h str) -> egui_kittest::Node<'h> {
     let is_field = |role| role == egui::accesskit::Role::SpinButton;
     panel.get_by(move |n| n.label().as_deref() == Some(name) && is_field(n.role()))
-}
-
-fn write(panel: &mut Harness<'_, Shown>, name: &str, text: &str) {
-    field(panel, name).focus();
-    panel.run();
-    panel.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    panel.run();
-    panel.event(Event::Text(text.to_owned()));
-    panel.run();
-}
-
-fn enter(panel: &mut Harness<'_, Shown>, name: &str, text: &str) {
-    write(panel, name, text);
-    panel.presses(&[Key::Enter]);
 }
 
 fn says(panel: &Harness<'_, Shown>, what: &str) -> bool {
@@ -97,7 +81,7 @@ fn a_wrong_entry_is_told_by_its_reason() {
 fn a_wrong_entry_changes_nothing() {
     for text in ["nan", "1e400", "abc", "-3,5,1", "12345678"] {
         let mut panel = panel();
-        enter(&mut panel, "x", text);
+        panel.enters("x", text);
         assert_eq!((panel.state().x_metres, panel.state().changes), (1.0 / 3.0, 0), "{text}");
     }
 }
@@ -106,7 +90,7 @@ fn a_wrong_entry_changes_nothing() {
 fn a_wrong_entry_stays_in_the_field_with_the_focus() {
     let mut panel = panel();
     let before = field(&panel, "count").rect();
-    enter(&mut panel, "x", "abc");
+    panel.enters("x", "abc");
     assert_eq!(field(&panel, "count").rect(), before, "the message moves nothing");
     assert!(field(&panel, "x").is_focused() && panel.ctx.text_edit_focused());
     assert_eq!(field(&panel, "x").value().as_deref(), Some("abc"));
@@ -122,13 +106,13 @@ fn a_wrong_entry_stays_in_the_field_with_the_focus() {
 fn a_wrong_entry_ends_by_a_right_one_escape_or_from_elsewhere() {
     type Way = (fn(&mut Harness<'_, Shown>), f64, usize);
     let ways: [Way; 3] = [
-        (|panel| enter(panel, "x", "-3,5"), -3.5, 1),
+        (|panel| panel.enters("x", "-3,5"), -3.5, 1),
         (|panel| panel.presses(&[Key::Escape]), 1.0 / 3.0, 0),
         (|panel| panel.state_mut().x_metres = 8.0, 8.0, 0),
     ];
     for (way, x_metres, changes) in ways {
         let mut panel = panel();
-        enter(&mut panel, "x", "abc");
+        panel.enters("x", "abc");
         way(&mut panel);
         panel.run();
         assert!(!says(&panel, "is not a number"));
@@ -142,7 +126,11 @@ fn a_wrong_entry_ends_by_a_right_one_escape_or_from_elsewhere() {
 #[test]
 fn nothing_counts_before_the_entry_ends() {
     let mut panel = panel();
-    write(&mut panel, "x", "12");
+    field(&panel, "x").focus();
+    panel.run();
+    panel.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    panel.event(Event::Text("12".to_owned()));
+    panel.run();
     assert_eq!(panel.state().changes, 0);
     panel.presses(&[Key::Tab]);
     assert_eq!((panel.state().x_metres, panel.state().changes), (12.0, 1));
@@ -158,22 +146,15 @@ fn the_focus_passes_through_without_rounding() {
 #[test]
 fn a_count_takes_whole_numbers_only() {
     let mut panel = panel();
-    enter(&mut panel, "count", "2.5");
+    panel.enters("count", "2.5");
     assert!(says(&panel, "Enter a whole number from 1 to 9.") && panel.state().count == 5);
-    enter(&mut panel, "count", "7");
+    panel.enters("count", "7");
     assert_eq!(panel.state().count, 7);
 }
 
 fn sources(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let mut found = Vec::new();
-    for path in entries {
-        match path.is_dir() {
-            true => found.extend(sources(&path)),
-            false => found.push(path),
-        }
-    }
-    found
+    entries.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] }).collect()
 }
 
 #[test]

@@ -1,9 +1,29 @@
-//! Texts of a drawn frame and actions of a user, for tests.
+//! Windows without a display, texts of a drawn frame, and actions of a user, for tests.
+
+pub use egui_kittest::Harness;
+pub use egui_kittest::kittest::{NodeT, Queryable};
 
 use eframe::egui::epaint::{ClippedShape, Shape};
-use eframe::egui::{Event, FullOutput, Key, Modifiers, Pos2, Rect};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use eframe::egui::{Event, FullOutput, Key, Modifiers, Pos2, Rect, Ui};
+
+/// A window of this size, and all that `show` has asked for.
+pub fn asking<'a, T, C: IntoIterator<Item = T>>(
+    size: [f32; 2],
+    mut show: impl FnMut(&mut Ui) -> C + 'a,
+) -> Harness<'a, Vec<T>> {
+    let draw = move |ui: &mut Ui, asked: &mut Vec<T>| asked.extend(show(ui));
+    Harness::builder().with_size(size).build_ui_state(draw, Vec::new())
+}
+
+/// As [`asking`], with a memory that `show` changes.
+pub fn asking_with<'a, M, T, C: IntoIterator<Item = T>>(
+    size: [f32; 2],
+    memory: M,
+    mut show: impl FnMut(&mut Ui, &mut M) -> C + 'a,
+) -> Harness<'a, (M, Vec<T>)> {
+    let draw = move |ui: &mut Ui, (memory, asked): &mut (M, Vec<T>)| asked.extend(show(ui, memory));
+    Harness::builder().with_size(size).build_ui_state(draw, (memory, Vec::new()))
+}
 
 /// A text on screen.
 #[derive(Debug, Clone)]
@@ -37,6 +57,14 @@ fn gather(clip: Rect, shape: &Shape, found: &mut Vec<Seen>) {
     }
 }
 
+/// Asserts that each of these texts is on screen.
+pub fn assert_reads(output: &FullOutput, wanted: &[&str]) {
+    let texts = texts(output);
+    for text in wanted {
+        assert!(texts.iter().any(|t| t.text == *text), "{text} in {texts:?}");
+    }
+}
+
 /// Asserts that no text is cut off and none overlaps another.
 pub fn assert_readable(output: &FullOutput) {
     let texts = texts(output);
@@ -52,11 +80,9 @@ pub fn assert_readable(output: &FullOutput) {
 pub trait User {
     /// Clicks the widgets with these labels, one after the other.
     fn clicks(&mut self, labels: &[&str]);
-    /// Presses keys one after the other.
     fn presses(&mut self, keys: &[Key]);
     /// Types a text in place of the text of a field, and enters it.
     fn enters(&mut self, label: &str, text: &str);
-    /// Drags the pointer through these places.
     fn drags(&mut self, places: &[Pos2]);
     /// Whether one text on screen is `text`.
     fn reads(&self, text: &str) -> bool;
@@ -80,7 +106,7 @@ impl<S> User for Harness<'_, S> {
     fn enters(&mut self, label: &str, text: &str) {
         let role = |node: &egui_kittest::Node<'_>| {
             use eframe::egui::accesskit::Role::{SpinButton, TextInput};
-            [SpinButton, TextInput].contains(&egui_kittest::kittest::NodeT::accesskit_node(node).role())
+            [SpinButton, TextInput].contains(&node.accesskit_node().role())
         };
         self.query_all_by_label(label).find(role).expect(label).focus();
         self.run_ok();

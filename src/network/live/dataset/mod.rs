@@ -19,7 +19,7 @@ use super::arrays::Arrays;
 use super::examples::{Example, ExampleError, Examples, ExamplesRequest, Features};
 use super::radars::{DRAWN_LIMITS, Radars};
 use crate::evaluate::Target;
-use crate::files::{sha256, write_bytes};
+use crate::files::{make_folder, sha256, write_bytes};
 use crate::network::floors::Floors;
 use crate::platform::fs;
 use crate::radar::Radar;
@@ -153,8 +153,7 @@ pub struct DatasetRequest {
 }
 
 impl DatasetRequest {
-    /// Scenes of each kind for training, validation and test. The default for the last two is a tenth of `training`; there are no test scenes with
-    /// [`Kind::World`].
+    /// Scenes of each kind for training, validation and test; by default a tenth of `training` for the last two, without tests for [`Kind::World`].
     pub fn counts(kinds: &[Kind], training: u32, validation: Option<u32>, test: Option<u32>) -> [u32; 3] {
         let tenth = training.div_ceil(10);
         let default_test = if kinds.contains(&Kind::World) { 0 } else { tenth };
@@ -190,7 +189,7 @@ pub fn write(folder: &Path, request: &DatasetRequest, task: &Task) -> Result<Man
         |(purpose, count): (Purpose, u32)| if count > 0 { makers(request, purpose) } else { Ok(Vec::new()) };
     let purposes = [Purpose::Training, Purpose::Validation, Purpose::Test];
     let makers = purposes.into_iter().zip(request.counts).map(makers_of).collect::<Result<Vec<_>, _>>()?;
-    fs::create_dir_all(folder).map_err(on(folder))?;
+    make_folder(folder).map_err(on(folder))?;
     if fs::read_dir(folder).map_err(on(folder))?.next().is_some() {
         let message = format!("{} is not empty; expected an empty folder or a new one", folder.display());
         return Err(DatasetError::Request(message));

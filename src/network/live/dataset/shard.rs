@@ -12,8 +12,7 @@ use half::f16;
 use num_complex::Complex64;
 
 impl ArrayKind {
-    /// Name of the array in its files' names, and its type, axes and shape. Samples have double precision, since the thesis' floor is 230 dB below its
-    /// echoes.
+    /// The array's name in file names, type, axes and shape. Samples have double precision: the thesis' floor is 230 dB below its echoes.
     pub fn entry(self, radar: &Radar, precision: DatasetPrecision) -> (&'static str, ArrayEntry) {
         let Radar { samples, elements, end_elements, .. } = *radar;
         let cells = if precision == DatasetPrecision::Half { "<f2" } else { "<f4" };

@@ -19,18 +19,14 @@ fn request() -> DatasetRequest {
     }
 }
 
-fn maker_of(kind: &str) -> Examples {
-    let (mixture, targets) = (kind.parse().unwrap(), Target::USUAL.to_vec());
-    Examples::new(ExamplesRequest { mixture, seed: 5, targets, ..ExamplesRequest::default() }).unwrap()
-}
-
 #[test]
 fn an_example_on_disk_is_the_example() {
     let folder = tempfile::tempdir().unwrap();
     let manifest = write(folder.path(), &request(), &Task::default()).unwrap();
     let shards: Vec<u32> = manifest.splits["train"].iter().map(|shard| shard.examples).collect();
     assert_eq!(shards, [3, 1]);
-    let maker = maker_of("clusters");
+    let (mixture, targets) = ("clusters".parse().unwrap(), Target::USUAL.to_vec());
+    let maker = Examples::new(ExamplesRequest { mixture, seed: 5, targets, ..ExamplesRequest::default() }).unwrap();
     let example = maker.example(0, &Task::default()).unwrap();
     let path = |array: &str| folder.path().join(format!("train/00000.{array}.npy"));
     for target in Target::USUAL {
@@ -77,6 +73,8 @@ fn impossible_requests_are_refused() {
     assert!(told(DatasetRequest { kinds: twice, ..request() }).contains("2 is given twice"));
     std::fs::write(folder.path().join("old"), "").unwrap();
     assert!(told(request()).contains("is not empty"));
+    let file = write(&folder.path().join("old"), &request(), &Task::default()).unwrap_err().to_string();
+    assert!(file.ends_with("old: is a file; expected a folder"), "{file}");
 }
 
 #[test]
@@ -93,10 +91,8 @@ fn a_dataset_of_another_radar_and_layout_has_its_shape() {
     let radars = Radars::Fixed(Box::new(Radar { elements: 86, end_elements: 8, samples: 128, ..Radar::default() }));
     let layout = vec![0, 1, 4, 9, 85];
     let parts = ExamplePart::usual(&radars, Some(&layout));
-    assert!(
-        !parts.contains(&ExamplePart::Features)
-            && ExamplePart::usual(&Radars::Random, None).contains(&ExamplePart::Features)
-    );
+    assert!(!parts.contains(&ExamplePart::Features));
+    assert!(ExamplePart::usual(&Radars::Random, None).contains(&ExamplePart::Features));
     let request = DatasetRequest { counts: [1, 0, 0], layout: Some(layout.clone()), radars, parts, ..request() };
     let manifest = write(folder.path(), &request, &Task::default()).unwrap();
     assert_eq!((manifest.layout, manifest.radar.unwrap().elements), (Some(layout), 86));

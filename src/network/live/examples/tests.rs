@@ -39,8 +39,8 @@ fn an_example_is_the_generators_scene() {
 fn the_world_makes_no_test_examples() {
     let of = |purpose| {
         let mixture = "world".parse().unwrap();
-        Examples::new(ExamplesRequest { mixture, purpose, radars: Radars::Random, ..ExamplesRequest::default() })
-            .map(|_| ())
+        let request = ExamplesRequest { mixture, purpose, radars: Radars::Random, ..ExamplesRequest::default() };
+        Examples::new(request).map(drop)
     };
     assert!(of(Purpose::Test).unwrap_err().to_string().starts_with("world makes no scenes for tests"));
     assert_eq!((of(Purpose::Training), of(Purpose::Validation)), (Ok(()), Ok(())));

@@ -31,8 +31,7 @@ const MAX_TURN_RADIANS: f64 = 0.01;
 /// Least step, metres. Rows of smaller steps have nearly the same echoes.
 const MIN_EDGE_STEP_METRES: f64 = 0.03;
 
-/// Difference of neighbouring rows of the grid at the last of the first few reflectors, wavelengths. The grid has one direction, so that it is finer than
-/// that of pairs.
+/// Difference of the grid's neighbouring rows at the last of the first reflectors, wavelengths: finer than for pairs, as it has one direction.
 const EDGE_PITCH_WAVELENGTHS: f64 = 0.5;
 
 /// Largest number of a direction's rows that are tried over twice as many reflectors.

@@ -14,8 +14,7 @@ pub fn beam_count(radar: &Radar) -> usize {
     4 * radar.end_elements
 }
 
-/// `count` beams of each end, evenly spaced in cos(theta), `[beam, range bin]`, with phases referred to the middle of the end. `samples` are channel by
-/// channel, `[channels * samples]`.
+/// `count` beams of each end, even in cos(theta), `[beam, range bin]`, phases referred to the end's middle, from samples `[channels * samples]`.
 pub fn end_beams(radar: &Radar, samples: &[Complex64], count: usize) -> [Array2<Complex64>; 2] {
     let ends = TwoEnds::of_flat(radar, samples);
     let radians_per_element =

@@ -16,8 +16,7 @@ const MAX_LOG_GAIN_ERROR: f64 = 0.1;
 /// Largest [`Pair::disagreement`] of a point.
 const MAX_DISAGREEMENT: f64 = 3.0;
 
-/// Range bins around the range predicted by the first end within which the last end's tones are searched: the least, and the largest where noise makes
-/// the direction inexact.
+/// Range bins around the first end's prediction in which the last end's tones are searched: the least, and the largest, for inexact directions.
 const MIN_SEARCH_BINS: f64 = 2.0;
 const MAX_SEARCH_BINS: f64 = 6.0;
 
@@ -52,9 +51,8 @@ struct EndTone {
 /// A tone at each end, and the point that may have both.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
-    /// Number of the tone at the first end.
+    /// Numbers of the tones at the first and the last end.
     first: usize,
-    /// Number of the tone at the last end.
     last: usize,
     atom: Atom,
     /// Differences of the directions at both ends and of the gains, over their tolerances.

@@ -20,9 +20,7 @@ const MIN_RANGE_METRES: f64 = 0.05;
 pub struct PhasedBeams {
     /// Complex amplitudes of each end, at index `beam * bins + range bin`.
     beams: [Vec<Complex64>; 2],
-    /// The view of each end.
     pub views: [View; 2],
-    /// Number of range bins.
     bins: usize,
     bins_per_metre: f64,
     /// Phase of an echo in the middle of the chirp for each metre of range, turns.
@@ -116,13 +114,11 @@ impl PhasedBeams {
         self.bins as f64 / self.bins_per_metre
     }
 
-    /// Length of a range bin, metres.
     pub fn bin_metres(&self) -> f64 {
         self.bins_per_metre.recip()
     }
 
-    /// Coherent part of the beams' power at the places of each of `rows`, 0 to 1: the power that `count` reflectors of one gain explain, over the sum
-    /// of the powers. 0 for a row that ends behind the array.
+    /// Coherent part, 0 to 1, of the beams' power at each row's places: that of `count` reflectors of one gain; 0 for a row behind the array.
     pub fn coherent_parts(&self, rows: &[Row], count: usize) -> Vec<f64> {
         Simd::chosen().run(CoherentParts { beams: self, rows, count })
     }
@@ -174,7 +170,6 @@ impl PhasedBeams {
     }
 }
 
-/// Kernel of [`PhasedBeams::coherent_parts`].
 struct CoherentParts<'a> {
     beams: &'a PhasedBeams,
     rows: &'a [Row],

@@ -18,8 +18,7 @@ const ADDED_RANGE_BINS: f64 = 10.0;
 /// Least length of a run that is more than a few reflectors.
 pub const MIN_LONG_RUN_BINS: usize = 18;
 
-/// Number of successive range bins with an echo, at the end where it is larger. `residual` is channel by channel, `[channels * samples]`, without a window,
-/// over white noise of `noise_variance`.
+/// Most successive range bins with an echo at an end, for `residual` `[channels * samples]`, not windowed, over white noise of `noise_variance`.
 pub fn longest_run_bins(radar: &Radar, residual: &[Complex64], noise_variance: f64) -> usize {
     let ends = TwoEnds::of_flat(radar, residual);
     let noise = beam_noise_power(radar, noise_variance);

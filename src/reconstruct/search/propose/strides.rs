@@ -83,8 +83,7 @@ pub struct RowStart {
     pub row: Row,
 }
 
-/// The rows with as many reflectors as have coherent echoes, the best first; at most one from each point. At each length the number of reflectors of
-/// all rows together is limited.
+/// The rows with as many reflectors as have coherent echoes, best first; one a point at most, and limited reflectors in all at each length.
 pub fn longest_of_each(beams: &PhasedBeams, starts: Vec<RowStart>, task: &Task) -> Vec<Atom> {
     let mut rows: Vec<GrowingRow> = starts.into_iter().map(GrowingRow::new).collect();
     let mut count = MIN_REFLECTORS;
@@ -129,8 +128,7 @@ fn grid(beams: &PhasedBeams, from: [f64; 2], over: [f64; 2]) -> Vec<Row> {
     (-far..=far).flat_map(|i| (-wide..=wide).map(move |j| (i, j))).map(|(i, j)| row(i, j)).collect()
 }
 
-/// Differences of the steps of neighbouring rows of a grid, metres, along the line of sight and across: those that move the last of
-/// [`MIN_REFLECTORS`] reflectors by `wavelengths` in range.
+/// Differences of a grid's steps, metres, along and across the line of sight, that move reflector [`MIN_REFLECTORS`] by `wavelengths` in range.
 pub fn pitches_metres(beams: &PhasedBeams, from: [f64; 2], step_metres: f64, wavelengths: f64) -> [f64; 2] {
     let range = from[0].hypot(from[1]).max(0.1);
     let between = (beams.views[1].centre_metres - beams.views[0].centre_metres).abs().max(1e-3);
@@ -232,8 +230,7 @@ fn maximised(beams: &PhasedBeams, mut row: Row, count: usize) -> Option<(Row, Ph
     Some((row, equations))
 }
 
-/// The equations of the echoes' phases against the phase of their sum, weighted by their parts of it. `None` for a row that is not ahead of the array and
-/// within [`MAX_RANGE_RATIO`].
+/// Equations of the echoes' phases against their sum's, weighted by their parts; `None` for a row behind the array or beyond [`MAX_RANGE_RATIO`].
 fn equations(beams: &PhasedBeams, row: &Row, count: usize) -> Option<PhaseEquations> {
     let is_valid = |i: f64| {
         let [x, y] = row.place_metres(i);

@@ -2,11 +2,10 @@
 
 use super::super::*;
 use super::Held;
+use crate::app::widgets::seen::{Harness, Queryable};
 use crate::lesson::question::Answer;
 use crate::lesson::{Stage, Step, Truth, shipped};
 use crate::scattering::{EchoKind, array_centre_echoes};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 
 /// A step's scene, drawn with or without its effects on the maps.
 fn step_drawn(step: &Step, tells_maps: bool) -> (Harness<'static, Held>, Vec<egui::Shape>) {
@@ -45,13 +44,8 @@ fn no_drawn_mark_lies_at_the_answer_of_an_open_question() {
             let (panel, open) = step_drawn(step, false);
             let rect = panel.get_by_label("Scene").rect();
             let (view, radar) = (panel.state().state.scene_view, step.radar.clone());
-            let canvas = Canvas {
-                rect,
-                view,
-                radar: &radar,
-                extent_metres: radar.max_range_metres(),
-                inks: Inks::of(&panel.ctx.global_style().visuals),
-            };
+            let (extent_metres, inks) = (radar.max_range_metres(), Inks::of(&panel.ctx.global_style().visuals));
+            let canvas = Canvas { rect, view, radar: &radar, extent_metres, inks };
             // Ground and objects alone.
             let scene = step.scene();
             let bare = Harness::builder().with_size([600.0, 400.0]).build_ui(|ui| {
