@@ -10,8 +10,9 @@ import zipfile
 from pathlib import Path
 
 #: Largest difference: of amplitudes as a part of the map's peak, of figures as a part of themselves. The thesis' floor is as low as rounding errors
-#: of the last bit, which differ between libraries of sines and logarithms.
-MOST = {"1.npz": 1e-12, "2.npz": 1e-12, "3.npz": 1e-12, "snr=40.json": 1e-3, "thesis.json": 1e-2}
+#: of the last bit, which differ between libraries of sines and logarithms: it changes the squared error of `nomp`, nearly all of it in cells of noise,
+#: by 2 %.
+MAX_DIFFERENCES = {"1.npz": 1e-12, "2.npz": 1e-12, "3.npz": 1e-12, "snr=40.json": 1e-3, "thesis.json": 5e-2}
 #: On walls these two decide by differences of rounding errors: another instruction set of the same processor changes their answer too.
 UNSTABLE = {(3, "iaa"), (3, "esprit")}
 
@@ -28,7 +29,7 @@ def read(path):
     return {key: (value, abs(value) or 1) for key, value in found.items() if key[:2] not in UNSTABLE}
 
 
-for name, most in MOST.items():
+for name, most in MAX_DIFFERENCES.items():
     ours, theirs = (read(Path(sys.argv[1], f"{place}-{name}")) for place in ("here", "there"))
     if ours.keys() != theirs.keys():
         sys.exit(f"{name}: only one of both has {sorted(map(str, ours.keys() ^ theirs.keys()))}")
