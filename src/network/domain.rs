@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 /// Largest relative difference of two quantities that count as equal.
 const SAME_QUANTITY: f64 = 1e-9;
 
-/// Places behind the point of a quantity that differs: more than the least where two would look alike.
-const LEAST_PLACES: usize = 4;
-const MOST_PLACES: usize = 15;
+/// Places behind the point of a quantity that differs: more than the minimum where two would look alike.
+const MIN_PLACES: usize = 4;
+const MAX_PLACES: usize = 15;
 
 /// The radars for which a network was trained.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -100,7 +100,7 @@ impl Domain {
 /// Two numbers to four places behind the point, or to as many as tell them apart.
 fn told_apart(pair: [f64; 2]) -> [String; 2] {
     let to_places = |places: usize| pair.map(|v| format!("{v:.places$}"));
-    (LEAST_PLACES..=MOST_PLACES).map(to_places).find(|[a, b]| a != b).unwrap_or_else(|| to_places(LEAST_PLACES))
+    (MIN_PLACES..=MAX_PLACES).map(to_places).find(|[a, b]| a != b).unwrap_or_else(|| to_places(MIN_PLACES))
 }
 
 pub(super) fn is_alike(trained: &Radar, radar: &Radar) -> bool {
