@@ -15,7 +15,7 @@ use num_complex::Complex64;
 use std::collections::HashSet;
 
 impl RecordingText<'_> {
-    /// Reads the samples, as many as the radar has, with all corrections of the table, and sentences on doubts about them.
+    /// Reads as many samples as the radar has, with all corrections of the table. The second value has a sentence for each doubt about them.
     pub fn samples(&self) -> Result<(Recorded, Vec<String>), Fault> {
         let table = &self.table;
         let (mut rows, notes) = match &table.capture {

@@ -8,7 +8,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Numbers of elements of a subarray, largest first. The largest within two thirds of an end's is used: 8 of 12, in five subarrays.
+/// Numbers of elements of a subarray, largest first. The largest that has at most two thirds of an end's elements is used: 8 of 12.
 const SUBARRAY_ELEMENTS: [usize; 5] = [16, 8, 4, 2, 1];
 /// Diagonal loading of the covariance, relative to its mean diagonal.
 const RELATIVE_LOADING: f64 = 1e-5;
